@@ -1,0 +1,5 @@
+"""Models of a structure on a base that may uplift."""
+
+from rockflex.models._linear import LinearModel
+
+__all__ = ["LinearModel"]

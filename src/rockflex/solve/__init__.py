@@ -1,0 +1,1 @@
+"""Solvers: an exact engine for the piecewise linear models."""
