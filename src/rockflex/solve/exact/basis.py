@@ -23,12 +23,12 @@ Complex = NDArray[np.complex128]
 class Basis:
     """Everything of a phase that does not depend on the time step: x' = B x + ..., state = basis · x."""
 
-    basis: Array  # (2N + 2, 2K); coordinates k and K + k form pair k
-    inverse: Array  # (2K, 2N + 2)
+    basis: Array  # (2K, 2K), K = N + 1; coordinates k and K + k form pair k
+    inverse: Array  # (2K, 2K)
     matrix: Array  # (2K, 2K): B; block diagonal in the pairs unless `dense`
     pairs: Array  # (K, 2, 2): the blocks of B
     roots: Complex  # (K, 2): their eigenvalues, the one with the larger real part first
-    particular: Array  # (3, 2K): the forced solution's coefficients of a, a', s
+    forced: Array  # (3, 2K): the forced solution's coefficients of a, a', s
     rows: Array  # (F, 2K)
     row_forcing: Array  # (F, 3): of a, a', s
     dense: bool
@@ -36,24 +36,31 @@ class Basis:
 
 
 def contact_basis(physics: Physics, rows: Array) -> Basis:
-    """Uncoupled coordinates of full contact (Eq. 15); `rows` (F, 2N + 4) over state, a and s."""
+    """Uncoupled coordinates of full contact (Eq. 15), the last pair empty; `rows` (F, 2N + 4) over state, a and s."""
     n = physics.omega2.size
     omega = np.sqrt(physics.omega2)
-    pairs = np.zeros((n, 2, 2))
-    pairs[:, 0, 1] = omega
-    pairs[:, 1, 0] = -omega
-    pairs[:, 1, 1] = -physics.damping
+    modes = np.arange(n)
+    speeds = modes + n + 1  # the second coordinate of each pair
+    pairs = np.zeros((n + 1, 2, 2))
+    pairs[:n, 0, 1] = omega
+    pairs[:n, 1, 0] = -omega
+    pairs[:n, 1, 1] = -physics.damping
     half = -0.5 * physics.damping + 0j
     spread = np.sqrt(half * half - physics.omega2)
-    basis = np.zeros((2 * n + 2, 2 * n))
-    basis[: 2 * n] = np.diag(np.concatenate((np.ones(n), omega)))
-    inverse = np.zeros((2 * n, 2 * n + 2))
-    inverse[:, : 2 * n] = np.diag(np.concatenate((np.ones(n), 1.0 / omega)))
+    roots = np.zeros((n + 1, 2), dtype=np.complex128)
+    roots[:n, 0] = half + spread
+    roots[:n, 1] = half - spread
+    basis = np.zeros((2 * n + 2, 2 * n + 2))
+    basis[modes, modes] = 1.0
+    basis[n + modes, speeds] = omega
+    inverse = np.zeros((2 * n + 2, 2 * n + 2))
+    inverse[modes, modes] = 1.0
+    inverse[speeds, n + modes] = 1.0 / omega
     forced = np.zeros((3, 2 * n + 2))
     forced[0, :n] = -1.0 / physics.omega2
     forced[1, :n] = physics.damping / physics.omega2**2
     forced[1, n : 2 * n] = forced[0, :n]
-    return _basis(rows, basis, inverse, pairs, np.stack((half + spread, half - spread), axis=1), forced)
+    return _basis(rows, basis, inverse, pairs, roots, forced)
 
 
 def rocking_basis(physics: Physics, rows: Array) -> Basis:
@@ -104,7 +111,7 @@ def _basis(
         matrix=_block_diagonal(pairs) if dense is None else dense,
         pairs=pairs,
         roots=roots,
-        particular=forced @ inverse.T,
+        forced=forced @ inverse.T,
         rows=rows[:, :size] @ basis,
         row_forcing=forcing,
         dense=dense is not None,
@@ -120,9 +127,10 @@ def _first_order(physics: Physics) -> tuple[Array, Array, Array]:
     matrix = np.zeros((2 * n + 2, 2 * n + 2))
     matrix[: n + 1, n + 1 :] = np.eye(n + 1)
     angular = np.empty(2 * n + 2)
-    angular[:n] = physics.moment_arm * physics.omega2
+    arm = physics.mass * physics.height
+    angular[:n] = arm * physics.omega2
     angular[n] = physics.gravity
-    angular[n + 1 : -1] = physics.moment_arm * physics.damping
+    angular[n + 1 : -1] = arm * physics.damping
     angular[-1] = 0.0
     angular /= physics.inertia
     matrix[n + 1 : -1] = -physics.height[:, None] * angular

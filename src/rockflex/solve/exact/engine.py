@@ -11,7 +11,7 @@ from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log, Physics, System
 from rockflex.solve.exact.run import SETTLED, UNSETTLED, run
-from rockflex.solve.exact.tables import levels, tabulate
+from rockflex.solve.exact.tables import tabulate
 from rockflex.solve.exact.unit import CHATTER, IMPACTS, OVERTURNED, UPLIFTS
 
 __all__ = ["ExactEngine"]
@@ -35,24 +35,18 @@ class ExactEngine:
         self._physics = _physics(model)
         rotation = np.zeros(2 * model.omega.size + 4)
         rotation[-4] = 1.0
-        self._contact_rows = np.vstack((model.contact_moment(), contact_rows))
-        self._rocking_rows = np.vstack((rotation, rocking_rows))
-        self._contact = contact_basis(self._physics, self._contact_rows)
-        self._rocking = rocking_basis(self._physics, self._rocking_rows)
+        self._rows = np.stack(
+            (np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows)))
+        )
+        self._contact = contact_basis(self._physics, self._rows[0])
+        self._rocking = rocking_basis(self._physics, self._rows[1])
         self._systems: dict[float, System] = {}
 
     def system(self, dt: float) -> System:
         """Propagators and bounds for one time step; computed once."""
         found = self._systems.get(dt)
         if found is None:
-            halvings = levels(max(self._contact.fastest, self._rocking.fastest), dt)
-            found = System(
-                self._physics,
-                tabulate(self._contact, dt, halvings),
-                tabulate(self._rocking, dt, halvings),
-                self._contact_rows,
-                self._rocking_rows,
-            )
+            found = tabulate(self._physics, self._rows, self._contact, self._rocking, dt)
             self._systems[dt] = found
         return found
 
@@ -77,7 +71,7 @@ class ExactEngine:
         side = float(np.sign(now[-2]) or np.sign(now[-1]))
         settle = free_vibration is None
         free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
-        rows = self._contact_rows.shape[0]
+        rows = self._rows.shape[1]
         log = Log(np.zeros(rows), np.zeros(rows), np.zeros(3, dtype=np.int64))
         nodes = np.empty((acceleration.size + max(64, free if not settle else 0), HEADER + now.size)) if history else NO_NODES
         status, samples, nodes, count = run(
@@ -123,7 +117,6 @@ def _physics(model: LinearModel) -> Physics:
         damping=2.0 * model.zeta * model.omega,
         height=np.ascontiguousarray(model.height),
         mass=np.ascontiguousarray(model.mass),
-        moment_arm=model.mass * model.height,
         inertia=model.free_inertia,
         gravity=model.gravity_stiffness,
         resistance=model.resisting_moment,

@@ -1,9 +1,12 @@
 """The arrays that the exact engine's kernels pass around.
 
-The state is ``[D_1..D_N, D'_1..D'_N, θ, θ']`` in both phases. A *row* is a linear functional of the state, the
-ground acceleration and the side of rocking: ``[D.., D'.., θ, θ', a, s]``. Row 0 of each phase is its guard: the
-overturning moment in contact (Eq. 24), the rotation while rocking. The other rows are the responses whose peaks
-are wanted.
+The state is ``[D_1..D_N, D'_1..D'_N, θ, θ']``. A *row* is a linear functional of state, ground acceleration and side
+of rocking, ``[D.., D'.., θ, θ', a, s]``. Row 0 of each phase is its guard: the overturning moment in contact
+(Eq. 24), the rotation while rocking. The other rows are the responses whose peaks are wanted.
+
+Each phase is uncoupled into pairs of coordinates w, where state = basis · (w + forced part): N pairs in contact,
+K = N + 1 while rocking; pair k is ``(w[k], w[K + k])``. Under an acceleration that is linear in time, w moves without
+forcing, ``w(t + h) = exp(B h) w(t)``, and it jumps by ``-forced[1] Δa'`` where the acceleration's slope a' changes.
 """
 
 from typing import NamedTuple
@@ -13,55 +16,43 @@ from numpy.typing import NDArray
 
 from rockflex._kernel import kernel
 
-__all__ = ["Array", "Log", "Phase", "Physics", "Scratch", "System", "scratch"]
+__all__ = ["CONTACT", "ROCKING", "Array", "Log", "Physics", "Scratch", "System", "scratch"]
+
+CONTACT, ROCKING = 0, 1  # the phases, which lead the arrays of `System`
 
 Array = NDArray[np.float64]
 
 
 class Physics(NamedTuple):
-    """Coefficients of Eqs. 15 and 23, one entry a mode; θ'' is eliminated from the coupled rows."""
+    """Coefficients of Eqs. 15 and 23, one entry a mode, with θ'' eliminated from the coupled rows."""
 
     omega2: Array  # ω²
     damping: Array  # 2ζω
     height: Array  # h*
     mass: Array  # m*
-    moment_arm: Array  # m* h*
     inertia: float  # I_θ - Σ m* h*²
     gravity: float  # L_0^r g
-    resistance: float  # m_tot g B; infinite on a fixed base
+    resistance: float  # m_tot g B; infinite on a base that cannot lift
     drive_arm: float  # Σ m* h* - L_0^r
 
 
-class Phase(NamedTuple):
-    """One phase, uncoupled into K pairs of coordinates w: state = basis · (w + particular solution).
-
-    Under an acceleration that is linear in time, w moves without forcing: ``w(t + h) = exp(B h) w(t)``, and it
-    jumps by ``-particular[1] · Δa'`` where the slope a' of the acceleration changes. The tables have one entry for
-    each of the levels j = 0..J of step dt/2^j.
-    """
-
-    basis: Array  # (2N + 2, 2K)
-    inverse: Array  # (2K, 2N + 2)
-    particular: Array  # (3, 2K): of a, a', s
-    rows: Array  # (F, 2K)
-    row_forcing: Array  # (F, 3): of a, a', s
-    slope_rows: Array  # (F, 2K): of the rows' time derivatives
-    slope_forcing: Array  # (F,): of a'
-    blocks: Array  # (J + 1, 4, K): exp(B h) of each pair, row by row
-    dense: Array  # (J + 1, 2K, 2K) where the pairs do not uncouple, else (0, 0, 0)
-    sag: Array  # (J + 1, F, K): bound of |row - its chord| over a step, times |w| of the pair
-    swing: Array  # (J + 1, F, K): bound of |row' - its value at an end|, times |w| of the pair
-    hold: Array  # (F, K): bound of |row| for ever after, times |w| of the pair (contact only)
-
-
 class System(NamedTuple):
-    """A model, ready for a time step."""
+    """A model made ready for a time step; level j = 0..J stands for the step dt / 2^j."""
 
     physics: Physics
-    contact: Phase
-    rocking: Phase
-    contact_rows: Array  # (F, 2N + 4): the rows over state, a and s
-    rocking_rows: Array
+    plain_rows: Array  # (2, F, 2K + 2): the rows over state, a and s
+    basis: Array  # (2, 2K, 2K)
+    inverse: Array  # (2, 2K, 2K)
+    forced: Array  # (2, 3, 2K): the forced part's coefficients of a, a', s
+    rows: Array  # (2, F, 2K): the rows over w
+    row_forcing: Array  # (2, F, 3): the rows' coefficients of a, a', s
+    slope_rows: Array  # (2, F, 2K): the rows' time derivatives over w; `row_forcing[.., 0]` a' adds to them
+    blocks: Array  # (2, J + 1, 4, K): exp(B h) of each pair, row by row
+    dense: Array  # (J + 1, 2K, 2K): exp(B h) of rocking where it does not uncouple; else (0, 0, 0)
+    sag: Array  # (2, J + 1, F, K): bound of |row - its chord| over a step, times |w| of the pair
+    swing: Array  # (2, J + 1, F, K): bound of |row' - its value at either end|, times |w| of the pair
+    hold: Array  # (F, K): bound of |row| in contact for ever after, times |w| of the pair
+    order: int  # of the power series that converge over the finest step
 
 
 class Log(NamedTuple):
@@ -73,19 +64,19 @@ class Log(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """The motion as it is carried, and room for the kernels' intermediate values."""
+    """The motion as it is carried, and room for intermediate values."""
 
-    state: Array  # (2N + 2,)
-    w: Array  # (2N + 2,); the first 2K hold the coordinates of the present phase
-    w_end: Array
+    state: Array  # (2K,)
+    w: Array  # (2K,)
+    w_end: Array  # (2K,): after the step under examination
     norms: Array  # (K,)
-    lower: Array  # (F,)
-    upper: Array
-    start: Array
-    end: Array
-    series: Array  # (order + 1, N + 1)
-    polys: Array  # (F, order + 1)
-    work: Array  # (order + 1,)
+    lower: Array  # (F,): limits of the rows
+    upper: Array  # (F,)
+    start: Array  # (F,): values of the rows
+    end: Array  # (F,)
+    doubt: NDArray[np.bool_]  # (F,): rows that may leave their limits inside the step
+    series: Array  # (K, order + 1)
+    polys: Array  # (F + 1, order + 1): polynomials of the rows, and one to work on
 
 
 @kernel
@@ -101,7 +92,7 @@ def scratch(state: Array, rows: int, order: int) -> Scratch:
         np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows),
-        np.zeros((order + 1, size // 2)),
-        np.zeros((rows, order + 1)),
-        np.zeros(order + 1),
+        np.zeros(rows, dtype=np.bool_),
+        np.zeros((size // 2, order + 1)),
+        np.zeros((rows + 1, order + 1)),
     )

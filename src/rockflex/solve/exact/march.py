@@ -1,39 +1,43 @@
 """The fast path: one phase carried over whole samples, as long as nothing can hide in them."""
 
+import math
+
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import Array, Log, Phase, Scratch
-from rockflex.solve.exact.probe import amplitudes, carry, probe, raise_peaks, read_rows, set_limits
+from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.probe import examine, probe, raise_peaks, set_limits
 
 __all__ = ["march", "to_coordinates", "to_state"]
 
 
 @kernel
-def to_state(phase: Phase, w: Array, acceleration: float, slope: float, side: float, state: Array) -> None:
+def to_state(system: System, phase: int, acceleration: float, slope: float, side: float, room: Scratch) -> None:
     """State from the coordinates of a phase."""
-    for i in range(state.size):
-        total = 0.0
-        for k in range(w.size):
-            forced = phase.particular[0, k] * acceleration + phase.particular[1, k] * slope
-            total += phase.basis[i, k] * (w[k] + forced + phase.particular[2, k] * side)
-        state[i] = total
+    for i in range(room.w.size):
+        room.state[i] = 0.0
+    for k in range(room.w.size):
+        forced = system.forced[phase, 0, k] * acceleration + system.forced[phase, 1, k] * slope
+        value = room.w[k] + forced + system.forced[phase, 2, k] * side
+        for i in range(room.w.size):
+            room.state[i] += system.basis[phase, k, i] * value
 
 
 @kernel
-def to_coordinates(phase: Phase, state: Array, acceleration: float, slope: float, side: float, w: Array) -> None:
+def to_coordinates(
+    system: System, phase: int, acceleration: float, slope: float, side: float, room: Scratch
+) -> None:
     """Coordinates of a phase from the state."""
-    for k in range(w.size):
-        total = -phase.particular[0, k] * acceleration - phase.particular[1, k] * slope
-        total -= phase.particular[2, k] * side
-        for i in range(state.size):
-            total += phase.inverse[k, i] * state[i]
-        w[k] = total
+    for k in range(room.w.size):
+        forced = system.forced[phase, 0, k] * acceleration + system.forced[phase, 1, k] * slope
+        room.w[k] = -forced - system.forced[phase, 2, k] * side
+    for i in range(room.w.size):
+        for k in range(room.w.size):
+            room.w[k] += system.inverse[phase, i, k] * room.state[i]
 
 
 @kernel
 def march(
-    phase: Phase,
-    resistance: float,
+    system: System,
     record: Array,
     dt: float,
     first: int,
@@ -48,37 +52,53 @@ def march(
     """Carry `room.w` over samples from `first` on; stop before one that needs a closer look, or at the end.
 
     `offset` is the number of samples before this record. Returns the sample reached, the slope of the acceleration
-    that `w` refers to, the nodes and their count.
+    that `w` refers to, the nodes and their count. The sample that needs a closer look is left examined in `room`.
     """
-    size, rows = phase.rows.shape[1], log.peaks.size
-    pairs = size // 2
-    w, w_end, norms = room.w[:size], room.w_end[:size], room.norms
-    lower, upper, start, end = room.lower, room.upper, room.start, room.end
-    set_limits(side, resistance, log, room)
-    read_rows(phase, w, record[first], slope, side, start)
+    phase = ROCKING if side != 0.0 else CONTACT
+    pairs = room.norms.size
+    active = pairs if phase == ROCKING else pairs - 1
+    uncoupled = phase == CONTACT or system.dense.shape[0] == 0
+    rate = 1.0 / dt
+    started = False
+    set_limits(side, system.physics.resistance, log, room)
     for i in range(first, record.size - 1):
-        incline = (record[i + 1] - record[i]) / dt
-        for k in range(size):
-            w[k] -= phase.particular[1, k] * (incline - slope)
+        here, there = record[i], record[i + 1]
+        incline = (there - here) * rate
+        for k in range(2 * pairs):
+            room.w[k] -= system.forced[phase, 1, k] * (incline - slope)
         slope = incline
-        amplitudes(w, norms)
-        carry(phase, 0, w, w_end)
-        read_rows(phase, w_end, record[i + 1], slope, side, end)
+        if started and uncoupled:
+            for k in range(active):
+                x, y = room.w[k], room.w[pairs + k]
+                room.norms[k] = math.sqrt(x * x + y * y)
+                room.w_end[k] = system.blocks[phase, 0, 0, k] * x + system.blocks[phase, 0, 1, k] * y
+                room.w_end[pairs + k] = system.blocks[phase, 0, 2, k] * x + system.blocks[phase, 0, 3, k] * y
+            for f in range(room.start.size):
+                value = system.row_forcing[phase, f, 0] * there + system.row_forcing[phase, f, 1] * slope
+                value += system.row_forcing[phase, f, 2] * side
+                for k in range(active):
+                    value += system.rows[phase, f, k] * room.w_end[k]
+                    value += system.rows[phase, f, pairs + k] * room.w_end[pairs + k]
+                room.start[f] = room.end[f]
+                room.end[f] = value
+        else:
+            examine(system, phase, 0, side, here, there, slope, room)
+            started = True
         safe = True
-        for f in range(rows):
+        for f in range(room.start.size):
             sag = 0.0
-            for k in range(pairs):
-                sag += phase.sag[0, f, k] * norms[k]
-            if min(start[f], end[f]) - sag < lower[f] or max(start[f], end[f]) + sag > upper[f]:
-                safe = False
+            for k in range(active):
+                sag += system.sag[phase, 0, f, k] * room.norms[k]
+            low, high = min(room.start[f], room.end[f]), max(room.start[f], room.end[f])
+            safe = safe and low - sag >= room.lower[f] and high + sag <= room.upper[f]
         if not safe:
-            if not probe(phase, 0, side, slope, w, w_end, room):
+            if not probe(system, phase, 0, side, slope, room):
                 return i, slope, nodes, count
-            raise_peaks(end, side, (offset + i + 1) * dt, log)
-            set_limits(side, resistance, log, room)
-        w[:] = w_end
-        start[:] = end
+            raise_peaks(room.end, side, (offset + i + 1) * dt, log)
+            set_limits(side, system.physics.resistance, log, room)
+        for k in range(2 * pairs):
+            room.w[k] = room.w_end[k]
         if nodes.shape[0] > 0:
-            to_state(phase, w, record[i + 1], slope, side, room.state)
-            nodes, count = append(nodes, count, (offset + i + 1) * dt, side, record[i + 1], room.state)
+            to_state(system, phase, there, slope, side, room)
+            nodes, count = append(nodes, count, (offset + i + 1) * dt, side, there, room.state)
     return record.size - 1, slope, nodes, count

@@ -3,48 +3,11 @@
 import math
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.layout import Array, Log, Phase, Scratch
+from rockflex.solve.exact.layout import ROCKING, Array, Log, Scratch, System
 
-__all__ = ["HALF_TURN", "amplitudes", "carry", "probe", "raise_peaks", "read_rows", "set_limits"]
+__all__ = ["HALF_TURN", "examine", "probe", "raise_peaks", "set_limits"]
 
 HALF_TURN = 0.5 * math.pi
-
-
-@kernel
-def carry(phase: Phase, level: int, w: Array, out: Array) -> None:
-    """Carry the coordinates over a step of dt / 2^level."""
-    size = w.size
-    if phase.dense.shape[0] > 0:
-        for i in range(size):
-            total = 0.0
-            for j in range(size):
-                total += phase.dense[level, i, j] * w[j]
-            out[i] = total
-        return
-    count = size // 2
-    block = phase.blocks[level]
-    for k in range(count):
-        out[k] = block[0, k] * w[k] + block[1, k] * w[count + k]
-        out[count + k] = block[2, k] * w[k] + block[3, k] * w[count + k]
-
-
-@kernel
-def amplitudes(w: Array, out: Array) -> None:
-    """Norm of every pair of coordinates."""
-    count = w.size // 2
-    for k in range(count):
-        out[k] = math.sqrt(w[k] * w[k] + w[count + k] * w[count + k])
-
-
-@kernel
-def read_rows(phase: Phase, w: Array, acceleration: float, slope: float, side: float, out: Array) -> None:
-    """Values of all rows."""
-    for f in range(out.size):
-        total = phase.row_forcing[f, 0] * acceleration + phase.row_forcing[f, 1] * slope
-        total += phase.row_forcing[f, 2] * side
-        for k in range(w.size):
-            total += phase.rows[f, k] * w[k]
-        out[f] = total
 
 
 @kernel
@@ -63,37 +26,71 @@ def set_limits(side: float, resistance: float, log: Log, room: Scratch) -> None:
 
 
 @kernel
-def probe(phase: Phase, level: int, side: float, slope: float, w: Array, w_end: Array, room: Scratch) -> bool:
-    """True where no event and no peak can hide in the step from `w` to `w_end`.
+def examine(
+    system: System, phase: int, level: int, side: float, here: float, there: float, slope: float, room: Scratch
+) -> None:
+    """Carry `room.w` over a step into `room.w_end`, with the rows at both ends and the pairs' norms."""
+    pairs = room.norms.size
+    count = pairs if phase == ROCKING else pairs - 1
+    for k in range(count):
+        x, y = room.w[k], room.w[pairs + k]
+        room.norms[k] = math.sqrt(x * x + y * y)
+        room.w_end[k] = system.blocks[phase, level, 0, k] * x + system.blocks[phase, level, 1, k] * y
+        room.w_end[pairs + k] = system.blocks[phase, level, 2, k] * x + system.blocks[phase, level, 3, k] * y
+    if phase == ROCKING and system.dense.shape[0] > 0:
+        for i in range(room.w.size):
+            room.w_end[i] = 0.0
+            for k in range(room.w.size):
+                room.w_end[i] += system.dense[level, i, k] * room.w[k]
+    for f in range(room.start.size):
+        common = system.row_forcing[phase, f, 1] * slope + system.row_forcing[phase, f, 2] * side
+        before = common + system.row_forcing[phase, f, 0] * here
+        after = common + system.row_forcing[phase, f, 0] * there
+        for k in range(count):
+            before += system.rows[phase, f, k] * room.w[k]
+            before += system.rows[phase, f, pairs + k] * room.w[pairs + k]
+            after += system.rows[phase, f, k] * room.w_end[k]
+            after += system.rows[phase, f, pairs + k] * room.w_end[pairs + k]
+        room.start[f] = before
+        room.end[f] = after
+
+
+@kernel
+def probe(system: System, phase: int, level: int, side: float, slope: float, room: Scratch) -> bool:
+    """True where no event and no peak can hide in the step examined; else `room.doubt` marks the rows.
 
     A row within `sag` of its chord is settled at once; else a slope that outweighs `swing` at either end proves
     that the row has its extremes at the ends, where `raise_peaks` picks them up.
     """
-    start, end, norms = room.start, room.end, room.norms
-    for f in range(start.size):
+    pairs = room.norms.size
+    count = pairs if phase == ROCKING else pairs - 1
+    safe = True
+    for f in range(room.start.size):
+        room.doubt[f] = False
         sag = 0.0
-        for k in range(w.size // 2):
-            sag += phase.sag[level, f, k] * norms[k]
-        low, high = min(start[f], end[f]), max(start[f], end[f])
+        for k in range(count):
+            sag += system.sag[phase, level, f, k] * room.norms[k]
+        first, last = room.start[f], room.end[f]
+        low, high = min(first, last), max(first, last)
         if low - sag >= room.lower[f] and high + sag <= room.upper[f]:
             continue
         swing = 0.0
-        for k in range(w.size // 2):
-            swing += phase.swing[level, f, k] * norms[k]
-        before = after = phase.slope_forcing[f] * slope
-        for k in range(w.size):
-            before += phase.slope_rows[f, k] * w[k]
-            after += phase.slope_rows[f, k] * w_end[k]
-        if abs(before) <= swing and abs(after) <= swing:
-            return False
-        if f > 0:
-            continue
-        if side == 0.0:
-            if low < room.lower[0] or high > room.upper[0]:
-                return False
-        elif side * end[0] <= 0.0 or side * start[0] < 0.0 or abs(end[0]) >= HALF_TURN:
-            return False
-    return True
+        before = after = system.row_forcing[phase, f, 0] * slope
+        for k in range(count):
+            swing += system.swing[phase, level, f, k] * room.norms[k]
+            before += system.slope_rows[phase, f, k] * room.w[k]
+            before += system.slope_rows[phase, f, pairs + k] * room.w[pairs + k]
+            after += system.slope_rows[phase, f, k] * room.w_end[k]
+            after += system.slope_rows[phase, f, pairs + k] * room.w_end[pairs + k]
+        hidden = abs(before) <= swing and abs(after) <= swing
+        if f == 0 and not hidden:
+            if side == 0.0:
+                hidden = low < room.lower[0] or high > room.upper[0]
+            else:
+                hidden = side * last <= 0.0 or side * first < 0.0 or abs(last) >= HALF_TURN
+        room.doubt[f] = hidden
+        safe = safe and not hidden
+    return safe
 
 
 @kernel

@@ -1,14 +1,14 @@
 """One run: the record, then free vibration for as long as it is asked for, or until nothing more can happen."""
 
+import math
+
 import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import Array, Log, Phase, Scratch, System, scratch
+from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System, scratch
 from rockflex.solve.exact.march import march, to_coordinates, to_state
-from rockflex.solve.exact.probe import amplitudes
 from rockflex.solve.exact.sample import cross_sample
-from rockflex.solve.exact.series import ORDER
 from rockflex.solve.exact.unit import CROSSED
 
 __all__ = ["SETTLED", "UNSETTLED", "run"]
@@ -18,14 +18,14 @@ STRETCH = 64  # samples of free vibration between two looks at whether it has se
 
 
 @kernel
-def settled(phase: Phase, resistance: float, w: Array, norms: Array, peaks: Array) -> bool:
+def settled(system: System, room: Scratch, log: Log) -> bool:
     """True where free vibration in contact can neither lift the base again nor raise a peak."""
-    amplitudes(w, norms)
-    for f in range(peaks.size):
+    w, hold = room.w, system.hold
+    for f in range(log.peaks.size):
         bound = 0.0
-        for k in range(w.size // 2):
-            bound += phase.hold[f, k] * norms[k]
-        if bound > (resistance if f == 0 else peaks[f]):
+        for k in range(hold.shape[1]):
+            bound += hold[f, k] * math.hypot(w[k], w[hold.shape[1] + k])
+        if bound > (system.physics.resistance if f == 0 else log.peaks[f]):
             return False
     return True
 
@@ -46,16 +46,13 @@ def run(
 
     With `settle` the run ends as soon as nothing more can happen, and it is an error if `free` samples pass first.
     """
-    room = scratch(state, log.peaks.size, ORDER)
+    room = scratch(state, log.peaks.size, system.order)
     quiet = np.zeros(STRETCH + 1)
     piece, offset, count, last = record, 0, 0, np.nan
     while True:
-        phase = system.rocking if side != 0.0 else system.contact
-        w = room.w[: phase.rows.shape[1]]
-        to_coordinates(phase, state, piece[0], 0.0, side, w)
-        if offset > 0 and settle and side == 0.0:
-            if settled(phase, system.physics.resistance, w, room.norms, log.peaks):
-                return SETTLED, offset, nodes, count
+        to_coordinates(system, ROCKING if side != 0.0 else CONTACT, piece[0], 0.0, side, room)
+        if offset > 0 and settle and side == 0.0 and settled(system, room, log):
+            return SETTLED, offset, nodes, count
         if piece[0] != last:
             nodes, count = append(nodes, count, offset * dt, side, piece[0], state)
         status, side, nodes, count = cross_piece(system, piece, dt, offset, side, log, room, nodes, count)
@@ -82,15 +79,14 @@ def cross_piece(
     count: int,
 ) -> tuple[int, float, Array, int]:
     """Carry the motion through one stretch of acceleration; return status, side, nodes and their count."""
-    slope, fresh, i = 0.0, True, 0
+    slope, fresh, i, last = 0.0, True, 0, piece.size - 1
     while True:
-        phase = system.rocking if side != 0.0 else system.contact
         before = i
         i, slope, nodes, count = march(
-            phase, system.physics.resistance, piece, dt, i, offset, side, slope, log, room, nodes, count
+            system, piece, dt, i, offset, side, slope, log, room, nodes, count
         )
         fresh = fresh and i == before
-        if i < piece.size - 1:
+        if i < last:
             time = (offset + i) * dt
             status, side, fresh, nodes, count = cross_sample(
                 system, side, fresh, piece[i], slope, dt, time, log, room, nodes, count
@@ -98,9 +94,8 @@ def cross_piece(
             i += 1
             if status != CROSSED:
                 return status, side, nodes, count
-        if i == piece.size - 1:
+        if i == last:
             break
     if not fresh:
-        phase = system.rocking if side != 0.0 else system.contact
-        to_state(phase, room.w[: phase.rows.shape[1]], piece[i], slope, side, room.state)
+        to_state(system, ROCKING if side != 0.0 else CONTACT, piece[last], slope, side, room)
     return CROSSED, side, nodes, count

@@ -2,10 +2,10 @@
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
 from rockflex.solve.exact.march import to_coordinates, to_state
-from rockflex.solve.exact.probe import amplitudes, carry, probe, raise_peaks, read_rows, set_limits
-from rockflex.solve.exact.unit import CROSSED, EVENTS, cross_unit
+from rockflex.solve.exact.probe import examine, probe, raise_peaks, set_limits
+from rockflex.solve.exact.unit import CROSSED, EVENTS, cross_unit, survey_unit
 
 __all__ = ["cross_sample"]
 
@@ -29,56 +29,55 @@ def cross_sample(
     `room.w` holds the motion at the start and then at the end. A *fresh* state is as true as `w` or truer: it is
     kept across units, since a rotation that has just left zero is far below the rounding of a modal sum.
     """
-    levels = system.contact.sag.shape[0] - 1
+    levels = system.sag.shape[1] - 1
     grid = 1 << levels
     log.tally[EVENTS] = 0
-    place, tuned = 0, True  # tuned: w is up to date
-    level = min(1, levels)  # the fast path has just tried the whole sample
+    place, level, tuned = 0, 0, True  # tuned: w is up to date
+    status = CROSSED
     while place < grid:
         stride = grid >> level
-        phase = system.rocking if side != 0.0 else system.contact
-        size = phase.rows.shape[1]
-        w, w_end = room.w[:size], room.w_end[:size]
+        phase = ROCKING if side != 0.0 else CONTACT
         here = acceleration + slope * dt * (place / grid)
-        if grid > 1:
-            if not tuned:
-                to_coordinates(phase, room.state, here, slope, side, w)
-                tuned = True
-            set_limits(side, system.physics.resistance, log, room)
-            amplitudes(w, room.norms)
-            carry(phase, level, w, w_end)
-            read_rows(phase, w, here, slope, side, room.start)
-            there = acceleration + slope * dt * ((place + stride) / grid)
-            read_rows(phase, w_end, there, slope, side, room.end)
-            if probe(phase, level, side, slope, w, w_end, room):
-                place += stride
-                raise_peaks(room.end, side, time + dt * (place / grid), log)
-                w[:] = w_end
-                fresh = False
-                level = largest_step(place, levels)
-                continue
-            if level < levels:
-                level += 1
-                continue
-        if not fresh:
-            to_state(phase, w, here, slope, side, room.state)
         now = time + dt * (place / grid)
-        status, side, nodes, count = cross_unit(
-            system, side, here, slope, dt / grid, now, log, room, nodes, count
-        )
-        fresh, tuned = True, False
-        if status != CROSSED:
-            return status, side, fresh, nodes, count
-        place += 1
+        safe = False
+        if stride < grid:  # else the fast path has just examined the sample
+            if not tuned:
+                to_coordinates(system, phase, here, slope, side, room)
+                tuned = True
+            there = acceleration + slope * dt * ((place + stride) / grid)
+            set_limits(side, system.physics.resistance, log, room)
+            examine(system, phase, level, side, here, there, slope, room)
+            safe = probe(system, phase, level, side, slope, room)
+        if not safe and level < levels:
+            level += 1
+            continue
+        step = dt / grid
+        if not safe and not fresh:
+            to_state(system, phase, here, slope, side, room)
+        if not safe and room.doubt[0]:
+            status, side, nodes, count = cross_unit(
+                system, side, here, slope, step, now, log, room, nodes, count
+            )
+            fresh, tuned = True, False
+            if status != CROSSED:
+                return status, side, fresh, nodes, count
+        else:
+            if safe:
+                raise_peaks(room.end, side, time + dt * ((place + stride) / grid), log)
+            else:
+                survey_unit(system, side, here, slope, step, now, log, room)
+            for k in range(room.w.size):
+                room.w[k] = room.w_end[k]
+            fresh = False
+        place += stride
         level = largest_step(place, levels)
-    phase = system.rocking if side != 0.0 else system.contact
-    w = room.w[: phase.rows.shape[1]]
+    phase = ROCKING if side != 0.0 else CONTACT
     there = acceleration + slope * dt
     if not tuned:
-        to_coordinates(phase, room.state, there, slope, side, w)
+        to_coordinates(system, phase, there, slope, side, room)
     if nodes.shape[0] > 0:
         if not fresh:
-            to_state(phase, w, there, slope, side, room.state)
+            to_state(system, phase, there, slope, side, room)
         nodes, count = append(nodes, count, time + dt, side, there, room.state)
     return CROSSED, side, fresh, nodes, count
 

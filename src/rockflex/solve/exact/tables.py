@@ -1,4 +1,4 @@
-"""Propagators and curvature bounds of a phase for the steps dt, dt/2, ... dt/2^J.
+"""Propagators and curvature bounds of both phases for the steps dt, dt/2, ... dt/2^J.
 
 The bounds say where an event or a peak can hide between two instants. Over a step h a row leaves its chord by at
 most h²/8 max|row''|, and for one pair of coordinates |row''| ≤ |row B²| |w| exp(growth); a pair that turns
@@ -11,43 +11,44 @@ import numpy as np
 from scipy.linalg import expm
 
 from rockflex.solve.exact.basis import Basis
-from rockflex.solve.exact.layout import Array, Phase
+from rockflex.solve.exact.layout import Array, Physics, System
 
-__all__ = ["levels", "tabulate"]
+__all__ = ["tabulate"]
 
 NONE = np.empty((0, 0, 0))
 
 
-def levels(fastest: float, dt: float) -> int:
-    """Number J of halvings of `dt` after which no mode turns by more than one radian."""
-    return max(0, math.ceil(math.log2(fastest * dt))) if fastest * dt > 0.0 else 0
-
-
-def tabulate(basis: Basis, dt: float, halvings: int) -> Phase:
-    """Tables of one phase for the steps dt / 2^j, j = 0..halvings."""
+def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis, dt: float) -> System:
+    """A system for one time step; `plain_rows` (2, F, 2K + 2)."""
+    fastest = max(contact.fastest, rocking.fastest)
+    halvings = max(0, math.ceil(math.log2(fastest * dt)))  # then no mode turns by more than one radian
     steps = dt / 2.0 ** np.arange(halvings + 1)
-    first = basis.rows @ basis.matrix
-    second = first @ basis.matrix
-    if basis.dense:
-        blocks, dense = NONE, np.stack([expm(basis.matrix * h) for h in steps])
-        sag, swing = _dense_bounds(basis, second, dense, steps)
-    else:
-        blocks, dense = _blocks(basis, steps), NONE
-        sag, swing = _pair_bounds(basis, first, second, steps)
-    return Phase(
-        basis=np.ascontiguousarray(basis.basis),
-        inverse=np.ascontiguousarray(basis.inverse),
-        particular=np.ascontiguousarray(basis.particular),
-        rows=np.ascontiguousarray(basis.rows),
-        row_forcing=np.ascontiguousarray(basis.row_forcing),
-        slope_rows=np.ascontiguousarray(first),
-        slope_forcing=np.ascontiguousarray(basis.row_forcing[:, 0]),
-        blocks=blocks,
-        dense=dense,
-        sag=sag,
-        swing=swing,
-        hold=_pair_norm(basis.rows),
+    sag, swing = zip(*(_bounds(basis, steps) for basis in (contact, rocking)), strict=True)
+    return System(
+        physics=physics,
+        plain_rows=plain_rows,
+        basis=np.stack((contact.basis.T, rocking.basis.T)),
+        inverse=np.stack((contact.inverse.T, rocking.inverse.T)),
+        forced=np.stack((contact.forced, rocking.forced)),
+        rows=np.stack((contact.rows, rocking.rows)),
+        row_forcing=np.stack((contact.row_forcing, rocking.row_forcing)),
+        slope_rows=np.stack((contact.rows @ contact.matrix, rocking.rows @ rocking.matrix)),
+        blocks=np.stack((_blocks(contact, steps), _blocks(rocking, steps))),
+        dense=np.stack([expm(rocking.matrix * h) for h in steps]) if rocking.dense else NONE,
+        sag=np.stack(sag),
+        swing=np.stack(swing),
+        hold=_pair_norm(contact.rows),
+        order=_series_order(fastest * float(steps[-1])),
     )
+
+
+def _series_order(turn: float) -> int:
+    """Order at which the power series of a mode that turns by `turn` ≤ 1 rad has converged."""
+    order, term = 4, turn**4 / 24.0
+    while term > 1e-19:
+        order += 1
+        term *= turn / order
+    return order
 
 
 def _blocks(basis: Basis, steps: Array) -> Array:
@@ -72,23 +73,27 @@ def _pair_norm(rows: Array) -> Array:
     return np.hypot(rows[..., :half], rows[..., half:])
 
 
-def _pair_bounds(basis: Basis, first: Array, second: Array, steps: Array) -> tuple[Array, Array]:
+def _bounds(basis: Basis, steps: Array) -> tuple[Array, Array]:
+    """Sag and swing of every row over every step, (J + 1, F, K) each."""
+    if basis.dense:
+        return _dense_bounds(basis, steps)
     h = steps[:, None, None]
     growth = np.exp(np.maximum(basis.roots.real.max(axis=1), 0.0) * h)
-    level, slope, curvature = _pair_norm(basis.rows), _pair_norm(first), _pair_norm(second)
-    sag = np.minimum(curvature * h**2 / 8.0, 2.0 * level) * growth
+    first = basis.rows @ basis.matrix
+    slope, curvature = _pair_norm(first), _pair_norm(first @ basis.matrix)
+    sag = np.minimum(curvature * h**2 / 8.0, 2.0 * _pair_norm(basis.rows)) * growth
     swing = np.minimum(curvature * h, 2.0 * slope) * growth
     return sag, swing
 
 
-def _dense_bounds(basis: Basis, second: Array, dense: Array, steps: Array) -> tuple[Array, Array]:
-    """Suprema of |row B² exp(B t)| over each step, from the finest grid and a norm bound between its points."""
-    finest, between = dense[-1], expm(np.abs(basis.matrix) * steps[-1])
-    moving, worst = second, np.abs(second) @ between
-    curvature = np.empty((steps.size, second.shape[0], second.shape[1] // 2))
+def _dense_bounds(basis: Basis, steps: Array) -> tuple[Array, Array]:
+    """The same from |row B² exp(B t)| on the finest grid, and a norm bound between its points."""
+    finest, between = expm(basis.matrix * steps[-1]), expm(np.abs(basis.matrix) * steps[-1])
+    moving = basis.rows @ basis.matrix @ basis.matrix
+    worst = np.abs(moving) @ between
+    curvature = np.empty((steps.size, moving.shape[0], moving.shape[1] // 2))
     for level in range(steps.size - 1, -1, -1):
-        points = 1 << (steps.size - 1 - level)
-        for _ in range(points >> 1):
+        for _ in range(1 << (steps.size - 1 - level) >> 1):
             moving = moving @ finest
             worst = np.maximum(worst, np.abs(moving) @ between)
         curvature[level] = _pair_norm(worst)

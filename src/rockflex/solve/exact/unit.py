@@ -10,19 +10,11 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import Array, Log, Scratch, System
-from rockflex.solve.exact.probe import HALF_TURN
-from rockflex.solve.exact.series import (
-    ORDER,
-    advance,
-    bend,
-    evaluate,
-    expand,
-    first_descent,
-    row_series,
-)
+from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.probe import HALF_TURN, raise_peaks
+from rockflex.solve.exact.series import advance, bend, evaluate, expand, first_descent, row_series
 
-__all__ = ["CHATTER", "CROSSED", "IMPACTS", "OVERTURNED", "UPLIFTS", "cross_unit"]
+__all__ = ["CHATTER", "CROSSED", "IMPACTS", "OVERTURNED", "UPLIFTS", "cross_unit", "survey_unit"]
 
 CROSSED, OVERTURNED, CHATTER = 0, 1, -1
 UPLIFTS, IMPACTS, EVENTS = 0, 1, 2  # places in the tally; EVENTS counts those of the present sample
@@ -33,75 +25,78 @@ RESUME = 1e-7  # where contact is searched again after a guard that was touched 
 
 
 @kernel
-def raise_peak(poly: Array, stop: float, time: float, step: float, row: int, log: Log, work: Array) -> None:
-    """Raise a row's peak to the largest magnitude of its polynomial over [0, stop]."""
-    peaks, highest = log.peaks, 0.0
-    for u in (0.0, stop):
-        value = abs(evaluate(poly, u)[0])
-        highest = max(highest, value)
-        if value > peaks[row]:
-            peaks[row] = value
-            log.times[row] = time + step * u
-    if highest + bend(poly, stop) * stop * stop / 8.0 <= peaks[row]:
+def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, log: Log) -> None:
+    """Raise a row's peak to the largest magnitude of its polynomial over [0, stop]; the last row is for work."""
+    reach = 0.0
+    for k in range(polys.shape[1]):
+        reach += abs(polys[row, k])
+    if reach <= log.peaks[row]:
         return
-    direction = 1.0 if poly[1] >= 0.0 else -1.0
+    first, last = abs(polys[row, 0]), abs(evaluate(polys, row, stop)[0])
+    if max(first, last) > log.peaks[row]:
+        log.peaks[row] = max(first, last)
+        log.times[row] = time + (step * stop if last >= first else 0.0)
+    if max(first, last) + bend(polys, row) * stop * stop / 8.0 <= log.peaks[row]:
+        return
+    work = polys.shape[0] - 1
+    direction = 1.0 if polys[row, 1] >= 0.0 else -1.0
     u = 0.0
     while True:
-        for k in range(ORDER):
-            work[k] = direction * (k + 1.0) * poly[k + 1]
-        u = first_descent(work[:ORDER], u, stop)
+        polys[work, polys.shape[1] - 1] = 0.0
+        for k in range(polys.shape[1] - 1):
+            polys[work, k] = direction * (k + 1.0) * polys[row, k + 1]
+        u = first_descent(polys, work, u, stop)
         if u >= stop:
             return
-        value = abs(evaluate(poly, u)[0])
-        if value > peaks[row]:
-            peaks[row] = value
+        value = abs(evaluate(polys, row, u)[0])
+        if value > log.peaks[row]:
+            log.peaks[row] = value
             log.times[row] = time + step * u
         direction = -direction
         u += 1e-9
 
 
 @kernel
-def rocking_exit(rotation: Array, side: float, lift: float, onset: bool, span: float, work: Array) -> float:
+def rocking_exit(polys: Array, side: float, lift: float, onset: bool, span: float) -> float:
     """Where the rotation returns to zero; -1 where it never left. At an onset its zeros at 0 are divided out."""
+    work, terms = polys.shape[0] - 1, polys.shape[1]
     zeros = 0
     if onset:
         zeros = 2 if lift != 0.0 else 3
-    work[:] = 0.0
-    for k in range(zeros, ORDER + 1):
-        work[k - zeros] = side * rotation[k]
-    if onset and work[0] <= 0.0:
+    for k in range(terms):
+        polys[work, k] = side * polys[0, k + zeros] if k + zeros < terms else 0.0
+    if onset and polys[work, 0] <= 0.0:
         return -1.0
-    if not onset and work[0] < 0.0:
-        work[0] = 0.0
-    return first_descent(work, 0.0, span)
+    if polys[work, 0] < 0.0:
+        polys[work, 0] = 0.0
+    return first_descent(polys, work, 0.0, span)
 
 
 @kernel
-def overturning(rotation: Array, side: float, span: float, work: Array) -> float:
+def overturning(polys: Array, side: float, span: float) -> float:
     """Where the rotation reaches a quarter turn; inf where it does not."""
-    reach = 0.0
-    for k in range(ORDER + 1):
-        reach += abs(rotation[k])
-        work[k] = -side * rotation[k]
+    work, reach = polys.shape[0] - 1, 0.0
+    for k in range(polys.shape[1]):
+        reach += abs(polys[0, k])
+        polys[work, k] = -side * polys[0, k]
     if reach < HALF_TURN:
         return np.inf
-    work[0] += HALF_TURN
-    return first_descent(work, 0.0, span)
+    polys[work, 0] += HALF_TURN
+    return first_descent(polys, work, 0.0, span)
 
 
 @kernel
-def contact_exit(
-    moment: Array, resistance: float, start: float, span: float, work: Array
-) -> tuple[float, float]:
+def contact_exit(polys: Array, resistance: float, start: float, span: float) -> tuple[float, float]:
     """Where the overturning moment reaches the resistance (Eq. 24), and the side it names."""
+    work = polys.shape[0] - 1
     exit_at, exit_side = np.inf, 0.0
     if math.isinf(resistance):
         return exit_at, exit_side
     for side in (1.0, -1.0):
-        for k in range(ORDER + 1):
-            work[k] = side * moment[k]
-        work[0] += resistance
-        u = first_descent(work, start, span)
+        for k in range(polys.shape[1]):
+            polys[work, k] = side * polys[0, k]
+        polys[work, 0] += resistance
+        u = first_descent(polys, work, start, span)
         if u < exit_at:
             exit_at, exit_side = u, side
     return exit_at, exit_side
@@ -121,46 +116,47 @@ def cross_unit(
     count: int,
 ) -> tuple[int, float, Array, int]:
     """Carry `room.state` over `step` through all events; return status, side, nodes and their count."""
-    physics, state, polys, work = system.physics, room.state, room.polys, room.work
-    n = physics.omega2.size
+    n = system.physics.omega2.size
+    resistance, inertia = system.physics.resistance, system.physics.inertia
     u, resume, lift, onset = 0.0, 0.0, np.nan, False
     while True:
+        phase = ROCKING if side != 0.0 else CONTACT
         span = 1.0 - u
         here = acceleration + slope * step * u
         now = time + step * u
-        rows = system.rocking_rows if side != 0.0 else system.contact_rows
-        expand(physics, side != 0.0, state, here, slope, side, lift, step, room.series)
-        for f in range(rows.shape[0]):
-            row_series(rows[f], room.series, here, slope, side, step, polys[f])
-        tips = np.inf
+        expand(system.physics, side != 0.0, room.state, here, slope, side, lift, step, room.series)
+        row_series(system.plain_rows, phase, 0, room.series, here, slope, side, step, room.polys)
+        tips, next_side = np.inf, 0.0
         if side != 0.0:
-            stop = rocking_exit(polys[0], side, lift, onset, span, work)
+            stop = rocking_exit(room.polys, side, lift, onset, span)
             if stop < 0.0:
                 side, lift, onset, resume = 0.0, np.nan, False, RESUME
                 continue
             if onset:
                 log.tally[UPLIFTS] += 1
                 log.tally[EVENTS] += 1
-                nodes, count = append(nodes, count, now, 0.0, here, state)
-                nodes, count = append(nodes, count, now, side, here, state)
-            tips = overturning(polys[0], side, span, work)
-            next_side = 0.0
+                nodes, count = append(nodes, count, now, 0.0, here, room.state)
+                nodes, count = append(nodes, count, now, side, here, room.state)
+            tips = overturning(room.polys, side, span)
         else:
-            excess = abs(polys[0, 0]) - physics.resistance
+            excess = abs(room.polys[0, 0]) - resistance
             if resume == 0.0 and excess > 0.0:
-                side = -1.0 if polys[0, 0] > 0.0 else 1.0
-                lift, onset = side * excess / physics.inertia, True
+                side = -1.0 if room.polys[0, 0] > 0.0 else 1.0
+                lift, onset = side * excess / inertia, True
                 continue
-            stop, next_side = contact_exit(polys[0], physics.resistance, resume, span, work)
+            stop, next_side = contact_exit(room.polys, resistance, resume, span)
         tipped = tips < stop and tips < span
         if tipped:
             stop = tips
         ends = not tipped and stop > span - SNAP
         if ends:
             stop = span
-        for f in range(0 if side != 0.0 else 1, polys.shape[0]):
-            raise_peak(polys[f], stop, now, step, f, log, work)
-        advance(room.series, stop, step, state)
+        if side != 0.0:
+            raise_peak(room.polys, 0, stop, now, step, log)
+        for f in range(1, log.peaks.size):
+            row_series(system.plain_rows, phase, f, room.series, here, slope, side, step, room.polys)
+            raise_peak(room.polys, f, stop, now, step, log)
+        advance(room.series, stop, step, room.state)
         if ends:
             return CROSSED, side, nodes, count
         u += stop
@@ -169,23 +165,45 @@ def cross_unit(
         if tipped:
             log.peaks[0] = HALF_TURN
             log.times[0] = now
-            state[2 * n] = side * HALF_TURN
-            nodes, count = append(nodes, count, now, side, here, state)
+            room.state[2 * n] = side * HALF_TURN
+            nodes, count = append(nodes, count, now, side, here, room.state)
             return OVERTURNED, side, nodes, count
+        room.state[2 * n] = 0.0
         if side != 0.0:
-            state[2 * n] = 0.0
-            nodes, count = append(nodes, count, now, side, here, state)
+            nodes, count = append(nodes, count, now, side, here, room.state)
             for i in range(n):
-                state[n + i] += physics.height[i] * state[2 * n + 1]
-            state[2 * n + 1] = 0.0
-            nodes, count = append(nodes, count, now, 0.0, here, state)
+                room.state[n + i] += system.physics.height[i] * room.state[2 * n + 1]
+            room.state[2 * n + 1] = 0.0
+            nodes, count = append(nodes, count, now, 0.0, here, room.state)
             log.tally[IMPACTS] += 1
             lift, onset, resume = np.nan, False, 0.0
         else:
+            room.state[2 * n + 1] = 0.0
             excess = 0.0
             if resume > 0.0 and stop == resume:
-                excess = max(abs(evaluate(polys[0], stop)[0]) - physics.resistance, 0.0)
-            lift, onset, resume = next_side * excess / physics.inertia, True, 0.0
+                excess = max(abs(evaluate(room.polys, 0, stop)[0]) - resistance, 0.0)
+            lift, onset, resume = next_side * excess / inertia, True, 0.0
         side = next_side
         if log.tally[EVENTS] > MOST_EVENTS:
             return CHATTER, side, nodes, count
+
+
+@kernel
+def survey_unit(
+    system: System,
+    side: float,
+    acceleration: float,
+    slope: float,
+    step: float,
+    time: float,
+    log: Log,
+    room: Scratch,
+) -> None:
+    """Raise the peaks of the rows in doubt over a unit without events."""
+    phase = ROCKING if side != 0.0 else CONTACT
+    expand(system.physics, side != 0.0, room.state, acceleration, slope, side, np.nan, step, room.series)
+    for f in range(1, log.peaks.size):
+        if room.doubt[f]:
+            row_series(system.plain_rows, phase, f, room.series, acceleration, slope, side, step, room.polys)
+            raise_peak(room.polys, f, 1.0, time, step, log)
+    raise_peaks(room.end, side, time + step, log)
