@@ -1,0 +1,168 @@
+"""Vibration modes of a structure on a fixed base."""
+
+from dataclasses import dataclass, fields, replace
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._errors import InputError
+from rockflex.modal._arguments import mode_count
+from rockflex.modal._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
+
+__all__ = ["ModalProperties", "modal_properties"]
+
+Float = NDArray[np.float64]
+
+# A participation below this share of the largest one possible is rounding of the eigenvectors.
+_NO_PARTICIPATION = 1e-10
+_NO_TOP_ORDINATE = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class ModalProperties:
+    """Vibration modes of a structure on a fixed base, in the order of rising frequency.
+
+    The quantities are those of Silva & Stojadinović 2024, Section 2.1 (after Eq. 12), with
+    L_n^h = ι^T M φ_n, L_n^θ = h^T M φ_n and M_n = φ_n^T M φ_n. The arrays are read-only.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n,)
+        Circular frequencies ω_n in rad/s.
+    effective_mass : ndarray, shape (n,)
+        m*_n = (L_n^h)²/M_n in kg; zero for a mode without horizontal participation.
+    effective_height : ndarray, shape (n,)
+        h*_n = L_n^θ/L_n^h in m, negative where base shear and base moment are opposed. Without
+        horizontal participation (L_n^h = 0) it is infinite where L_n^θ ≠ 0, and NaN where L_n^θ = 0 too.
+    participation : ndarray, shape (n,)
+        Γ_n = L_n^h/M_n; goes with the normalisation of `shapes`.
+    shapes : ndarray, shape (N, n)
+        Mode shapes φ_n as columns. The top ordinate is 1; where the top does not move (less than 1e-8 of
+        the largest ordinate), the largest ordinate is 1.
+    heights : ndarray, shape (N,)
+        Heights of the masses above the base in m.
+    """
+
+    omega: Float
+    effective_mass: Float
+    effective_height: Float
+    participation: Float
+    shapes: Float
+    heights: Float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            getattr(self, field.name).setflags(write=False)
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes n."""
+        return self.omega.size
+
+    @property
+    def period(self) -> Float:
+        """Natural periods T_n = 2π/ω_n in s, shape (n,)."""
+        return 2.0 * np.pi / self.omega
+
+    def truncated(self, n_modes: SupportsIndex) -> "ModalProperties":
+        """Return the first `n_modes` modes alone.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes.
+        """
+        k = mode_count(n_modes, self.n_modes)
+        return replace(
+            self,
+            omega=self.omega[:k],
+            effective_mass=self.effective_mass[:k],
+            effective_height=self.effective_height[:k],
+            participation=self.participation[:k],
+            shapes=self.shapes[:, :k],
+        )
+
+
+def modal_properties(
+    mass: ArrayLike, stiffness: ArrayLike, heights: ArrayLike, n_modes: SupportsIndex | None = None
+) -> ModalProperties:
+    """Return the modes K φ_n = ω_n² M φ_n and their participation in base shear and base moment.
+
+    With K = C C^T and M = L L^T (Cholesky) the frequencies are the singular values of C^T L^-T. They so
+    keep their digits where light and heavy masses are mixed, which the eigenvalues of the product do not.
+
+    Parameters
+    ----------
+    mass : array_like, shape (N,) or (N, N)
+        Masses, or symmetric positive definite mass matrix M, in kg, without the mass of the base.
+    stiffness : array_like, shape (N, N)
+        Symmetric positive definite lateral stiffness K in N/m, base held.
+    heights : array_like, shape (N,)
+        Heights h of the masses above the base in m, strictly rising; the last one is the top.
+    n_modes : int, optional
+        Number of modes to return, the lowest first. Default: all N.
+
+    Returns
+    -------
+    ModalProperties
+
+    Raises
+    ------
+    InputError
+        If the shapes do not fit, the heights fall, a matrix is not symmetric positive definite, a value is
+        not finite, or `n_modes` is not from 1 to N.
+
+    References
+    ----------
+    Silva & Stojadinović 2024, Section 2.1: the definitions after Eq. 12.
+    """
+    h = checked_heights(heights)
+    m = checked_mass(mass, h.size)
+    k = checked_stiffness(stiffness, h.size)
+    n = mode_count(n_modes, h.size)
+
+    omega, shapes = _mass_normalised_modes(m, k)
+    omega, shapes = omega[:n], shapes[:, :n]
+    moved = mass_times(m, shapes)
+    shear, moment = moved.sum(axis=0), h @ moved
+    no_shear = np.abs(shear) <= _NO_PARTICIPATION * np.sqrt(mass_times(m, np.ones_like(h)).sum())
+    no_moment = np.abs(moment) <= _NO_PARTICIPATION * np.sqrt(h @ mass_times(m, h))
+    shear[no_shear] = 0.0
+    height = np.where(no_moment, np.nan, np.copysign(np.inf, moment))
+    np.divide(moment, shear, out=height, where=~no_shear)
+
+    scale = _normalising_ordinates(shapes)
+    return ModalProperties(
+        omega=omega,
+        effective_mass=shear**2,
+        effective_height=height,
+        participation=shear * scale,
+        shapes=shapes / scale,
+        heights=h,
+    )
+
+
+def _mass_normalised_modes(mass: Float, stiffness: Float) -> tuple[Float, Float]:
+    factor = np.linalg.cholesky(stiffness).T
+    if mass.ndim == 1:
+        root = np.sqrt(mass)
+        _, omega, vectors = np.linalg.svd(factor / root)
+        shapes: Float = vectors.T / root[:, None]
+    else:
+        root = np.linalg.cholesky(mass)
+        _, omega, vectors = np.linalg.svd(np.linalg.solve(root, factor.T).T)
+        shapes = np.asarray(np.linalg.solve(root.T, vectors.T), dtype=np.float64)
+    if not omega[-1] > omega.size * np.finfo(float).eps * omega[0]:
+        message = (
+            f"The frequencies span too wide a range for a modal analysis: {omega[-1]:.3g} to {omega[0]:.3g} "
+            "rad/s. Condense floors of nearly no mass out of the matrices first."
+        )
+        raise InputError(message)
+    return omega[::-1].copy(), shapes[:, ::-1]
+
+
+def _normalising_ordinates(shapes: Float) -> Float:
+    magnitude = np.abs(shapes)
+    largest = shapes[magnitude.argmax(axis=0), np.arange(shapes.shape[1])]
+    return np.where(magnitude[-1] > _NO_TOP_ORDINATE * np.abs(largest), shapes[-1], largest)

@@ -1,0 +1,115 @@
+"""From the modes of a structure to its parameters as a rocking structure."""
+
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex.modal._analysis import ModalProperties
+from rockflex.modal._arguments import damping_ratios, mode_count
+from rockflex.modal._floors import FloorModes
+from rockflex.modal._matrices import checked_heights, checked_mass, mass_times
+from rockflex.modal._rocking import RockingProperties
+
+__all__ = ["rocking_properties"]
+
+
+def rocking_properties(
+    modal: ModalProperties,
+    mass: ArrayLike,
+    heights: ArrayLike,
+    base_mass: float,
+    half_width: float,
+    damping_ratio: ArrayLike,
+    n_modes: SupportsIndex | None = None,
+) -> RockingProperties:
+    """Return the parameters of the structure on a base that can rock.
+
+    With M the mass matrix, h the heights, ι a vector of ones and m_0 the mass of the base:
+    I_θ = h^T M h + m_tot B², m_tot = ι^T M ι + m_0, L_0^r = ι^T M h.
+
+    A mode that takes part in neither base shear nor base moment (L_n^h = L_n^θ = 0) is not excited by the
+    ground nor by the rotation, and is left out. One with L_n^h = 0 and L_n^θ ≠ 0 is excited by the
+    rotation but has no coordinate D_n = q_n/Γ_n, so that Eq. 14 cannot hold it: an error.
+
+    Parameters
+    ----------
+    modal : ModalProperties
+        Modes of the structure on a fixed base.
+    mass : array_like, shape (N,) or (N, N)
+        The masses, or the mass matrix, that `modal` was computed with, in kg.
+    heights : array_like, shape (N,)
+        The heights that `modal` was computed with, in m.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    half_width : float
+        Half the width B of the base in m.
+    damping_ratio : array_like
+        Damping ratio in [0, 1) of every mode, or one for each mode of `modal`.
+    n_modes : int, optional
+        Number of modes to keep, the lowest first, counting those that take part. Default: all of them.
+
+    Returns
+    -------
+    RockingProperties
+        With `floors` filled in.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range, does not fit `modal`, or a mode has no coordinate D_n.
+
+    References
+    ----------
+    Silva & Stojadinović 2024, Table 2 and Eqs. 13 and 14.
+    """
+    h = checked_heights(heights)
+    if not np.array_equal(h, modal.heights):
+        message = (
+            f"heights must be those of the modal analysis, {modal.heights}, but {h} was given. "
+            "Run modal_properties anew for other heights."
+        )
+        raise InputError(message)
+    m = checked_mass(mass, h.size)
+    base = positive("base_mass", base_mass, "kg", zero=True)
+    b = positive("half_width", half_width, "m")
+    zeta = damping_ratios("damping_ratio", damping_ratio, modal.n_modes)
+    kept = _modes_that_take_part(modal, n_modes)
+
+    m_tot = float(mass_times(m, np.ones_like(h)).sum()) + base
+    moved_by_rotation = mass_times(m, h)
+    inertia = float(h @ moved_by_rotation)
+    displacement = modal.shapes[:, kept] * modal.participation[kept]
+    omega = modal.omega[kept]
+    return RockingProperties(
+        omega=omega,
+        effective_mass=modal.effective_mass[kept],
+        effective_height=modal.effective_height[kept],
+        top_ordinate=displacement[-1],
+        i_theta=inertia + m_tot * b**2,
+        l0r=float(moved_by_rotation.sum()),
+        m_tot=m_tot,
+        half_width=b,
+        zeta=zeta[kept],
+        translational_inertia=inertia,
+        floors=FloorModes(h, displacement, mass_times(m, displacement) * omega**2),
+    )
+
+
+def _modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
+    take_part = np.flatnonzero(~np.isnan(modal.effective_height))
+    kept = take_part[: mode_count(n_modes, take_part.size)]
+    rotation_only = kept[np.isinf(modal.effective_height[kept])]
+    if rotation_only.size:
+        mode = int(rotation_only[0])
+        below = int(np.sum(kept < mode))
+        remedy = f", or keep only the modes below it (n_modes={below})." if below else "."
+        message = (
+            f"Mode {mode + 1} ({modal.omega[mode]:.6g} rad/s) takes part in the base moment but not in the "
+            "base shear, so it has no modal coordinate D_n. Change a mass or a stiffness slightly"
+            f"{remedy}"
+        )
+        raise InputError(message)
+    return kept

@@ -1,0 +1,210 @@
+"""The parameters of a flexible rocking structure."""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector, positive
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.modal._arguments import damping_ratios, mode_count
+from rockflex.modal._floors import FloorModes
+
+__all__ = ["RockingProperties"]
+
+Float = NDArray[np.float64]
+
+# Room for the rounding of sums that are equal when all modes are kept.
+_SLACK = 1e-9
+_OVERTURNING_SHARE = 0.7
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class RockingProperties:
+    """The parameters of a rocking structure with n modes (Silva & Stojadinović 2024, Table 2).
+
+    They hold for any structure, and can be filled by hand from the output of any finite element program.
+    Sequences become read-only arrays. Two of them compare equal only if they are the same object.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n,)
+        Circular frequencies ω_n on a fixed base in rad/s, not falling.
+    effective_mass : ndarray, shape (n,)
+        m*_n in kg, positive.
+    effective_height : ndarray, shape (n,)
+        h*_n in m, of either sign.
+    top_ordinate : ndarray, shape (n,)
+        Γ_n φ_top,n: displacement of the top for a unit of D_n, no unit; u_top = Σ_n Γ_n φ_top,n D_n.
+    i_theta : float
+        I_θ in kg m²: moment of inertia about a pivot, base mass included; above Σ_n m*_n h*_n².
+    l0r : float
+        L_0^r = Σ_i m_i h_i in kg m.
+    m_tot : float
+        Total mass in kg, base included; at least Σ_n m*_n.
+    half_width : float
+        B in m, positive and finite. A base that cannot lift is a matter of the model, not of B.
+    zeta : ndarray, shape (n,)
+        Modal damping ratios in [0, 1); one number stands for all modes.
+    translational_inertia : float
+        Σ_i m_i h_i² in kg m², as Eqs. 19 and 29 need it; from Σ_n m*_n h*_n² to below I_θ. Default:
+        I_θ - m_tot B², which is exact for lumped masses without rotary inertia.
+    floors : FloorModes or None
+        Floor displacements and forces of the same n modes, for quantities above the base.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite or outside the range named above, or the lengths differ.
+    """
+
+    omega: Float
+    effective_mass: Float
+    effective_height: Float
+    top_ordinate: Float
+    i_theta: float
+    l0r: float
+    m_tot: float
+    half_width: float
+    zeta: Float
+    translational_inertia: float
+    floors: FloorModes | None = field(repr=False)
+
+    def __init__(
+        self,
+        omega: ArrayLike,
+        effective_mass: ArrayLike,
+        effective_height: ArrayLike,
+        top_ordinate: ArrayLike,
+        i_theta: float,
+        l0r: float,
+        m_tot: float,
+        half_width: float,
+        zeta: ArrayLike,
+        translational_inertia: float | None = None,
+        floors: FloorModes | None = None,
+    ) -> None:
+        modes = {
+            "omega": finite_vector("omega", omega, "rad/s"),
+            "effective_mass": finite_vector("effective_mass", effective_mass, "kg"),
+            "effective_height": finite_vector("effective_height", effective_height, "m"),
+            "top_ordinate": finite_vector("top_ordinate", top_ordinate, "m/m"),
+        }
+        scalars = {
+            "i_theta": positive("i_theta", i_theta, "kg m²"),
+            "l0r": positive("l0r", l0r, "kg m"),
+            "m_tot": positive("m_tot", m_tot, "kg"),
+            "half_width": positive("half_width", half_width, "m"),
+        }
+        _check_modes(modes)
+        n_modes = modes["omega"].size
+        inertia = _translational_inertia(modes, scalars, translational_inertia)
+        if floors is not None and floors.n_modes != n_modes:
+            message = f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}."
+            raise InputError(message)
+        damping = damping_ratios("zeta", zeta, n_modes)
+        vars(self).update(modes, **scalars, zeta=damping, translational_inertia=inertia, floors=floors)
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes n."""
+        return self.omega.size
+
+    @property
+    def resisting_moment(self) -> float:
+        """M_r = m_tot g B in N m: the base lifts when the overturning moment exceeds it (Eq. 24)."""
+        return self.m_tot * GRAVITY * self.half_width
+
+    @property
+    def nominal_overturning_rotation(self) -> float:
+        """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3)."""
+        return _OVERTURNING_SHARE * math.atan2(self.half_width, self.effective_height[0])
+
+    def truncated(self, n_modes: SupportsIndex) -> "RockingProperties":
+        """Return the same structure with its first `n_modes` modes alone, as a surrogate model has it.
+
+        I_θ, L_0^r, m_tot and Σ m_i h_i² belong to the structure and stay as they are (Section 2.3).
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes.
+        """
+        k = mode_count(n_modes, self.n_modes)
+        if k == self.n_modes:
+            return self
+        return replace(
+            self,
+            omega=self.omega[:k],
+            effective_mass=self.effective_mass[:k],
+            effective_height=self.effective_height[:k],
+            top_ordinate=self.top_ordinate[:k],
+            zeta=self.zeta[:k],
+            floors=None if self.floors is None else self.floors.truncated(k),
+        )
+
+
+def _check_modes(modes: dict[str, Float]) -> None:
+    omega, effective_mass = modes["omega"], modes["effective_mass"]
+    if omega.size == 0:
+        message = "omega must hold at least one mode, but none was given."
+        raise InputError(message)
+    for name, values in modes.items():
+        if values.size != omega.size:
+            message = (
+                f"{name} must hold one value a mode, as omega does ({omega.size}), "
+                f"but {values.size} were given."
+            )
+            raise InputError(message)
+    for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
+        if values.min() <= 0.0:
+            i = int(np.argmin(values))
+            message = (
+                f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. "
+                "Leave out modes that do not take part."
+            )
+            raise InputError(message)
+    falls = np.flatnonzero(omega[1:] < omega[:-1])
+    if falls.size:
+        i = int(falls[0])
+        message = (
+            f"omega must rise from mode to mode, but omega[{i + 1}] = {omega[i + 1]:g} rad/s is below "
+            f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency."
+        )
+        raise InputError(message)
+
+
+def _translational_inertia(modes: dict[str, Float], scalars: dict[str, float], given: float | None) -> float:
+    mass = modes["effective_mass"]
+    modal_mass = float(mass.sum())
+    modal_inertia = float(mass @ modes["effective_height"] ** 2)
+    i_theta, m_tot = scalars["i_theta"], scalars["m_tot"]
+    if m_tot < modal_mass * (1.0 - _SLACK):
+        message = (
+            f"m_tot must be at least the sum of effective_mass, {modal_mass:.9g} kg, but {m_tot:.9g} kg was "
+            "given. It is the mass of the whole structure with its base; check the units too."
+        )
+        raise InputError(message)
+    if i_theta <= modal_inertia:
+        message = (
+            "i_theta must exceed the sum of effective_mass * effective_height**2, "
+            f"{modal_inertia:.9g} kg m², but {i_theta:.9g} kg m² was given: no inertia is left to rotate. "
+            "It is taken about a pivot, with the base; check the units too."
+        )
+        raise InputError(message)
+    source = "i_theta - m_tot * half_width**2, its default," if given is None else "what was given"
+    if given is None:
+        inertia = i_theta - m_tot * scalars["half_width"] ** 2
+    else:
+        inertia = positive("translational_inertia", given, "kg m²")
+    if not modal_inertia * (1.0 - _SLACK) <= inertia < i_theta:
+        message = (
+            "translational_inertia must be at least the sum of effective_mass * effective_height**2, "
+            f"{modal_inertia:.9g} kg m², and below i_theta, {i_theta:.9g} kg m², but {source} is "
+            f"{inertia:.9g} kg m². Give the sum of m_i h_i² over the masses above the base."
+        )
+        raise InputError(message)
+    return max(inertia, modal_inertia)

@@ -1,0 +1,35 @@
+"""Ground motions: records, pulses, suites, intensity measures and file formats."""
+
+from rockflex.motion._at2 import read_at2
+from rockflex.motion._embedded import load_suite, suite_names
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._pulses import (
+    half_sine_pulse,
+    mavroeidis_papageorgiou_pulse,
+    one_cosine_pulse,
+    one_sine_pulse,
+    quiet_motion,
+    rectangular_pulse,
+    ricker_pulse,
+)
+from rockflex.motion._readers import read_motion
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._suite import Suite, read_suite
+
+__all__ = [
+    "GroundMotion",
+    "RecordInfo",
+    "Suite",
+    "half_sine_pulse",
+    "load_suite",
+    "mavroeidis_papageorgiou_pulse",
+    "one_cosine_pulse",
+    "one_sine_pulse",
+    "quiet_motion",
+    "read_at2",
+    "read_motion",
+    "read_suite",
+    "rectangular_pulse",
+    "ricker_pulse",
+    "suite_names",
+]

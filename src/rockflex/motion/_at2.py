@@ -1,0 +1,145 @@
+"""Records in the AT2 form of the PEER databases."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._text import build_motion, number, read_lines
+
+__all__ = ["find_header", "parse_at2", "read_at2"]
+
+HEADER_LINES = 12
+_NUMBER = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?)"
+NPTS = re.compile(r"\bNPTS\s*[=:]\s*(\d+)", re.IGNORECASE)
+DT = re.compile(rf"\bDT\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
+BARE = re.compile(rf"^\s*(\d+)\s*,?\s+{_NUMBER}\s*,?\s+NPTS\s*,?\s*DT\b", re.IGNORECASE)
+DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s+\d{1,2}:?\d{2}(?::\d{2})?(?=\s*,))?")
+# Numbers may run together where the next one begins with a sign; an exponent must then end before it.
+TOKEN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d{1,3})?(?=[\s,+-]|$)")
+
+
+def read_at2(path: str | Path) -> GroundMotion:
+    """Read an AT2 file of a PEER strong-motion database.
+
+    The header gives the number of samples and the step, as ``NPTS= 4000, DT= .00500 SEC`` or as
+    ``4000 0.0050 NPTS, DT``, old and new databases alike; the values after it may be wrapped anyhow, and run
+    together where the next one begins with a sign. They are in g by definition, and are multiplied by
+    9.81 m/s². The motion is named after the file, without its ending.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    GroundMotion
+        The record, with what its title line says (event, year, station, component) and, from a file name such
+        as RSN953_..., the record sequence number as metadata.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, empty or binary, NPTS or DT is not found, there are fewer or more values than
+        NPTS, a value is not a finite number, the header speaks of another unit than g, or the peak
+        exceeds 5 g.
+    """
+    return parse_at2(Path(path), read_lines(path))
+
+
+def find_header(lines: list[str]) -> tuple[int, int, str] | None:
+    """Return the number of header lines, NPTS and DT, or None where there is no such header."""
+    npts = dt = None
+    for i, line in enumerate(lines[:HEADER_LINES]):
+        if line.lstrip().startswith(("#", "%", "!")):
+            continue  # a comment of a plain text file, which says nothing of units
+        if bare := BARE.search(line):
+            return i + 1, int(bare[1]), bare[2]
+        npts = NPTS.search(line) or npts
+        dt = DT.search(line) or dt
+        if npts and dt:
+            return i + 1, int(npts[1]), dt[1]
+    return None
+
+
+def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
+    """Build the motion from the lines of an AT2 file."""
+    header = find_header(lines)
+    if header is None:
+        message = (
+            f"{file}: no header line with NPTS and DT among the first {HEADER_LINES} lines, such as "
+            '"NPTS= 4000, DT= .00500 SEC". Read columns of numbers with read_motion instead.'
+        )
+        raise InputError(message)
+    start, npts, step = header
+    unit = re.search(r"units\s+of\s+\(?([\w/]+)", "\n".join(lines[:start]), re.IGNORECASE)
+    if unit and unit[1].upper() != "G":
+        message = (
+            f"{file}: the header speaks of units of {unit[1]}, but an AT2 file holds an acceleration in g. "
+            "Use the AT2 file of the record, not VT2 or DT2; values in m/s² belong into a plain text file."
+        )
+        raise InputError(message)
+    dt = number(step, file, start)
+    if dt <= 0:
+        message = f"{file}, line {start}: DT must be positive, but it is {step}."
+        raise InputError(message)
+    values = _values(file, lines, start)
+    if values.size != npts:
+        what = "is truncated" if values.size < npts else "holds more than it announces"
+        message = (
+            f"{file} {what}: its header says NPTS = {npts}, but {values.size} values follow. "
+            "Download the record again, or correct NPTS."
+        )
+        raise InputError(message)
+    remedy = (
+        "AT2 files are in g by definition: save the values alone as a text file and declare their unit, "
+        f'read_motion(path, units="m/s2", dt={dt:g}).'
+    )
+    return build_motion(file, values, "g", dt, _info(file, lines[: start - 1]), remedy)
+
+
+def _values(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    try:
+        values = np.array([float(token) for line in lines[start:] for token in line.split()])
+        if np.isfinite(values).all() and not any("_" in line for line in lines[start:]):
+            return values
+    except ValueError:
+        pass
+    # The slow way: tokens run together, D exponents, or something to complain about.
+    found: list[float] = []
+    for i, line in enumerate(lines[start:], start + 1):
+        position = 0
+        for word in re.finditer(r"[^\s,]+", line):
+            position = word.start()
+            while position < word.end():
+                token = TOKEN.match(line, position)
+                if token is None:
+                    found.append(number(line[position : word.end()], file, i))
+                    break
+                found.append(number(token[0], file, i))
+                position = token.end()
+    return np.array(found)
+
+
+def _info(file: Path, header: list[str]) -> RecordInfo:
+    number_in_name = re.match(r"RSN(\d+)", file.name, re.IGNORECASE)
+    rsn = int(number_in_name[1]) if number_in_name else None
+    for line in header:
+        date = DATE.search(line)
+        if date:
+            rest = [part.strip() for part in line[date.end() :].strip(" ,").split(",")]
+            year = int(date[3])
+            return RecordInfo(
+                event=line[: date.start()].strip(" ,") or None,
+                # Two-digit years belong to the database of 1999 and before.
+                year=year if year > 99 else 1900 + year,
+                station=", ".join(rest[:-1]) or None,
+                component=re.sub(r"\s*\(.*\)$", "", rest[-1]) or None,
+                source=line.strip(),
+                rsn=rsn,
+            )
+    return RecordInfo(source=file.name, rsn=rsn)

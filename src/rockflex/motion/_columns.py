@@ -1,0 +1,201 @@
+"""Records as columns of numbers: CSV and plain text."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._text import DECIMAL, build_motion, number
+
+__all__ = ["parse_columns"]
+
+Float = NDArray[np.float64]
+
+SPELLINGS = {
+    "g": "g",
+    "m/s2": "m/s2",
+    "m/s/s": "m/s2",
+    "m/sec2": "m/s2",
+    "m/sec/sec": "m/s2",
+    "ms-2": "m/s2",
+    "cm/s2": "cm/s2",
+    "cm/s/s": "cm/s2",
+    "cm/sec2": "cm/s2",
+    "cm/sec/sec": "cm/s2",
+    "cms-2": "cm/s2",
+    "gal": "cm/s2",
+    "gals": "cm/s2",
+}
+SECONDS = ("s", "sec", "secs", "second", "seconds")
+BRACKET = re.compile(r"[(\[]([^)\]]*)[)\]]")
+
+
+def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | None) -> GroundMotion:
+    """Build the motion from rows of numbers."""
+    labels, rows = _split(file, lines)
+    n_columns = len(rows[0][1])
+    time_column, column = _choose(file, labels, n_columns)
+    stated = _stated_unit(file, labels[column] if labels else "", units)
+    values = np.array([number(cells[column], file, line) for line, cells in rows])
+    if time_column is None:
+        if dt is None:
+            message = (
+                f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01)."
+            )
+            raise InputError(message)
+        step = dt
+    else:
+        if labels:
+            _check_seconds(file, labels[time_column])
+        times = np.array([number(cells[time_column], file, line) for line, cells in rows])
+        step = _step(file, times, [line for line, _ in rows], dt)
+    remedy = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
+    return build_motion(file, values, stated, step, RecordInfo(source=file.name), remedy)
+
+
+def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Return the labels of the columns (empty where there are none) and the numbered rows of cells."""
+    rows: list[tuple[int, list[str]]] = []
+    heads: list[str] = []
+    plain: list[tuple[int, str]] = []  # heads that are no comments
+    separator: str | None = None
+    for i, line in enumerate(lines, 1):
+        content = re.split("[#%!]", line, maxsplit=1)[0].strip()
+        if not rows:
+            if not content or not _is_number(re.split(r"[;,\s]", content, maxsplit=1)[0]):
+                heads.append(line.strip().lstrip("#%! \t"))
+                plain.append((i, content))
+                continue
+            separator = next((mark for mark in (";", ",") if mark in content), None)
+        if not content:
+            continue
+        cells = [cell.strip() for cell in content.split(separator)]
+        if separator and cells[-1] == "":
+            cells.pop()
+        if rows and len(cells) != len(rows[0][1]):
+            message = (
+                f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, "
+                f"but found {len(cells)}."
+            )
+            raise InputError(message)
+        rows.append((i, cells))
+    if not rows:
+        message = f"{file} holds no numbers: a record is expected as AT2, CSV or columns of text."
+        raise InputError(message)
+    for i, content in plain:
+        cells = _labels(content, separator)
+        # A row of numbers with a slip in it is no header, and must not be lost.
+        if len(cells) == len(rows[0][1]) and any(re.match(r"[+-]?\.?\d", cell) for cell in cells):
+            number(next(cell for cell in cells if not _is_number(cell)), file, i)
+    for head in reversed(heads):
+        labels = _labels(head, separator)
+        if len(labels) == len(rows[0][1]) and any(re.search("[a-zA-Z]", label) for label in labels):
+            return labels, rows
+    return [], rows
+
+
+def _labels(head: str, separator: str | None) -> list[str]:
+    if separator is None:
+        # A label and its unit in brackets may be set apart by a blank, and the unit may hold one.
+        head = BRACKET.sub(lambda unit: unit[0].replace(" ", ""), head)
+        head = re.sub(r"\s+(?=[(\[])", "", head)
+        return re.split(r"[;,\s]\s*", head)
+    cells = [cell.strip().strip('"') for cell in head.split(separator)]
+    return cells[:-1] if cells[-1] == "" else cells
+
+
+def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, int]:
+    """Return the columns of time (None where there is none) and acceleration."""
+    times = [i for i, label in enumerate(labels) if re.match(r"t(ime)?\b", label, re.IGNORECASE)]
+    accelerations = [i for i, label in enumerate(labels) if re.match("acc", label, re.IGNORECASE)]
+    if len(accelerations) == 1 and len(times) == 1:
+        return times[0], accelerations[0]
+    if n_columns <= 2:
+        time = None if n_columns == 1 else 1 if times == [1] else 0
+        column = 1 if time == 0 else 0
+        if labels and re.match("vel|dis", labels[column], re.IGNORECASE):
+            message = f"{file}: an acceleration is expected, but the column is headed {labels[column]!r}."
+            raise InputError(message)
+        return time, column
+    message = (
+        f"{file} has {n_columns} columns, and its header does not name one as time and exactly one as "
+        'acceleration ("time (s), acc (g), ..."). Keep the columns time and acceleration.'
+    )
+    raise InputError(message)
+
+
+def _stated_unit(file: Path, label: str, units: str | None) -> str:
+    """Return the unit that the label or the caller states; both must agree."""
+    bracket = BRACKET.search(label)
+    written = bracket[1] if bracket else ""
+    plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-"))
+    stated = SPELLINGS.get(plain)
+    if written and stated is None:
+        message = (
+            f"{file}: the column header gives the unit {written!r}, which is not known. "
+            "Rewrite it as g, m/s2 or cm/s2, converting the values where needed."
+        )
+        raise InputError(message)
+    if stated and units and stated != units:
+        message = f"{file}: the column header says {stated}, but units={units!r} was given. Leave units out."
+        raise InputError(message)
+    if stated or units:
+        return stated or str(units)
+    message = (
+        f"{file} does not say the unit of its acceleration. Declare it: "
+        'read_motion(path, units="g"), "m/s2" or "cm/s2"; or head the column "acc (g)".'
+    )
+    raise InputError(message)
+
+
+def _check_seconds(file: Path, label: str) -> None:
+    bracket = BRACKET.search(label)
+    if bracket and bracket[1].strip().lower() not in SECONDS:
+        message = (
+            f"{file}: the times are in {bracket[1]!r}, but seconds are expected. Convert the column to s."
+        )
+        raise InputError(message)
+
+
+def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float:
+    """Return the common time step."""
+    if times.size < 3:
+        message = f"{file} has {times.size} samples, but a record needs at least 3."
+        raise InputError(message)
+    steps = np.diff(times)
+    if np.any(steps <= 0):
+        k = int(np.argmax(steps <= 0))
+        message = (
+            f"{file}, line {lines[k + 1]}: time must increase, but it goes from {times[k]:g} s to "
+            f"{times[k + 1]:g} s. The first of two columns is taken as the time."
+        )
+        raise InputError(message)
+    if dt is not None:
+        away = np.abs(times - times[0] - dt * np.arange(times.size)) >= 0.5 * dt
+        if np.any(away):
+            k = int(np.argmax(away))
+            message = (
+                f"{file}, line {lines[k]}: the time {times[k]:g} s does not fit dt={dt!r} s. "
+                "Leave dt out, or remove the column of times."
+            )
+            raise InputError(message)
+        return dt
+    uneven = np.abs(steps - steps[0]) > 1e-3 * steps[0]
+    if np.any(uneven):
+        k = int(np.argmax(uneven))
+        message = (
+            f"{file}, line {lines[k + 1]}: the time step is {steps[k]:.6g} s, but {steps[0]:.6g} s before. "
+            "Equal steps are expected: resample the record, for example with numpy.interp, or, where the "
+            "times are only rounded in print, give the step: read_motion(path, dt=...)."
+        )
+        raise InputError(message)
+    # The mean is better than one printed difference; twelve digits drop the rounding of the subtraction.
+    return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
+
+
+def _is_number(token: str) -> bool:
+    return bool(DECIMAL.fullmatch(token)) or token.lower() in ("nan", "inf", "-inf")

@@ -1,0 +1,76 @@
+"""Changes of a sampled acceleration: finer sampling, baseline correction, filtering."""
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex.motion._arguments import whole
+from rockflex.motion._measures import velocity
+
+__all__ = ["band_pass", "baseline_correct", "refine", "refinement_of"]
+
+Float = NDArray[np.float64]
+
+
+def refine(a: Float, k: int) -> Float:
+    """Split every interval into `k` collinear ones."""
+    k = whole("k", k, 1)
+    inside = a[:-1, None] + np.diff(a)[:, None] * (np.arange(k) / k)
+    return np.append(inside.ravel(), a[-1])
+
+
+def refinement_of(old: float, new: float) -> int:
+    """Return the whole number old/new, or raise an error that names the steps that can be had."""
+    positive("dt", new, "s")
+    ratio = old / new
+    k = round(ratio)
+    if k >= 1 and abs(ratio - k) <= 1e-9:
+        return k
+    nearest = sorted({max(int(ratio), 1), max(int(ratio), 1) + (ratio > 1)})
+    steps = " or ".join(f"{old / n:.12g} s" for n in nearest)
+    message = (
+        f"A record with dt = {old:g} s cannot be resampled exactly to dt = {new!r} s: only a whole fraction "
+        f"of its own step leaves it unchanged between samples. Ask for {steps}."
+    )
+    raise InputError(message)
+
+
+def baseline_correct(a: Float, dt: float, degree: int) -> Float:
+    """Remove the polynomial whose exact integral fits the velocity best (least squares at the samples)."""
+    degree = whole("degree", degree, 0)
+    if degree > a.size - 2:
+        message = (
+            f"degree must be at most {a.size - 2} for {a.size} samples, but {degree} was given: "
+            "a fit needs more values than coefficients."
+        )
+        raise InputError(message)
+    # Legendre polynomials keep the fit well conditioned; they span the same space as powers of t.
+    basis = legendre.legvander(np.linspace(-1, 1, a.size), degree)
+    drift = np.stack([velocity(column, dt) for column in basis.T], axis=1)
+    weights, *_ = np.linalg.lstsq(drift, velocity(a, dt), rcond=None)
+    return a - basis @ weights
+
+
+def band_pass(a: Float, dt: float, low: float, high: float, order: int) -> Float:
+    """Butterworth filter run forwards and backwards: no phase shift, twice the order."""
+    from scipy.signal import butter, sosfiltfilt
+
+    nyquist = 0.5 / dt
+    if not 0 < low < high < nyquist:
+        message = (
+            f"The corner frequencies must satisfy 0 < low < high < {nyquist:g} Hz, the Nyquist frequency "
+            f"of dt = {dt:g} s, but low={low!r} and high={high!r} were given."
+        )
+        raise InputError(message)
+    order = whole("order", order, 1)
+    sections = butter(order, (low, high), btype="bandpass", output="sos", fs=1 / dt)
+    padding = 3 * (2 * len(sections) + 1)
+    if a.size <= padding:
+        message = (
+            f"A band-pass filter of order {order} needs more than {padding} samples, but the record has "
+            f"{a.size}. Use a lower order or a longer record."
+        )
+        raise InputError(message)
+    return np.asarray(sosfiltfilt(sections, a, padlen=padding), dtype=np.float64)

@@ -1,0 +1,63 @@
+"""Choice of the reader by what a file holds."""
+
+from pathlib import Path
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex.motion._at2 import find_header, parse_at2
+from rockflex.motion._columns import parse_columns
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._text import UNITS, read_lines
+
+__all__ = ["read_motion"]
+
+
+def read_motion(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
+    """Read a record from an AT2 file, a CSV file, or text in columns, told apart by content.
+
+    Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. One
+    column is the acceleration, two are time (s) and acceleration. More need a header line in which exactly
+    one label begins with "acc". The motion starts at the first sample, whatever its time.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    units : {"g", "m/s2", "cm/s2"}, optional
+        Unit of the acceleration; needed where no column header says it in brackets, as "acc (g)",
+        "a [m/s^2]" or "acceleration (gal)". AT2 files are in g by definition.
+    dt : float, optional
+        Sampling step in s; needed where the file has no times. Given beside a time column, it replaces
+        times that were rounded in print: each must lie within half a step of its place.
+
+    Returns
+    -------
+    GroundMotion
+        The record in m/s², named after the file without its ending.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, empty or binary; `units` or `dt` is missing, contradicts the file or is not
+        valid; a value is not a finite number; rows differ in length; time steps are not equal and positive;
+        or the peak exceeds 5 g, which only a wrong unit explains. Nothing is read in part.
+    """
+    if units is not None and units not in UNITS:
+        message = f"units must be one of {', '.join(map(repr, UNITS))}, but {units!r} was given."
+        raise InputError(message)
+    if dt is not None:
+        dt = positive("dt", dt, "s")
+    file = Path(path)
+    lines = read_lines(file)
+    if find_header(lines) is None and file.suffix.lower() != ".at2":
+        return parse_columns(file, lines, units, dt)
+    motion = parse_at2(file, lines)
+    if units not in (None, "g"):
+        message = (
+            f"{file} is an AT2 file, in g by definition, but units={units!r} was given. Leave units out."
+        )
+        raise InputError(message)
+    if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
+        message = f"{file} says DT = {motion.dt:g} s, but dt={dt!r} was given. Leave dt out."
+        raise InputError(message)
+    return motion

@@ -1,0 +1,42 @@
+"""What is known of a record besides its samples."""
+
+from dataclasses import dataclass
+
+__all__ = ["RecordInfo"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordInfo:
+    """Facts about a recorded motion; whatever is not known is None.
+
+    Parameters
+    ----------
+    event : str, optional
+        Name of the earthquake.
+    year : int, optional
+        Year of the earthquake.
+    magnitude : float, optional
+        Moment magnitude.
+    distance_km : float, optional
+        Closest distance from the site to the fault plane, in km.
+    vs30 : float, optional
+        Time-averaged shear-wave velocity of the upper 30 m, in m/s.
+    rsn : int, optional
+        Record sequence number of the PEER NGA database.
+    component : str, optional
+        Component as its source names it.
+    station : str, optional
+        Recording station.
+    source : str, optional
+        File or publication from which the samples were taken.
+    """
+
+    event: str | None = None
+    year: int | None = None
+    magnitude: float | None = None
+    distance_km: float | None = None
+    vs30: float | None = None
+    rsn: int | None = None
+    component: str | None = None
+    station: str | None = None
+    source: str | None = None

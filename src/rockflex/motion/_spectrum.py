@@ -1,0 +1,72 @@
+"""Elastic response spectra."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector, in_range
+from rockflex._errors import InputError
+from rockflex.motion._spectrum_kernel import oscillator_peaks
+
+__all__ = ["ResponseSpectrum", "response_spectrum"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseSpectrum:
+    """Peak response of damped linear oscillators to one ground motion.
+
+    The response is exact for the piecewise linear acceleration (the recurrence of Nigam & Jennings 1969),
+    and the peaks are true ones, between samples too. They cover the record, not the free vibration after it.
+    A period of zero is the rigid oscillator: sd = sv = 0 and sa = PGA.
+
+    Parameters
+    ----------
+    period : ndarray, shape (m,)
+        Natural periods in s.
+    damping_ratio : float
+        Fraction of critical damping.
+    sd : ndarray, shape (m,)
+        Peak relative displacement in m.
+    sv : ndarray, shape (m,)
+        Peak relative velocity in m/s.
+    sa : ndarray, shape (m,)
+        Pseudo-acceleration (2π/T)² sd in m/s².
+    """
+
+    period: Float
+    damping_ratio: float
+    sd: Float
+    sv: Float
+    sa: Float
+
+    @property
+    def psv(self) -> Float:
+        """Pseudo-velocity (2π/T) sd in m/s, shape (m,); zero at a period of zero."""
+        return np.divide(2 * np.pi * self.sd, self.period, out=np.zeros_like(self.sd), where=self.period > 0)
+
+
+def response_spectrum(
+    acceleration: Float, dt: float, periods: ArrayLike, damping_ratio: float
+) -> ResponseSpectrum:
+    """Response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
+    period = finite_vector("periods", periods, "s")
+    bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))
+    if bad.size:
+        message = (
+            f"periods must be zero or at least 1e-6 s, but {period[bad[0]]:g} was given at index {bad[0]}. "
+            "A period of zero gives the peak ground acceleration."
+        )
+        raise InputError(message)
+    zeta = in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
+    peaks = np.zeros((period.size, 2))
+    for i in np.flatnonzero(period):
+        peaks[i] = oscillator_peaks(acceleration, dt, 2 * np.pi / float(period[i]), zeta)
+    sd, sv = peaks.T.copy()
+    pga = np.full(period.size, np.max(np.abs(acceleration)))
+    sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
+    for array in (sd, sv, sa):
+        array.setflags(write=False)
+    return ResponseSpectrum(period, zeta, sd, sv, sa)

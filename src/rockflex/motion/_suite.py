@@ -1,0 +1,141 @@
+"""Sets of ground motions."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import overload
+
+from rockflex._errors import InputError
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._readers import read_motion
+
+__all__ = ["Suite", "read_suite"]
+
+SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
+
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class Suite(Sequence[GroundMotion]):
+    """An ordered set of motions with unique names: a sequence, and a mapping by name.
+
+    ``suite[0]`` and ``suite["FF-12-a"]`` are motions, ``suite[:10]`` is a suite, ``"FF-12-a" in suite`` tells
+    whether a name occurs, and iteration gives the motions.
+
+    Parameters
+    ----------
+    motions : iterable of GroundMotion
+        The motions, at least one, each with a name of its own.
+    name : str, optional
+        Name of the suite.
+
+    Raises
+    ------
+    InputError
+        If there is no motion, something else than a motion, or a name occurs twice.
+    """
+
+    motions: tuple[GroundMotion, ...]
+    name: str = ""
+
+    def __init__(self, motions: Iterable[GroundMotion], name: str = "") -> None:
+        members = tuple(motions)
+        if not members:
+            message = "A suite needs at least one motion, but none was given."
+            raise InputError(message)
+        for motion in members:
+            if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
+                message = f"A suite holds GroundMotion objects, but {type(motion).__name__} was given."
+                raise InputError(message)
+        repeated = [key for key, count in Counter(motion.name for motion in members).items() if count > 1]
+        if repeated:
+            names = ", ".join(map(repr, repeated[:5]))
+            message = (
+                f"The motions of a suite need different names, but {names} occurs more than once. "
+                "Rename: dataclasses.replace(motion, name=...), or rename the files."
+            )
+            raise InputError(message)
+        object.__setattr__(self, "motions", members)
+        object.__setattr__(self, "name", name)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the motions, in order."""
+        return tuple(motion.name for motion in self.motions)
+
+    def __repr__(self) -> str:
+        return f"Suite({self.name!r}, {len(self)} motions: {self.names[0]!r} ... {self.names[-1]!r})"
+
+    def __len__(self) -> int:
+        return len(self.motions)
+
+    def __iter__(self) -> Iterator[GroundMotion]:
+        return iter(self.motions)
+
+    def __contains__(self, value: object) -> bool:
+        return value in self.names if isinstance(value, str) else value in self.motions
+
+    @overload
+    def __getitem__(self, index: int | str) -> GroundMotion: ...
+    @overload
+    def __getitem__(self, index: slice) -> "Suite": ...
+    def __getitem__(self, index: int | str | slice) -> "GroundMotion | Suite":
+        """Return the motion at an index or of a name, or the suite of a slice."""
+        if isinstance(index, slice):
+            return Suite(self.motions[index], self.name)
+        if not isinstance(index, str):
+            return self.motions[index]
+        for motion in self.motions:
+            if motion.name == index:
+                return motion
+        near = get_close_matches(index, self.names, n=3, cutoff=0.4) or self.names[:3]
+        message = (
+            f"No motion of the suite {self.name!r} is named {index!r}. "
+            f"The nearest names are {', '.join(map(repr, near))}; .names lists all {len(self)}."
+        )
+        raise InputError(message)
+
+
+def read_suite(
+    paths: str | Path | Iterable[str | Path], units: str | None = None, dt: float | None = None
+) -> Suite:
+    """Read records into a suite, sorted by file name.
+
+    Parameters
+    ----------
+    paths : path or iterable of paths
+        A directory, of which every file ending in .at2, .csv, .dat, .tsv or .txt (upper case too) is read,
+        or the files themselves.
+    units, dt : optional
+        As in `read_motion`, for the files that do not say them.
+
+    Returns
+    -------
+    Suite
+        The motions, named after their files without the ending; the suite is named after the directory.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read (see `read_motion`; no partial suite is returned), a directory holds no
+        record, or two files have the same name.
+    """
+    name = ""
+    if isinstance(paths, str | Path):
+        folder = Path(paths)
+        if not folder.is_dir():
+            message = (
+                f"{folder} is not a directory. Give a directory, or a list of files; "
+                "one file alone is read by read_motion."
+            )
+            raise InputError(message)
+        name = folder.resolve().name
+        files = [file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES and file.is_file()]
+        if not files:
+            message = f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}."
+            raise InputError(message)
+    else:
+        files = [Path(path) for path in paths]
+    files.sort(key=lambda file: (file.name, str(file)))
+    return Suite((read_motion(file, units=units, dt=dt) for file in files), name)

@@ -1,0 +1,92 @@
+"""Text of a record file, and the checks that every format shares."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_info import RecordInfo
+
+__all__ = ["UNITS", "build_motion", "number", "read_lines"]
+
+UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01}
+LIMIT = 5.0  # in g; no recorded ground acceleration comes near it
+DECIMAL = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?")
+
+
+def read_lines(path: str | Path) -> list[str]:
+    """Return the lines of a text file, or raise an error that says why there are none."""
+    file = Path(path)
+    if file.is_dir():
+        message = f"{file} is a directory. Read all its records with read_suite({str(file)!r})."
+        raise InputError(message)
+    try:
+        data = file.read_bytes()
+    except FileNotFoundError as error:
+        message = f"{file} does not exist (working directory: {Path.cwd()})."
+        raise InputError(message) from error
+    except OSError as error:
+        message = f"{file} cannot be read: {error.strerror}."
+        raise InputError(message) from error
+    text = _decode(data)
+    if text is None:
+        message = f"{file} is a binary file; a record is expected as text (AT2, CSV or columns)."
+        raise InputError(message)
+    if not text.strip():
+        message = f"{file} is empty."
+        raise InputError(message)
+    return re.split("\r\n|\r|\n", text)
+
+
+def _decode(data: bytes) -> str | None:
+    wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    # Latin-1 accepts every byte, so it comes last; old headers use it.
+    for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
+        try:
+            text = data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        text = text.rstrip("\x1a")
+        return None if re.search(r"[\x00-\x08\x0e-\x1b\x7f]", text) else text
+    return None
+
+
+def number(token: str, file: str | Path, line: int) -> float:
+    """Return a decimal number (Fortran's D exponent too), or raise an error that names the line."""
+    if DECIMAL.fullmatch(token):
+        value = float(re.sub("[Dd]", "E", token))
+        if np.isfinite(value):
+            return value
+    hint = " Write decimals with a point." if re.fullmatch(r"[+-]?\d+,\d+", token) else ""
+    message = f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}"
+    raise InputError(message)
+
+
+def build_motion(
+    file: Path, values: NDArray[np.float64], units: str, dt: float, info: RecordInfo, remedy: str
+) -> GroundMotion:
+    """Convert to m/s² and refuse amplitudes that only a wrong unit explains."""
+    acceleration = values * UNITS[units]
+    motion = _named(file, acceleration, dt, info)
+    if motion.pga > LIMIT * GRAVITY:
+        peak = motion.pga / UNITS[units]
+        smaller = {"g": "m/s² or cm/s²", "m/s2": "cm/s²", "cm/s2": "a smaller unit"}[units]
+        message = (
+            f"{file}: the peak acceleration is {peak:g} {units}, above {LIMIT:g} g. "
+            f"It looks like {smaller} where {units} was declared. {remedy} If the values are meant, "
+            "build GroundMotion(acceleration, dt) from the array; scaling a motion is free."
+        )
+        raise InputError(message)
+    return motion
+
+
+def _named(file: Path, acceleration: NDArray[np.float64], dt: float, info: RecordInfo) -> GroundMotion:
+    try:
+        return GroundMotion(acceleration, dt, name=file.stem, metadata=info)
+    except InputError as error:
+        message = f"{file}: {error}"
+        raise InputError(message) from error

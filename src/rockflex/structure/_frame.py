@@ -1,0 +1,167 @@
+"""A regular frame, from the shear building to a pair of cantilevers."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import in_range, positive
+from rockflex._errors import InputError
+from rockflex.modal import ModalProperties, RockingProperties, modal_properties
+from rockflex.modal._arguments import whole_number
+from rockflex.structure._lumped import LumpedStructure
+
+__all__ = ["Frame"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A frame of one bay and N equal stories, with columns clamped to a base that can rock.
+
+    Columns and beams are inextensible, each of uniform stiffness, and alike in all stories; the masses are
+    lumped at the floors. The stiffness is scaled to the period asked for, and the base made as wide as the
+    aspect ratio asks (Silva & Stojadinović 2024, Section 3.2 and Table 1).
+
+    Attributes
+    ----------
+    n_stories : int
+        Number of stories N.
+    story_height : float
+        Column length L_c in m; floor i is at i L_c.
+    story_mass : float
+        Mass of each floor in kg.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    stiffness_ratio : float
+        ρ = (EI_b/L_b)/(2 EI_c/L_c), from 0 (two cantilevers) to infinity (shear building), both included.
+    period : float
+        First natural period T_1 on a fixed base in s.
+    aspect_ratio : float
+        h*_1/B.
+    damping_ratio : float
+        Damping ratio of every mode in [0, 1).
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Notes
+    -----
+    Sway is antisymmetric, so the two joints of a floor turn by the same angle φ and a beam of stiffness
+    EI_b/L_b bends in double curvature with the end moments 6 (EI_b/L_b) φ: to that rotation it adds
+    12 EI_b/L_b = 12 ρ (2 EI_c/L_c). Two columns give 2 EI_c/L_c times the usual terms of a clamped bar. In
+    units of 2 EI_c/L_c³, with φ L_c for the rotations, only ρ is left of the beam: neither the width of
+    the bay nor EI_b matters by itself.
+    """
+
+    n_stories: int
+    story_height: float
+    story_mass: float
+    base_mass: float
+    stiffness_ratio: float
+    period: float
+    aspect_ratio: float
+    damping_ratio: float
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            n_stories=whole_number("n_stories", self.n_stories, 1),
+            story_height=positive("story_height", self.story_height, "m"),
+            story_mass=positive("story_mass", self.story_mass, "kg"),
+            base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
+            stiffness_ratio=_checked_stiffness_ratio(self.stiffness_ratio),
+            period=positive("period", self.period, "s"),
+            aspect_ratio=positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
+            damping_ratio=in_range(
+                "damping_ratio",
+                self.damping_ratio,
+                0.0,
+                1.0,
+                hint="Give the fraction of critical damping: 2 % is 0.02.",
+            ),
+        )
+
+    @property
+    def height(self) -> float:
+        """Height N L_c of the top floor above the base in m."""
+        return self.n_stories * self.story_height
+
+    @property
+    def half_width(self) -> float:
+        """Half the width B = h*_1/aspect_ratio of the base in m."""
+        _, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
+        return float(unit_modes.effective_height[0]) * self.story_height / self.aspect_ratio
+
+    @cached_property
+    def lumped(self) -> LumpedStructure:
+        """The structure that the frame assembles: floor masses, condensed stiffness, floor heights."""
+        unit_stiffness, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
+        column_stiffness = self.story_mass * (2.0 * math.pi / (self.period * float(unit_modes.omega[0]))) ** 2
+        return LumpedStructure(
+            np.full(self.n_stories, self.story_mass),
+            column_stiffness * unit_stiffness,
+            self.story_height * np.arange(1.0, self.n_stories + 1.0),
+            base_mass=self.base_mass,
+            half_width=self.half_width,
+            damping_ratio=self.damping_ratio,
+        )
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all of them.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to N.
+        """
+        return self.lumped.modal(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to N.
+        """
+        return self.lumped.rocking(n_modes)
+
+
+@lru_cache(maxsize=128)
+def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Float, ModalProperties]:
+    """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
+    n = n_stories
+    below = np.eye(n, k=-1)
+    drift = np.eye(n) - below
+    sway = 12.0 * drift.T @ drift
+    # The last floor has a column below it alone.
+    coupling = 6.0 * (below.T - below)
+    bending = 8.0 * np.eye(n) + 2.0 * (below + below.T)
+    coupling[-1, -1], bending[-1, -1] = -6.0, 4.0
+    # Divided by 1 + ρ, the rotational stiffness stays finite up to the rigid beam, which needs no limit.
+    softness = 1.0 / (1.0 + stiffness_ratio)
+    rotational = softness * bending + 12.0 * (1.0 - softness) * np.eye(n)
+    stiffness = sway - softness * coupling @ np.linalg.solve(rotational, coupling.T)
+    stiffness = 0.5 * (stiffness + stiffness.T)
+    stiffness.setflags(write=False)
+    return stiffness, modal_properties(np.ones(n), stiffness, np.arange(1.0, n + 1.0))
+
+
+def _checked_stiffness_ratio(value: float) -> float:
+    try:
+        ratio = float(value)
+    except (TypeError, ValueError):
+        ratio = math.nan
+    if not ratio >= 0.0:
+        message = (
+            f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
+            f"but {value!r} was given."
+        )
+        raise InputError(message)
+    return ratio

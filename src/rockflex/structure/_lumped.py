@@ -1,0 +1,121 @@
+"""A structure given by its matrices."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import positive
+from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
+from rockflex.modal._arguments import damping_ratios
+from rockflex.modal._matrices import checked_heights, checked_mass, checked_stiffness
+
+__all__ = ["LumpedStructure"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class LumpedStructure:
+    """Any linear structure with N masses above a rigid base that can rock.
+
+    The horizontal displacements of the masses relative to the base are its freedoms (Silva & Stojadinović
+    2024, Fig. 1 and Eq. 1); all others are condensed out. Sequences become read-only arrays. Modes are
+    computed once, on the first call that needs them.
+
+    Attributes
+    ----------
+    masses : ndarray, shape (N,) or (N, N)
+        Masses, or symmetric positive definite mass matrix, in kg, without the base.
+    stiffness : ndarray, shape (N, N)
+        Symmetric positive definite stiffness in N/m, base held.
+    heights : ndarray, shape (N,)
+        Heights of the masses above the base in m, positive and strictly rising.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    half_width : float
+        Half the width B of the base in m.
+    damping_ratio : ndarray, shape (N,)
+        Damping ratio of each mode in [0, 1); one number stands for all modes.
+
+    Raises
+    ------
+    InputError
+        If the shapes do not fit, a value is not finite or outside its range, the heights fall, or a matrix
+        is not symmetric positive definite.
+    """
+
+    masses: Float
+    stiffness: Float
+    heights: Float
+    base_mass: float
+    half_width: float
+    damping_ratio: Float
+
+    def __init__(
+        self,
+        masses: ArrayLike,
+        stiffness: ArrayLike,
+        heights: ArrayLike,
+        *,
+        base_mass: float,
+        half_width: float,
+        damping_ratio: ArrayLike,
+    ) -> None:
+        h = checked_heights(heights)
+        vars(self).update(
+            masses=checked_mass(masses, h.size),
+            stiffness=checked_stiffness(stiffness, h.size),
+            heights=h,
+            base_mass=positive("base_mass", base_mass, "kg", zero=True),
+            half_width=positive("half_width", half_width, "m"),
+            damping_ratio=damping_ratios("damping_ratio", damping_ratio, h.size),
+        )
+
+    @property
+    def height(self) -> float:
+        """Height of the top mass above the base in m."""
+        return float(self.heights[-1])
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all N of them.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to N.
+        """
+        return self._modes if n_modes is None else self._modes.truncated(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Modes that take part in neither base shear nor base moment are left out and not counted.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes, or one among them takes part in the base moment alone.
+        """
+        return self._rocking if n_modes is None else self._with_modes(n_modes)
+
+    @cached_property
+    def _modes(self) -> ModalProperties:
+        return modal_properties(self.masses, self.stiffness, self.heights)
+
+    @cached_property
+    def _rocking(self) -> RockingProperties:
+        return self._with_modes(None)
+
+    def _with_modes(self, n_modes: SupportsIndex | None) -> RockingProperties:
+        return rocking_properties(
+            self._modes,
+            self.masses,
+            self.heights,
+            self.base_mass,
+            self.half_width,
+            self.damping_ratio,
+            n_modes,
+        )

@@ -1,0 +1,146 @@
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rockflex._errors import InputError
+from rockflex.motion import GroundMotion, half_sine_pulse, one_sine_pulse, rectangular_pulse
+from rockflex.motion._spectrum_kernel import unit_responses
+
+RECORD = GroundMotion(np.random.default_rng(3).normal(size=25), 0.1)
+
+
+def twin(motion, period, zeta):
+    """Peaks by adaptive integration with event location, restarted at every sample."""
+    omega = 2 * math.pi / period
+    state, sd, sv = [0.0, 0.0], 0.0, 0.0
+    for k, a in enumerate(motion.acceleration[:-1]):
+        slope = (motion.acceleration[k + 1] - a) / motion.dt
+
+        def rate(t, y, a=a, slope=slope):
+            return [y[1], -2 * zeta * omega * y[1] - omega**2 * y[0] - a - slope * t]
+
+        done = solve_ivp(
+            rate,
+            (0, motion.dt),
+            state,
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-15,
+            max_step=period / 12,
+            events=[lambda t, y: y[1], lambda t, y, rate=rate: rate(t, y)[1]],
+        )
+        points = [done.y.T, *(found for found in done.y_events if len(found))]
+        sd, sv = np.maximum((sd, sv), np.max(np.abs(np.concatenate(points)), axis=0))
+        state = done.y[:, -1]
+    return sd, sv
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.05, 0.7])
+@pytest.mark.parametrize("period", [0.03, 0.1, 0.21, 1.0, 7.0])
+def test_peaks_against_adaptive_integration(period, zeta):
+    spectrum = RECORD.spectrum([period], zeta)
+    sd, sv = twin(RECORD, period, zeta)
+    assert spectrum.sd[0] == pytest.approx(sd, rel=1e-9)
+    assert spectrum.sv[0] == pytest.approx(sv, rel=1e-9)
+    assert spectrum.sa[0] == pytest.approx((2 * math.pi / period) ** 2 * sd, rel=1e-9)
+    assert spectrum.psv[0] == pytest.approx(2 * math.pi / period * sd, rel=1e-9)
+
+
+@pytest.mark.parametrize("period", [1.03, 1.37, 1.91])
+def test_slowly_growing_peaks_between_samples(period):
+    # Each peak is a little higher than the one before, and no sample of it may show that.
+    t = 0.1 * np.arange(120)
+    for extra in (0.004 * t, 0.002 * np.sin(2 * np.pi / period * t)):
+        motion = GroundMotion(1 + extra, 0.1)
+        spectrum = motion.spectrum([period], 0.0)
+        sd, sv = twin(motion, period, 0.0)
+        assert spectrum.sd[0] == pytest.approx(sd, rel=1e-10)
+        assert spectrum.sv[0] == pytest.approx(sv, rel=1e-10)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.05, 0.9])
+@pytest.mark.parametrize("x", [1e-8, 1e-3, 0.1, 0.4999, 0.5, 0.6, 3.0, 40.0])
+def test_unit_responses_against_fifty_digits(x, zeta):
+    omega, t = 2.5, x / 2.5
+    with mpmath.workdps(50):
+        w, z, tau = mpmath.mpf(omega), mpmath.mpf(zeta), mpmath.mpf(t)
+        damped = w * mpmath.sqrt(1 - z * z)
+        s = mpmath.exp(-z * w * tau) * mpmath.sin(damped * tau) / damped
+        ds = mpmath.exp(-z * w * tau) * mpmath.cos(damped * tau) - z * w * s
+        step = (1 - ds - 2 * z * w * s) / w**2
+        ramp = (tau - 2 * z * w * step - s) / w**2
+        expected = [float(value) for value in (ds, s, step, ramp)]
+    size = [1, t, t**2, t**3] if x < 0.5 else np.abs(expected) + np.array([1, 1, 1, t]) * 1e-2
+    for function in (unit_responses, unit_responses.py_func):
+        got = function(omega, zeta, t)
+        assert np.abs(np.array(got) - expected) / size == pytest.approx(0, abs=2e-13)
+
+
+def test_at_rest_the_unit_responses_begin():
+    assert unit_responses(3.0, 0.1, 0.0) == (1.0, 0.0, 0.0, 0.0)
+
+
+def test_period_zero_is_the_peak_ground_acceleration():
+    spectrum = RECORD.spectrum([0.0, 1.0])
+    assert (spectrum.sd[0], spectrum.sv[0], spectrum.psv[0], spectrum.sa[0]) == (0, 0, 0, RECORD.pga)
+    assert RECORD.sa(0) == RECORD.pga
+
+
+def test_very_stiff_and_very_soft_oscillators():
+    ramp = GroundMotion(np.linspace(0, 1, 101), 0.01)
+    assert ramp.sa(1e-4, 0.05) == pytest.approx(1.0, rel=1e-3)
+    # A very soft oscillator stays where it is while the ground moves.
+    assert RECORD.sd(1e5, 0.0) == pytest.approx(RECORD.pgd, rel=1e-7)
+    assert RECORD.spectrum([1e5], 0.0).sv[0] == pytest.approx(RECORD.pgv, rel=1e-7)
+
+
+def test_rectangle_doubles_the_static_response():
+    # u = (a/ω²)(1 - cos ωt), a peak between samples.
+    pulse = rectangular_pulse(2.0, 1.0, dt=0.3)
+    assert pulse.sa(0.77, 0.0) == pytest.approx(4.0, rel=1e-13)
+
+
+def test_damped_step_overshoots_as_it_should():
+    zeta = 0.05
+    overshoot = 1 + math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
+    assert rectangular_pulse(1.0, 2.0, dt=0.1).sa(0.33, zeta) == pytest.approx(overshoot, rel=1e-12)
+
+
+def test_resonant_full_sine():
+    # u = (a/2ω²)(sin ωt - ωt cos ωt) at resonance: the peak within one cycle is at t = T, where u = -π a/ω².
+    assert one_sine_pulse(1.0, 1.0, dt=0.001).sa(1.0, 0.0) == pytest.approx(math.pi, rel=1e-5)
+
+
+def test_free_vibration_after_the_record_is_not_included():
+    # A pulse much shorter than the period: the peak comes later.
+    pulse = half_sine_pulse(1.0, 0.1)
+    assert pulse.sd(10.0, 0.0) == pytest.approx(pulse.pgd, rel=1e-3)
+
+
+def test_results_are_read_only_and_in_order():
+    spectrum = RECORD.spectrum([1.0, 0.5], 0.02)
+    assert spectrum.period.tolist() == [1.0, 0.5]
+    assert spectrum.damping_ratio == 0.02
+    assert spectrum.sd[1] == RECORD.sd(0.5, 0.02)
+    for array in (spectrum.period, spectrum.sd, spectrum.sv, spectrum.sa):
+        assert not array.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("periods", "zeta", "text"),
+    [
+        ([-1.0], 0.05, "periods must be zero or at least 1e-6 s, but -1 was given at index 0"),
+        ([1.0, 1e-7], 0.05, "but 1e-07 was given at index 1"),
+        ([np.nan], 0.05, "periods must be finite"),
+        ([1.0], 1.0, r"damping_ratio must lie in \[0, 1\), but 1.0 was given. It is a fraction: 5 % is 0.05"),
+        ([1.0], 5, "damping_ratio must lie in"),
+        ([1.0], -0.01, "damping_ratio must lie in"),
+        (1.0, 0.05, "periods must be one-dimensional"),
+    ],
+)
+def test_refuses(periods, zeta, text):
+    with pytest.raises(InputError, match=text):
+        RECORD.spectrum(periods, zeta)
