@@ -12,4 +12,4 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 def kernel(function: F) -> F:
     """Compile with numba: no interpreter lock, cached on disk, fused multiply-adds allowed."""
-    return cast("F", njit(function, nogil=True, cache=True, fastmath={"contract"}, error_model="numpy"))
+    return cast("F", njit(function, nogil=True, cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False))

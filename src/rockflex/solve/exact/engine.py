@@ -9,7 +9,7 @@ from rockflex.models import LinearModel
 from rockflex.solve._solution import Solution
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
-from rockflex.solve.exact.layout import Array, Log, Physics, System
+from rockflex.solve.exact.layout import Array, Log, Physics, System, scratch
 from rockflex.solve.exact.run import SETTLED, UNSETTLED, run
 from rockflex.solve.exact.tables import tabulate
 from rockflex.solve.exact.unit import CHATTER, IMPACTS, OVERTURNED, UPLIFTS
@@ -17,6 +17,7 @@ from rockflex.solve.exact.unit import CHATTER, IMPACTS, OVERTURNED, UPLIFTS
 __all__ = ["ExactEngine"]
 
 NO_NODES = np.empty((0, 0))
+QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
 
 
 class ExactEngine:
@@ -72,11 +73,11 @@ class ExactEngine:
         settle = free_vibration is None
         free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
         rows = self._rows.shape[1]
+        system = self.system(dt)
         log = Log(np.zeros(rows), np.zeros(rows), np.zeros(3, dtype=np.int64))
-        nodes = np.empty((acceleration.size + max(64, free if not settle else 0), HEADER + now.size)) if history else NO_NODES
-        status, samples, nodes, count = run(
-            self.system(dt), acceleration, dt, free, settle, side, now, log, nodes
-        )
+        nodes = np.empty((acceleration.size + 64, HEADER + now.size)) if history else NO_NODES
+        room = scratch(now, rows, system.order)
+        status, samples, count = run(system, acceleration, QUIET, dt, free, settle, side, log, room, nodes)
         if status in (CHATTER, UNSETTLED):
             raise SolverError(self._complaint(status, samples * dt, now))
         end = samples * dt if status != OVERTURNED else float(log.times[0])

@@ -14,8 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._kernel import kernel
-
 __all__ = ["CONTACT", "ROCKING", "Array", "Log", "Physics", "Scratch", "System", "scratch"]
 
 CONTACT, ROCKING = 0, 1  # the phases, which lead the arrays of `System`
@@ -79,7 +77,6 @@ class Scratch(NamedTuple):
     polys: Array  # (F + 1, order + 1): polynomials of the rows, and one to work on
 
 
-@kernel
 def scratch(state: Array, rows: int, order: int) -> Scratch:
     """Room for one run that starts from `state`."""
     size = state.size

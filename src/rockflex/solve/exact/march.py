@@ -48,11 +48,11 @@ def march(
     room: Scratch,
     nodes: Array,
     count: int,
-) -> tuple[int, float, Array, int]:
+) -> tuple[int, float, int]:
     """Carry `room.w` over samples from `first` on; stop before one that needs a closer look, or at the end.
 
     `offset` is the number of samples before this record. Returns the sample reached, the slope of the acceleration
-    that `w` refers to, the nodes and their count. The sample that needs a closer look is left examined in `room`.
+    that `w` refers to and the count of nodes. The sample that needs a closer look is left examined in `room`.
     """
     phase = ROCKING if side != 0.0 else CONTACT
     pairs = room.norms.size
@@ -93,12 +93,12 @@ def march(
             safe = safe and low - sag >= room.lower[f] and high + sag <= room.upper[f]
         if not safe:
             if not probe(system, phase, 0, side, slope, room):
-                return i, slope, nodes, count
+                return i, slope, count
             raise_peaks(room.end, side, (offset + i + 1) * dt, log)
             set_limits(side, system.physics.resistance, log, room)
         for k in range(2 * pairs):
             room.w[k] = room.w_end[k]
         if nodes.shape[0] > 0:
             to_state(system, phase, there, slope, side, room)
-            nodes, count = append(nodes, count, (offset + i + 1) * dt, side, there, room.state)
-    return record.size - 1, slope, nodes, count
+            count = append(nodes, count, (offset + i + 1) * dt, side, there, room.state)
+    return record.size - 1, slope, count

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System, scratch
+from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.sample import cross_sample
 from rockflex.solve.exact.unit import CROSSED
@@ -14,7 +14,6 @@ from rockflex.solve.exact.unit import CROSSED
 __all__ = ["SETTLED", "UNSETTLED", "run"]
 
 SETTLED, UNSETTLED = 2, -2
-STRETCH = 64  # samples of free vibration between two looks at whether it has settled
 
 
 @kernel
@@ -34,36 +33,35 @@ def settled(system: System, room: Scratch, log: Log) -> bool:
 def run(
     system: System,
     record: Array,
+    quiet: Array,
     dt: float,
     free: int,
     settle: bool,
     side: float,
-    state: Array,
     log: Log,
+    room: Scratch,
     nodes: Array,
-) -> tuple[int, int, Array, int]:
-    """Carry `state` through the record and at most `free` samples after it; return status, samples, nodes, count.
+) -> tuple[int, int, int]:
+    """Carry `state` through the record and at most `free` samples after it; return status, samples, count.
 
     With `settle` the run ends as soon as nothing more can happen, and it is an error if `free` samples pass first.
     """
-    room = scratch(state, log.peaks.size, system.order)
-    quiet = np.zeros(STRETCH + 1)
     piece, offset, count, last = record, 0, 0, np.nan
     while True:
         to_coordinates(system, ROCKING if side != 0.0 else CONTACT, piece[0], 0.0, side, room)
         if offset > 0 and settle and side == 0.0 and settled(system, room, log):
-            return SETTLED, offset, nodes, count
+            return SETTLED, offset, count
         if piece[0] != last:
-            nodes, count = append(nodes, count, offset * dt, side, piece[0], state)
-        status, side, nodes, count = cross_piece(system, piece, dt, offset, side, log, room, nodes, count)
+            count = append(nodes, count, offset * dt, side, piece[0], room.state)
+        status, side, count = cross_piece(system, piece, dt, offset, side, log, room, nodes, count)
         if status != CROSSED:
-            return status, offset, nodes, count
+            return status, offset, count
         offset += piece.size - 1
         last = piece[piece.size - 1]
         remaining = free + record.size - 1 - offset
         if remaining == 0:
-            return (UNSETTLED if settle else CROSSED), offset, nodes, count
-        piece = quiet[: min(STRETCH, remaining) + 1]
+            return (UNSETTLED if settle else CROSSED), offset, count
+        piece = quiet[: min(quiet.size - 1, remaining) + 1]
 
 
 @kernel
@@ -77,25 +75,25 @@ def cross_piece(
     room: Scratch,
     nodes: Array,
     count: int,
-) -> tuple[int, float, Array, int]:
-    """Carry the motion through one stretch of acceleration; return status, side, nodes and their count."""
+) -> tuple[int, float, int]:
+    """Carry the motion through one stretch of acceleration; return status, side and the count of nodes."""
     slope, fresh, i, last = 0.0, True, 0, piece.size - 1
     while True:
         before = i
-        i, slope, nodes, count = march(
+        i, slope, count = march(
             system, piece, dt, i, offset, side, slope, log, room, nodes, count
         )
         fresh = fresh and i == before
         if i < last:
             time = (offset + i) * dt
-            status, side, fresh, nodes, count = cross_sample(
+            status, side, fresh, count = cross_sample(
                 system, side, fresh, piece[i], slope, dt, time, log, room, nodes, count
             )
             i += 1
             if status != CROSSED:
-                return status, side, nodes, count
+                return status, side, count
         if i == last:
             break
     if not fresh:
         to_state(system, ROCKING if side != 0.0 else CONTACT, piece[last], slope, side, room)
-    return CROSSED, side, nodes, count
+    return CROSSED, side, count

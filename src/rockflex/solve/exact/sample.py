@@ -23,8 +23,8 @@ def cross_sample(
     room: Scratch,
     nodes: Array,
     count: int,
-) -> tuple[int, float, bool, Array, int]:
-    """Carry the motion over one sample; return status, side, whether the state is fresh, nodes and their count.
+) -> tuple[int, float, bool, int]:
+    """Carry the motion over one sample; return status, side, whether the state is fresh and the count of nodes.
 
     `room.w` holds the motion at the start and then at the end. A *fresh* state is as true as `w` or truer: it is
     kept across units, since a rotation that has just left zero is far below the rounding of a modal sum.
@@ -55,12 +55,12 @@ def cross_sample(
         if not safe and not fresh:
             to_state(system, phase, here, slope, side, room)
         if not safe and room.doubt[0]:
-            status, side, nodes, count = cross_unit(
+            status, side, count = cross_unit(
                 system, side, here, slope, step, now, log, room, nodes, count
             )
             fresh, tuned = True, False
             if status != CROSSED:
-                return status, side, fresh, nodes, count
+                return status, side, fresh, count
         else:
             if safe:
                 raise_peaks(room.end, side, time + dt * ((place + stride) / grid), log)
@@ -78,8 +78,8 @@ def cross_sample(
     if nodes.shape[0] > 0:
         if not fresh:
             to_state(system, phase, there, slope, side, room)
-        nodes, count = append(nodes, count, time + dt, side, there, room.state)
-    return CROSSED, side, fresh, nodes, count
+        count = append(nodes, count, time + dt, side, there, room.state)
+    return CROSSED, side, fresh, count
 
 
 @kernel

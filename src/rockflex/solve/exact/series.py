@@ -82,15 +82,16 @@ def row_series(
     """Taylor coefficients, in `polys[row]`, of one linear functional of state, ground acceleration and side."""
     n, terms = series.shape[0] - 1, series.shape[1]
     for k in range(terms):
-        polys[row, k] = rows[phase, row, 2 * n] * series[n, k]
-    for i in range(n):
-        for k in range(terms):
-            polys[row, k] += rows[phase, row, i] * series[i, k]
+        polys[row, k] = 0.0
     for i in range(n + 1):
-        rate = rows[phase, row, n + i if i < n else 2 * n + 1] / step
-        if rate != 0.0:
+        weight = rows[phase, row, i if i < n else 2 * n]
+        if weight != 0.0:
+            for k in range(terms):
+                polys[row, k] += weight * series[i, k]
+        weight = rows[phase, row, n + i if i < n else 2 * n + 1] / step
+        if weight != 0.0:
             for k in range(terms - 1):
-                polys[row, k] += rate * (k + 1.0) * series[i, k + 1]
+                polys[row, k] += weight * (k + 1.0) * series[i, k + 1]
     polys[row, 0] += rows[phase, row, 2 * n + 2] * acceleration + rows[phase, row, 2 * n + 3] * side
     polys[row, 1] += rows[phase, row, 2 * n + 2] * slope * step
 

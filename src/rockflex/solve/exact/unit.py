@@ -57,6 +57,19 @@ def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, lo
 
 
 @kernel
+def raise_to(
+    rows: Array, phase: int, row: int, acceleration: float, side: float, time: float, log: Log, room: Scratch
+) -> None:
+    """Raise a row's peak to its magnitude in the present state: all that a row without an inner peak needs."""
+    value = rows[phase, row, room.state.size] * acceleration + rows[phase, row, room.state.size + 1] * side
+    for i in range(room.state.size):
+        value += rows[phase, row, i] * room.state[i]
+    if abs(value) > log.peaks[row]:
+        log.peaks[row] = abs(value)
+        log.times[row] = time
+
+
+@kernel
 def rocking_exit(polys: Array, side: float, lift: float, onset: bool, span: float) -> float:
     """Where the rotation returns to zero; -1 where it never left. At an onset its zeros at 0 are divided out."""
     work, terms = polys.shape[0] - 1, polys.shape[1]
@@ -92,7 +105,12 @@ def contact_exit(polys: Array, resistance: float, start: float, span: float) -> 
     exit_at, exit_side = np.inf, 0.0
     if math.isinf(resistance):
         return exit_at, exit_side
+    play = 0.0
+    for k in range(1, polys.shape[1]):
+        play += abs(polys[0, k])
     for side in (1.0, -1.0):
+        if resistance + side * polys[0, 0] > play:
+            continue
         for k in range(polys.shape[1]):
             polys[work, k] = side * polys[0, k]
         polys[work, 0] += resistance
@@ -114,11 +132,12 @@ def cross_unit(
     room: Scratch,
     nodes: Array,
     count: int,
-) -> tuple[int, float, Array, int]:
-    """Carry `room.state` over `step` through all events; return status, side, nodes and their count."""
+) -> tuple[int, float, int]:
+    """Carry `room.state` over `step` through all events; return status, side and the count of nodes."""
     n = system.physics.omega2.size
     resistance, inertia = system.physics.resistance, system.physics.inertia
     u, resume, lift, onset = 0.0, 0.0, np.nan, False
+    probed = True  # `room.doubt` speaks of the motion up to the first event only
     while True:
         phase = ROCKING if side != 0.0 else CONTACT
         span = 1.0 - u
@@ -130,19 +149,19 @@ def cross_unit(
         if side != 0.0:
             stop = rocking_exit(room.polys, side, lift, onset, span)
             if stop < 0.0:
-                side, lift, onset, resume = 0.0, np.nan, False, RESUME
+                side, lift, onset, resume, probed = 0.0, np.nan, False, RESUME, False
                 continue
             if onset:
                 log.tally[UPLIFTS] += 1
                 log.tally[EVENTS] += 1
-                nodes, count = append(nodes, count, now, 0.0, here, room.state)
-                nodes, count = append(nodes, count, now, side, here, room.state)
+                count = append(nodes, count, now, 0.0, here, room.state)
+                count = append(nodes, count, now, side, here, room.state)
             tips = overturning(room.polys, side, span)
         else:
             excess = abs(room.polys[0, 0]) - resistance
             if resume == 0.0 and excess > 0.0:
                 side = -1.0 if room.polys[0, 0] > 0.0 else 1.0
-                lift, onset = side * excess / inertia, True
+                lift, onset, probed = side * excess / inertia, True, False
                 continue
             stop, next_side = contact_exit(room.polys, resistance, resume, span)
         tipped = tips < stop and tips < span
@@ -153,12 +172,16 @@ def cross_unit(
             stop = span
         if side != 0.0:
             raise_peak(room.polys, 0, stop, now, step, log)
-        for f in range(1, log.peaks.size):
-            row_series(system.plain_rows, phase, f, room.series, here, slope, side, step, room.polys)
-            raise_peak(room.polys, f, stop, now, step, log)
         advance(room.series, stop, step, room.state)
+        for f in range(1, log.peaks.size):
+            if not probed or room.doubt[f]:
+                row_series(system.plain_rows, phase, f, room.series, here, slope, side, step, room.polys)
+                raise_peak(room.polys, f, stop, now, step, log)
+            else:
+                there = here + slope * step * stop
+                raise_to(system.plain_rows, phase, f, there, side, now + step * stop, log, room)
         if ends:
-            return CROSSED, side, nodes, count
+            return CROSSED, side, count
         u += stop
         here = acceleration + slope * step * u
         now = time + step * u
@@ -166,15 +189,15 @@ def cross_unit(
             log.peaks[0] = HALF_TURN
             log.times[0] = now
             room.state[2 * n] = side * HALF_TURN
-            nodes, count = append(nodes, count, now, side, here, room.state)
-            return OVERTURNED, side, nodes, count
+            count = append(nodes, count, now, side, here, room.state)
+            return OVERTURNED, side, count
         room.state[2 * n] = 0.0
         if side != 0.0:
-            nodes, count = append(nodes, count, now, side, here, room.state)
+            count = append(nodes, count, now, side, here, room.state)
             for i in range(n):
                 room.state[n + i] += system.physics.height[i] * room.state[2 * n + 1]
             room.state[2 * n + 1] = 0.0
-            nodes, count = append(nodes, count, now, 0.0, here, room.state)
+            count = append(nodes, count, now, 0.0, here, room.state)
             log.tally[IMPACTS] += 1
             lift, onset, resume = np.nan, False, 0.0
         else:
@@ -183,9 +206,9 @@ def cross_unit(
             if resume > 0.0 and stop == resume:
                 excess = max(abs(evaluate(room.polys, 0, stop)[0]) - resistance, 0.0)
             lift, onset, resume = next_side * excess / inertia, True, 0.0
-        side = next_side
+        side, probed = next_side, False
         if log.tally[EVENTS] > MOST_EVENTS:
-            return CHATTER, side, nodes, count
+            return CHATTER, side, count
 
 
 @kernel
