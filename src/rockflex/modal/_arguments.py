@@ -45,10 +45,7 @@ def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Float:
         return ratios
     ratios = finite_vector(name, values, "fractions of critical damping")
     if ratios.size != n_modes:
-        message = (
-            f"{name} must be one number, or one for each of the {n_modes} modes, "
-            f"but {ratios.size} were given."
-        )
+        message = f"{name} must be one number, or one for each of the {n_modes} modes, but {ratios.size} were given."
         raise InputError(message)
     outside = np.flatnonzero((ratios < 0.0) | (ratios >= 1.0))
     if outside.size:

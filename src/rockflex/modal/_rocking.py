@@ -154,10 +154,7 @@ def _check_modes(modes: dict[str, Float]) -> None:
         raise InputError(message)
     for name, values in modes.items():
         if values.size != omega.size:
-            message = (
-                f"{name} must hold one value a mode, as omega does ({omega.size}), "
-                f"but {values.size} were given."
-            )
+            message = f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given."
             raise InputError(message)
     for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
         if values.min() <= 0.0:

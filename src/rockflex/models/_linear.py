@@ -1,73 +1,78 @@
 """The simplified models: linear in contact, linear while rocking, joined by guards and jumps (Eqs. 15, 23-25)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex.modal import RockingProperties
 
 __all__ = ["LinearModel"]
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class LinearModel:
-    """N oscillators on a base that may uplift: the parameters of Eqs. 15, 23, 24 and 25.
+    """N modes on a base that may uplift: Eqs. 15, 23, 24 and 25 as linear functionals.
+
+    Every functional, or *row*, runs over ``[D_1..D_N, D'_1..D'_N, θ, θ', a, s]``: the state, the ground
+    acceleration and the side of rocking (s = +1 about the right pivot, -1 about the left one, 0 in contact).
 
     Parameters
     ----------
     label
         The model's name, such as ``"2DOF-S"``.
-    omega, zeta
-        Circular frequencies (rad/s) and damping ratios, shape (N,).
-    mass, height
-        Effective modal masses m* (kg) and heights h* (m), shape (N,).
-    i_theta
-        Rotational inertia about a pivot, kg m².
-    gravity_stiffness
-        L_0^r g, N m.
-    first_moment
-        L_0^r, kg m.
-    resisting_moment
-        m_tot g B, N m; infinite on a base that cannot lift.
+    properties
+        The structure's parameters, with the modes of this model alone.
+    lifts
+        Whether the base can lift; if not, this is the structure on a fixed base.
     """
 
     label: str
-    omega: Array
-    zeta: Array
-    mass: Array
-    height: Array
-    i_theta: float
-    first_moment: float
-    gravity_stiffness: float
-    resisting_moment: float
+    properties: RockingProperties
+    lifts: bool = True
+    free_inertia: float = field(init=False)
+    """I_θ - Σ m* h*², the inertia that is left to the rotation while the modes move freely (kg m²)."""
+
+    def __post_init__(self) -> None:
+        p = self.properties
+        object.__setattr__(self, "free_inertia", p.i_theta - float(np.sum(p.effective_mass * p.effective_height**2)))
 
     @property
-    def free_inertia(self) -> float:
-        """I_θ - Σ m* h*², the inertia that is left to rotation when the modes do not hold it (kg m²)."""
-        return self.i_theta - float(np.sum(self.mass * self.height**2))
+    def resistance(self) -> float:
+        """Overturning moment at which the base lifts, m_tot g B (Eq. 24), in N m; infinite where it cannot."""
+        return self.properties.resisting_moment if self.lifts else np.inf
 
     def contact_moment(self) -> Array:
-        """Overturning moment in contact (Eq. 24) as a row over [D.., D'.., θ, θ', a, s], shape (2N + 4,)."""
-        arm = self.mass * self.height
-        return np.concatenate(
-            (-arm * self.omega**2, -arm * 2.0 * self.zeta * self.omega, [0.0, 0.0, self.first_moment - arm.sum(), 0.0])
-        )
+        """Overturning moment in contact, the left-hand side of Eq. 24, in N m: a row, shape (2N + 4,)."""
+        p = self.properties
+        arm = p.effective_mass * p.effective_height
+        restoring = np.concatenate((arm * p.omega**2, arm * 2.0 * p.zeta * p.omega))
+        return np.concatenate((-restoring, [0.0, 0.0, p.l0r - arm.sum(), 0.0]))
 
     def angular_acceleration(self) -> Array:
-        """θ'' while rocking (Eq. 23 with D'' eliminated) as a row over [D.., D'.., θ, θ', a, s], shape (2N + 4,)."""
+        """θ'' while rocking, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (2N + 4,)."""
         row = -self.contact_moment()
-        n = self.omega.size
-        row[2 * n] = self.gravity_stiffness
-        row[2 * n + 3] = -self.resisting_moment
+        row[-4] = self.properties.l0r * GRAVITY
+        row[-1] = -self.properties.resisting_moment
         return row / self.free_inertia
 
     def modal_accelerations(self, *, rocking: bool) -> Array:
-        """D'' of each mode (Eq. 15, or Eq. 23 while rocking) as rows over [D.., D'.., θ, θ', a, s], (N, 2N + 4)."""
-        n = self.omega.size
+        """D'' of every mode, Eq. 15 or (rocking) Eq. 23, in m/s²: rows, shape (N, 2N + 4)."""
+        p = self.properties
+        n = p.n_modes
         rows = np.zeros((n, 2 * n + 4))
-        k = np.arange(n)
-        rows[k, k] = -(self.omega**2)
-        rows[k, n + k] = -2.0 * self.zeta * self.omega
-        rows[:, 2 * n + 2] = -1.0
-        return rows - np.outer(self.height, self.angular_acceleration()) if rocking else rows
+        rows[:, :n] = -np.diag(p.omega**2)
+        rows[:, n : 2 * n] = -np.diag(2.0 * p.zeta * p.omega)
+        rows[:, -2] = -1.0
+        return rows - np.outer(p.effective_height, self.angular_acceleration()) if rocking else rows
+
+    def after_impact(self, state: Array) -> Array:
+        """State [D.., D'.., θ, θ'] after an impact (Eq. 25): D' takes up h* θ', and the rotation ends."""
+        n = self.properties.n_modes
+        after = state.copy()
+        after[n : 2 * n] += self.properties.effective_height * state[-1]
+        after[-2:] = 0.0
+        return after

@@ -43,9 +43,7 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
     values = np.array([number(cells[column], file, line) for line, cells in rows])
     if time_column is None:
         if dt is None:
-            message = (
-                f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01)."
-            )
+            message = f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01)."
             raise InputError(message)
         step = dt
     else:
@@ -78,8 +76,7 @@ def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, lis
             cells.pop()
         if rows and len(cells) != len(rows[0][1]):
             message = (
-                f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, "
-                f"but found {len(cells)}."
+                f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, but found {len(cells)}."
             )
             raise InputError(message)
         rows.append((i, cells))
@@ -155,9 +152,7 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
 def _check_seconds(file: Path, label: str) -> None:
     bracket = BRACKET.search(label)
     if bracket and bracket[1].strip().lower() not in SECONDS:
-        message = (
-            f"{file}: the times are in {bracket[1]!r}, but seconds are expected. Convert the column to s."
-        )
+        message = f"{file}: the times are in {bracket[1]!r}, but seconds are expected. Convert the column to s."
         raise InputError(message)
 
 

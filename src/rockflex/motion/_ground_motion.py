@@ -52,9 +52,7 @@ class GroundMotion:
     name: str = ""
     metadata: RecordInfo | None = None
 
-    def __init__(
-        self, acceleration: ArrayLike, dt: float, name: str = "", metadata: RecordInfo | None = None
-    ) -> None:
+    def __init__(self, acceleration: ArrayLike, dt: float, name: str = "", metadata: RecordInfo | None = None) -> None:
         samples = finite_vector("acceleration", acceleration, "m/s²")
         if samples.size < 3:
             message = (

@@ -290,8 +290,6 @@ def _sine(n: int, turns: float) -> Float:
     return shape
 
 
-def _pulse(
-    kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²"
-) -> GroundMotion:
+def _pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²") -> GroundMotion:
     amplitude = finite("amplitude", amplitude, unit)
     return GroundMotion(amplitude * shape, dt, name=f"{kind} {amplitude:g} {unit}, {detail}")

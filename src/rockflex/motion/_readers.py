@@ -53,9 +53,7 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
         return parse_columns(file, lines, units, dt)
     motion = parse_at2(file, lines)
     if units not in (None, "g"):
-        message = (
-            f"{file} is an AT2 file, in g by definition, but units={units!r} was given. Leave units out."
-        )
+        message = f"{file} is an AT2 file, in g by definition, but units={units!r} was given. Leave units out."
         raise InputError(message)
     if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
         message = f"{file} says DT = {motion.dt:g} s, but dt={dt!r} was given. Leave dt out."

@@ -48,9 +48,7 @@ class ResponseSpectrum:
         return np.divide(2 * np.pi * self.sd, self.period, out=np.zeros_like(self.sd), where=self.period > 0)
 
 
-def response_spectrum(
-    acceleration: Float, dt: float, periods: ArrayLike, damping_ratio: float
-) -> ResponseSpectrum:
+def response_spectrum(acceleration: Float, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
     """Response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
     period = finite_vector("periods", periods, "s")
     bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))

@@ -97,9 +97,7 @@ class Suite(Sequence[GroundMotion]):
         raise InputError(message)
 
 
-def read_suite(
-    paths: str | Path | Iterable[str | Path], units: str | None = None, dt: float | None = None
-) -> Suite:
+def read_suite(paths: str | Path | Iterable[str | Path], units: str | None = None, dt: float | None = None) -> Suite:
     """Read records into a suite, sorted by file name.
 
     Parameters

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rockflex._constants import GRAVITY
 from rockflex._errors import SolverError
 from rockflex.models import LinearModel
 from rockflex.solve._solution import Solution
@@ -11,12 +12,11 @@ from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log, Physics, System, scratch
 from rockflex.solve.exact.run import SETTLED, UNSETTLED, run
-from rockflex.solve.exact.tables import tabulate
+from rockflex.solve.exact.tables import propagate, tabulate
 from rockflex.solve.exact.unit import CHATTER, IMPACTS, OVERTURNED, UPLIFTS
 
 __all__ = ["ExactEngine"]
 
-NO_NODES = np.empty((0, 0))
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
 
 
@@ -34,13 +34,12 @@ class ExactEngine:
     def __init__(self, model: LinearModel, contact_rows: Array, rocking_rows: Array) -> None:
         self.model = model
         self._physics = _physics(model)
-        rotation = np.zeros(2 * model.omega.size + 4)
+        rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
-        self._rows = np.stack(
-            (np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows)))
-        )
+        self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
         self._contact = contact_basis(self._physics, self._rows[0])
-        self._rocking = rocking_basis(self._physics, self._rows[1])
+        # A base that cannot lift never rocks; its second phase only fills the place.
+        self._rocking = rocking_basis(self._physics, self._rows[1]) if model.lifts else self._contact
         self._systems: dict[float, System] = {}
 
     def system(self, dt: float) -> System:
@@ -67,19 +66,23 @@ class ExactEngine:
         SolverError
             If impacts accumulate without end, or the motion does not settle.
         """
-        n = self.model.omega.size
-        now = np.zeros(2 * n + 2) if state is None else state.copy()
-        side = float(np.sign(now[-2]) or np.sign(now[-1]))
+        start = np.zeros(2 * self.model.properties.n_modes + 2) if state is None else state
+        side = float(np.sign(start[-2]) or np.sign(start[-1]))
         settle = free_vibration is None
         free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
-        rows = self._rows.shape[1]
         system = self.system(dt)
-        log = Log(np.zeros(rows), np.zeros(rows), np.zeros(3, dtype=np.int64))
-        nodes = np.empty((acceleration.size + 64, HEADER + now.size)) if history else NO_NODES
-        room = scratch(now, rows, system.order)
-        status, samples, count = run(system, acceleration, QUIET, dt, free, settle, side, log, room, nodes)
+        rows = self._rows.shape[1]
+        room_for = acceleration.size + 64 + (0 if settle else free) if history else 0
+        while True:
+            log = Log(np.zeros(rows), np.zeros(rows), np.zeros(3, dtype=np.int64))
+            nodes = np.empty((room_for, HEADER + start.size))
+            room = scratch(start.copy(), rows, system.order)
+            status, samples, count = run(system, acceleration, QUIET, dt, free, settle, side, log, room, nodes)
+            if not history or count <= room_for:
+                break
+            room_for = count
         if status in (CHATTER, UNSETTLED):
-            raise SolverError(self._complaint(status, samples * dt, now))
+            raise SolverError(self._complaint(status, samples * dt, room.state))
         end = samples * dt if status != OVERTURNED else float(log.times[0])
         return Solution(
             overturned=status == OVERTURNED,
@@ -92,11 +95,33 @@ class ExactEngine:
             nodes=nodes[:count] if history else None,
         )
 
+    @property
+    def fastest(self) -> float:
+        """Largest eigenvalue magnitude of both phases, rad/s."""
+        return max(self._contact.fastest, self._rocking.fastest)
+
+    def between(self, nodes: Array, fraction: float) -> Array:
+        """States at one fraction of the way from every node to the next, shape (n_nodes - 1, 2N + 2)."""
+        steps = np.diff(nodes[:, 0])
+        # Samples' distances differ by the rounding of their times; alike, they share one propagator.
+        steps = np.round(steps, 12 - math.ceil(math.log10(max(float(nodes[-1, 0]), 1.0))))
+        safe = np.where(steps > 0.0, steps, 1.0)
+        slopes = np.where(steps > 0.0, np.diff(nodes[:, 2]) / safe, 0.0)
+        start = np.column_stack((nodes[:-1, 2], slopes, nodes[:-1, 1]))
+        end = start.copy()
+        end[:, 0] += fraction * steps * slopes
+        states = nodes[:-1, HEADER:].copy()
+        for basis, chosen in ((self._contact, start[:, 2] == 0.0), (self._rocking, start[:, 2] != 0.0)):
+            if chosen.any():
+                w = states[chosen] @ basis.inverse.T - start[chosen] @ basis.forced
+                moved = propagate(basis, w, fraction * steps[chosen]) + end[chosen] @ basis.forced
+                states[chosen] = moved @ basis.basis.T
+        return states
+
     def _patience(self) -> float:
         """Longest free vibration that is waited for, s."""
-        model = self.model
-        slowest = 2.0 * math.pi / float(model.omega.min())
-        return 2000.0 * slowest + 200.0 * math.sqrt(model.i_theta / model.gravity_stiffness)
+        p = self.model.properties
+        return 2000.0 * 2.0 * math.pi / float(p.omega.min()) + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
     def _complaint(self, status: int, time: float, state: Array) -> str:
         values = ", ".join(f"{value:.6g}" for value in state)
@@ -113,13 +138,14 @@ class ExactEngine:
 
 
 def _physics(model: LinearModel) -> Physics:
+    p = model.properties
     return Physics(
-        omega2=model.omega**2,
-        damping=2.0 * model.zeta * model.omega,
-        height=np.ascontiguousarray(model.height),
-        mass=np.ascontiguousarray(model.mass),
+        omega2=p.omega**2,
+        damping=2.0 * p.zeta * p.omega,
+        height=p.effective_height.copy(),  # writable, as the kernels are compiled for
+        mass=p.effective_mass.copy(),
         inertia=model.free_inertia,
-        gravity=model.gravity_stiffness,
-        resistance=model.resisting_moment,
-        drive_arm=float(np.sum(model.mass * model.height)) - model.first_moment,
+        gravity=p.l0r * GRAVITY,
+        resistance=model.resistance,
+        drive_arm=float(np.sum(p.effective_mass * p.effective_height)) - p.l0r,
     )

@@ -23,9 +23,7 @@ def to_state(system: System, phase: int, acceleration: float, slope: float, side
 
 
 @kernel
-def to_coordinates(
-    system: System, phase: int, acceleration: float, slope: float, side: float, room: Scratch
-) -> None:
+def to_coordinates(system: System, phase: int, acceleration: float, slope: float, side: float, room: Scratch) -> None:
     """Coordinates of a phase from the state."""
     for k in range(room.w.size):
         forced = system.forced[phase, 0, k] * acceleration + system.forced[phase, 1, k] * slope

@@ -1,4 +1,4 @@
-"""The question asked of every step: can an event or a new peak hide inside it?"""
+"""The question that is asked of every step, whether an event or a new peak can hide inside it."""
 
 import math
 
@@ -27,7 +27,14 @@ def set_limits(side: float, resistance: float, log: Log, room: Scratch) -> None:
 
 @kernel
 def examine(
-    system: System, phase: int, level: int, side: float, here: float, there: float, slope: float, room: Scratch
+    system: System,
+    phase: int,
+    level: int,
+    side: float,
+    here: float,
+    there: float,
+    slope: float,
+    room: Scratch,
 ) -> None:
     """Carry `room.w` over a step into `room.w_end`, with the rows at both ends and the pairs' norms."""
     pairs = room.norms.size

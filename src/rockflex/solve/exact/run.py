@@ -9,7 +9,7 @@ from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.sample import cross_sample
-from rockflex.solve.exact.unit import CROSSED
+from rockflex.solve.exact.unit import CROSSED, raise_to_state
 
 __all__ = ["SETTLED", "UNSETTLED", "run"]
 
@@ -19,11 +19,11 @@ SETTLED, UNSETTLED = 2, -2
 @kernel
 def settled(system: System, room: Scratch, log: Log) -> bool:
     """True where free vibration in contact can neither lift the base again nor raise a peak."""
-    w, hold = room.w, system.hold
+    pairs = system.hold.shape[1]
     for f in range(log.peaks.size):
         bound = 0.0
-        for k in range(hold.shape[1]):
-            bound += hold[f, k] * math.hypot(w[k], w[hold.shape[1] + k])
+        for k in range(pairs):
+            bound += system.hold[f, k] * math.hypot(room.w[k], room.w[pairs + k])
         if bound > (system.physics.resistance if f == 0 else log.peaks[f]):
             return False
     return True
@@ -51,8 +51,9 @@ def run(
         to_coordinates(system, ROCKING if side != 0.0 else CONTACT, piece[0], 0.0, side, room)
         if offset > 0 and settle and side == 0.0 and settled(system, room, log):
             return SETTLED, offset, count
-        if piece[0] != last:
+        if piece[0] != last:  # the start, or a jump of the acceleration at the record's end
             count = append(nodes, count, offset * dt, side, piece[0], room.state)
+            raise_to_state(system, side, piece[0], offset * dt, log, room)
         status, side, count = cross_piece(system, piece, dt, offset, side, log, room, nodes, count)
         if status != CROSSED:
             return status, offset, count
@@ -80,9 +81,7 @@ def cross_piece(
     slope, fresh, i, last = 0.0, True, 0, piece.size - 1
     while True:
         before = i
-        i, slope, count = march(
-            system, piece, dt, i, offset, side, slope, log, room, nodes, count
-        )
+        i, slope, count = march(system, piece, dt, i, offset, side, slope, log, room, nodes, count)
         fresh = fresh and i == before
         if i < last:
             time = (offset + i) * dt

@@ -55,9 +55,7 @@ def cross_sample(
         if not safe and not fresh:
             to_state(system, phase, here, slope, side, room)
         if not safe and room.doubt[0]:
-            status, side, count = cross_unit(
-                system, side, here, slope, step, now, log, room, nodes, count
-            )
+            status, side, count = cross_unit(system, side, here, slope, step, now, log, room, nodes, count)
             fresh, tuned = True, False
             if status != CROSSED:
                 return status, side, fresh, count

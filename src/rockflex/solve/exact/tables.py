@@ -13,7 +13,7 @@ from scipy.linalg import expm
 from rockflex.solve.exact.basis import Basis
 from rockflex.solve.exact.layout import Array, Physics, System
 
-__all__ = ["tabulate"]
+__all__ = ["propagate", "tabulate"]
 
 NONE = np.empty((0, 0, 0))
 
@@ -22,7 +22,7 @@ def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis
     """A system for one time step; `plain_rows` (2, F, 2K + 2)."""
     fastest = max(contact.fastest, rocking.fastest)
     halvings = max(0, math.ceil(math.log2(fastest * dt)))  # then no mode turns by more than one radian
-    steps = dt / 2.0 ** np.arange(halvings + 1)
+    steps: Array = dt * 0.5 ** np.arange(halvings + 1, dtype=np.float64)
     sag, swing = zip(*(_bounds(basis, steps) for basis in (contact, rocking)), strict=True)
     return System(
         physics=physics,
@@ -99,3 +99,16 @@ def _dense_bounds(basis: Basis, steps: Array) -> tuple[Array, Array]:
         curvature[level] = _pair_norm(worst)
     h = steps[:, None, None]
     return curvature * h**2 / 8.0, curvature * h
+
+
+def propagate(basis: Basis, w: Array, steps: Array) -> Array:
+    """Coordinates after steps of any length, one a row of `w` (n, 2K)."""
+    if basis.dense:
+        return np.stack([expm(basis.matrix * step) @ row for step, row in zip(steps, w, strict=True)])
+    half = w.shape[1] // 2
+    lengths, which = np.unique(steps, return_inverse=True)
+    blocks = _blocks(basis, lengths)[which]
+    first, second = w[:, :half], w[:, half:]
+    return np.concatenate(
+        (blocks[:, 0] * first + blocks[:, 1] * second, blocks[:, 2] * first + blocks[:, 3] * second), axis=1
+    )

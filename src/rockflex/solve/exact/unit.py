@@ -14,7 +14,16 @@ from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, S
 from rockflex.solve.exact.probe import HALF_TURN, raise_peaks
 from rockflex.solve.exact.series import advance, bend, evaluate, expand, first_descent, row_series
 
-__all__ = ["CHATTER", "CROSSED", "IMPACTS", "OVERTURNED", "UPLIFTS", "cross_unit", "survey_unit"]
+__all__ = [
+    "CHATTER",
+    "CROSSED",
+    "IMPACTS",
+    "OVERTURNED",
+    "UPLIFTS",
+    "cross_unit",
+    "raise_to_state",
+    "survey_unit",
+]
 
 CROSSED, OVERTURNED, CHATTER = 0, 1, -1
 UPLIFTS, IMPACTS, EVENTS = 0, 1, 2  # places in the tally; EVENTS counts those of the present sample
@@ -67,6 +76,14 @@ def raise_to(
     if abs(value) > log.peaks[row]:
         log.peaks[row] = abs(value)
         log.times[row] = time
+
+
+@kernel
+def raise_to_state(system: System, side: float, acceleration: float, time: float, log: Log, room: Scratch) -> None:
+    """Raise all peaks to the present state."""
+    phase = ROCKING if side != 0.0 else CONTACT
+    for f in range(0 if side != 0.0 else 1, log.peaks.size):
+        raise_to(system.plain_rows, phase, f, acceleration, side, time, log, room)
 
 
 @kernel

@@ -1,0 +1,34 @@
+from ._errors import InputError as InputError
+from ._errors import SolverError as SolverError
+from .modal import FloorModes as FloorModes
+from .modal import ModalProperties as ModalProperties
+from .modal import RockingProperties as RockingProperties
+from .modal import modal_properties as modal_properties
+from .modal import rocking_properties as rocking_properties
+from .models import Model as Model
+from .motion import GroundMotion as GroundMotion
+from .motion import RecordInfo as RecordInfo
+from .motion import Suite as Suite
+from .motion import half_sine_pulse as half_sine_pulse
+from .motion import load_suite as load_suite
+from .motion import mavroeidis_papageorgiou_pulse as mavroeidis_papageorgiou_pulse
+from .motion import one_cosine_pulse as one_cosine_pulse
+from .motion import one_sine_pulse as one_sine_pulse
+from .motion import quiet_motion as quiet_motion
+from .motion import read_at2 as read_at2
+from .motion import read_motion as read_motion
+from .motion import read_suite as read_suite
+from .motion import rectangular_pulse as rectangular_pulse
+from .motion import ricker_pulse as ricker_pulse
+from .motion import suite_names as suite_names
+from .response import EnergyLedger as EnergyLedger
+from .response import FloorPeaks as FloorPeaks
+from .response import History as History
+from .response import Response as Response
+from .structure import Frame as Frame
+from .structure import LumpedStructure as LumpedStructure
+from .study import InitialState as InitialState
+from .study import simulate as simulate
+from .study import simulate_many as simulate_many
+
+__version__: str

@@ -1,0 +1,60 @@
+"""One map over tasks, on threads: the kernels hold no interpreter lock."""
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from typing import TypeVar
+
+from rockflex._errors import InputError
+
+__all__ = ["map_threads"]
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+
+def map_threads(
+    function: Callable[[Task], Result], tasks: Iterable[Task], workers: int | None = None
+) -> Iterator[Result]:
+    """Yield `function(task)` of every task, in order of completion; few tasks wait at a time.
+
+    Parameters
+    ----------
+    function
+        Called on one task; an exception ends the map.
+    tasks
+        Read as workers become free, so it may be endless.
+    workers
+        Number of threads; None for one a core, 1 for no threads at all (to debug).
+
+    Raises
+    ------
+    InputError
+        If `workers` is not a positive whole number.
+    """
+    count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
+    if workers is not None:
+        if not isinstance(workers, int) or workers < 1:  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = f"workers must be a positive whole number, but {workers!r} was given."
+            raise InputError(message)
+        count = workers
+    if count == 1:
+        yield from map(function, tasks)
+        return
+    queue = iter(tasks)
+    with ThreadPoolExecutor(count) as pool:
+        running: set[Future[Result]] = set()
+        try:
+            while True:
+                for task in queue:
+                    running.add(pool.submit(function, task))
+                    if len(running) >= 2 * count:
+                        break
+                if not running:
+                    return
+                done, running = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    yield future.result()
+        finally:
+            for future in running:
+                future.cancel()

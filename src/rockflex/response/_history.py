@@ -1,0 +1,129 @@
+"""The time history of one run."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError
+from rockflex.models import LinearModel
+from rockflex.response._energy import EnergyLedger, energy_ledger
+from rockflex.response._observables import floor_observables, global_observables
+
+__all__ = ["History"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """States at the record's samples and at both sides of every event.
+
+    Parameters
+    ----------
+    model
+        The model that ran.
+    nodes
+        Shape (n_nodes, 2N + 5); a row is time (s), side of rocking, ground acceleration (m/s²), D (m), D' (m/s),
+        θ (rad), θ' (rad/s). An event is two rows at the same time.
+    """
+
+    model: LinearModel
+    nodes: Array
+
+    @property
+    def time(self) -> Array:
+        """Time of the nodes in s, shape (n_nodes,); an event's time stands twice."""
+        return self.nodes[:, 0]
+
+    @property
+    def side(self) -> Array:
+        """+1 while rocking about the right pivot (θ > 0), -1 about the left one, 0 in contact."""
+        return self.nodes[:, 1]
+
+    @property
+    def ground_acceleration(self) -> Array:
+        """Ground acceleration in m/s², shape (n_nodes,)."""
+        return self.nodes[:, 2]
+
+    @property
+    def modal_displacement(self) -> Array:
+        """D_n in m, shape (n_nodes, N)."""
+        return self.nodes[:, 3 : 3 + self.model.properties.n_modes]
+
+    @property
+    def modal_velocity(self) -> Array:
+        """D'_n in m/s, shape (n_nodes, N)."""
+        n = self.model.properties.n_modes
+        return self.nodes[:, 3 + n : 3 + 2 * n]
+
+    @property
+    def rotation(self) -> Array:
+        """θ in rad, shape (n_nodes,)."""
+        return self.nodes[:, -2]
+
+    @property
+    def rotation_velocity(self) -> Array:
+        """θ' in rad/s, shape (n_nodes,)."""
+        return self.nodes[:, -1]
+
+    @property
+    def top_displacement(self) -> Array:
+        """u_top = Σ Γ_n φ_top,n D_n relative to the rotating base, in m, shape (n_nodes,)."""
+        return self._global[:, 0]
+
+    @property
+    def base_moment(self) -> Array:
+        """M_b = Σ m*_n h*_n ω_n² D_n in N m, shape (n_nodes,)."""
+        return self._global[:, 1]
+
+    @property
+    def base_shear(self) -> Array:
+        """V_b = Σ m*_n ω_n² D_n in N, shape (n_nodes,)."""
+        return self._global[:, 2]
+
+    @property
+    def uplift_times(self) -> Array:
+        """Times at which the base left the ground, in s, shape (n_uplifts,)."""
+        return self.time[1:][(self.side[:-1] == 0.0) & (self.side[1:] != 0.0)]
+
+    @property
+    def impact_times(self) -> Array:
+        """Times at which the rotation returned to zero, in s, shape (n_impacts,)."""
+        return self.time[1:][(self.side[:-1] != 0.0) & (self.side[1:] == 0.0)]
+
+    @property
+    def story_drift(self) -> Array:
+        """Displacement of each floor less that of the one below, relative to the base, in m, (n_nodes, N_floors)."""
+        return self._floors[0]
+
+    @property
+    def story_shear(self) -> Array:
+        """Sum of the elastic forces from each floor up, in N, shape (n_nodes, N_floors)."""
+        return self._floors[1]
+
+    @property
+    def floor_acceleration(self) -> Array:
+        """Total horizontal acceleration a + h θ'' + Σ Γ φ D'' of each floor, in m/s², (n_nodes, N_floors)."""
+        return self._floors[2]
+
+    @cached_property
+    def energy(self) -> EnergyLedger:
+        """Where the energy is, where it came from and where it went."""
+        return energy_ledger(self.model, self.nodes)
+
+    @cached_property
+    def _global(self) -> Array:
+        return global_observables(self.model).evaluate(self.nodes)
+
+    @cached_property
+    def _floors(self) -> list[Array]:
+        floors = self.model.properties.floors
+        if floors is None:
+            message = (
+                "The structure's properties name no floors, so there are no story drifts, story shears or floor "
+                "accelerations. Simulate a Frame or a LumpedStructure, or give RockingProperties its floors."
+            )
+            raise InputError(message)
+        return np.split(floor_observables(self.model, floors).evaluate(self.nodes), 3, axis=1)
