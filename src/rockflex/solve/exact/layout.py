@@ -48,7 +48,9 @@ class System(NamedTuple):
     blocks: Array  # (2, J + 1, 4, K): exp(B h) of each pair, row by row
     dense: Array  # (J + 1, 2K, 2K): exp(B h) of rocking where it does not uncouple; else (0, 0, 0)
     sag: Array  # (2, J + 1, F, K): bound of |row - its chord| over a step, times |w| of the pair
-    swing: Array  # (2, J + 1, F, K): bound of |row' - its value at either end|, times |w| of the pair
+    swing: Array  # (2, J + 1, F, K): bound of |row' - its chord|, likewise
+    ripple: Array  # (2, J + 1, F, K): bound of |row - its cubic through both ends' values and slopes|, likewise
+    steps: Array  # (J + 1,): dt / 2^j
     hold: Array  # (F, K): bound of |row| in contact for ever after, times |w| of the pair
     order: int  # of the power series that converge over the finest step
 

@@ -5,7 +5,7 @@ import math
 from rockflex._kernel import kernel
 from rockflex.solve.exact.layout import ROCKING, Array, Log, Scratch, System
 
-__all__ = ["HALF_TURN", "examine", "probe", "raise_peaks", "set_limits"]
+__all__ = ["HALF_TURN", "cubic_range", "examine", "probe", "raise_peaks", "set_limits"]
 
 HALF_TURN = 0.5 * math.pi
 
@@ -66,8 +66,9 @@ def examine(
 def probe(system: System, phase: int, level: int, side: float, slope: float, room: Scratch) -> bool:
     """True where no event and no peak can hide in the step examined; else `room.doubt` marks the rows.
 
-    A row within `sag` of its chord is settled at once; else a slope that outweighs `swing` at either end proves
-    that the row has its extremes at the ends, where `raise_peaks` picks them up.
+    A row within `sag` of its chord is settled at once. Else a slope that keeps its sign, within `swing` of
+    its chord, proves that the row has its extremes at the ends, where `raise_peaks` picks them up; and a row that turns
+    is settled where it stays within `ripple` of the cubic through both ends.
     """
     pairs = room.norms.size
     count = pairs if phase == ROCKING else pairs - 1
@@ -81,16 +82,21 @@ def probe(system: System, phase: int, level: int, side: float, slope: float, roo
         low, high = min(first, last), max(first, last)
         if low - sag >= room.lower[f] and high + sag <= room.upper[f]:
             continue
-        swing = 0.0
+        swing = ripple = 0.0
         before = after = system.row_forcing[phase, f, 0] * slope
         for k in range(count):
             swing += system.swing[phase, level, f, k] * room.norms[k]
+            ripple += system.ripple[phase, level, f, k] * room.norms[k]
             before += system.slope_rows[phase, f, k] * room.w[k]
             before += system.slope_rows[phase, f, pairs + k] * room.w[pairs + k]
             after += system.slope_rows[phase, f, k] * room.w_end[k]
             after += system.slope_rows[phase, f, pairs + k] * room.w_end[pairs + k]
-        hidden = abs(before) <= swing and abs(after) <= swing
-        if f == 0 and not hidden:
+        hidden = min(before, after) <= swing and max(before, after) >= -swing
+        if hidden:
+            step = system.steps[level]
+            low, high = cubic_range(first, last, before * step, after * step)
+            hidden = low - ripple < room.lower[f] or high + ripple > room.upper[f]
+        elif f == 0:
             if side == 0.0:
                 hidden = low < room.lower[0] or high > room.upper[0]
             else:
@@ -98,6 +104,24 @@ def probe(system: System, phase: int, level: int, side: float, slope: float, roo
         room.doubt[f] = hidden
         safe = safe and not hidden
     return safe
+
+
+@kernel
+def cubic_range(first: float, last: float, before: float, after: float) -> tuple[float, float]:
+    """Least and largest value over [0, 1] of the cubic with the given end values and end slopes."""
+    low, high = min(first, last), max(first, last)
+    square = 3.0 * (last - first) - 2.0 * before - after
+    cube = before + after - 2.0 * (last - first)
+    discriminant = square * square - 3.0 * cube * before
+    if discriminant <= 0.0:
+        return low, high
+    pivot = -square - math.copysign(math.sqrt(discriminant), square)  # both roots without cancellation
+    for top, bottom in ((before, pivot), (pivot, 3.0 * cube)):
+        if bottom != 0.0 and 0.0 < top / bottom < 1.0:
+            u = top / bottom
+            value = first + u * (before + u * (square + u * cube))
+            low, high = min(low, value), max(high, value)
+    return low, high
 
 
 @kernel

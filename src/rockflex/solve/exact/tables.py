@@ -1,8 +1,9 @@
 """Propagators and curvature bounds of both phases for the steps dt, dt/2, ... dt/2^J.
 
 The bounds say where an event or a peak can hide between two instants. Over a step h a row leaves its chord by at
-most h²/8 max|row''|, and for one pair of coordinates |row''| ≤ |row B²| |w| exp(growth); a pair that turns
-more than once in the step is bounded by its amplitude instead.
+most h²/8 max|row''|, its slope leaves its own chord by h²/8 max|row'''|, and the row leaves the cubic through
+the values and slopes at both ends by h⁴/384 max|row''''|. For one pair of coordinates |row''| ≤ |row B²| |w| exp(growth),
+and so on; a pair that turns more than once in the step is bounded by its amplitude instead.
 """
 
 import math
@@ -23,7 +24,7 @@ def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis
     fastest = max(contact.fastest, rocking.fastest)
     halvings = max(0, math.ceil(math.log2(fastest * dt)))  # then no mode turns by more than one radian
     steps: Array = dt * 0.5 ** np.arange(halvings + 1, dtype=np.float64)
-    sag, swing = zip(*(_bounds(basis, steps) for basis in (contact, rocking)), strict=True)
+    sag, swing, ripple = zip(*(_bounds(basis, steps) for basis in (contact, rocking)), strict=True)
     return System(
         physics=physics,
         plain_rows=plain_rows,
@@ -37,6 +38,8 @@ def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis
         dense=np.stack([expm(rocking.matrix * h) for h in steps]) if rocking.dense else NONE,
         sag=np.stack(sag),
         swing=np.stack(swing),
+        ripple=np.stack(ripple),
+        steps=steps,
         hold=_pair_norm(contact.rows),
         order=_series_order(fastest * float(steps[-1])),
     )
@@ -73,32 +76,36 @@ def _pair_norm(rows: Array) -> Array:
     return np.hypot(rows[..., :half], rows[..., half:])
 
 
-def _bounds(basis: Basis, steps: Array) -> tuple[Array, Array]:
-    """Sag and swing of every row over every step, (J + 1, F, K) each."""
+def _bounds(basis: Basis, steps: Array) -> tuple[Array, Array, Array]:
+    """Sag, swing and ripple of every row over every step, (J + 1, F, K) each."""
     if basis.dense:
         return _dense_bounds(basis, steps)
     h = steps[:, None, None]
     growth = np.exp(np.maximum(basis.roots.real.max(axis=1), 0.0) * h)
     first = basis.rows @ basis.matrix
-    slope, curvature = _pair_norm(first), _pair_norm(first @ basis.matrix)
-    sag = np.minimum(curvature * h**2 / 8.0, 2.0 * _pair_norm(basis.rows)) * growth
-    swing = np.minimum(curvature * h, 2.0 * slope) * growth
-    return sag, swing
+    second = first @ basis.matrix
+    third = second @ basis.matrix
+    fourth = third @ basis.matrix
+    sag = np.minimum(_pair_norm(second) * h**2 / 8.0, 2.0 * _pair_norm(basis.rows)) * growth
+    swing = np.minimum(_pair_norm(third) * h**2 / 8.0, 2.0 * _pair_norm(first)) * growth
+    return sag, swing, _pair_norm(fourth) * h**4 / 384.0 * growth
 
 
-def _dense_bounds(basis: Basis, steps: Array) -> tuple[Array, Array]:
+def _dense_bounds(basis: Basis, steps: Array) -> tuple[Array, Array, Array]:
     """The same from |row B² exp(B t)| on the finest grid, and a norm bound between its points."""
     finest, between = expm(basis.matrix * steps[-1]), expm(np.abs(basis.matrix) * steps[-1])
-    moving = basis.rows @ basis.matrix @ basis.matrix
+    second = basis.rows @ basis.matrix @ basis.matrix
+    third = second @ basis.matrix
+    moving = np.stack((second, third, third @ basis.matrix))
     worst = np.abs(moving) @ between
-    curvature = np.empty((steps.size, moving.shape[0], moving.shape[1] // 2))
+    bounds = np.empty((3, steps.size, second.shape[0], second.shape[1] // 2))
     for level in range(steps.size - 1, -1, -1):
         for _ in range(1 << (steps.size - 1 - level) >> 1):
             moving = moving @ finest
             worst = np.maximum(worst, np.abs(moving) @ between)
-        curvature[level] = _pair_norm(worst)
+        bounds[:, level] = _pair_norm(worst)
     h = steps[:, None, None]
-    return curvature * h**2 / 8.0, curvature * h
+    return bounds[0] * h**2 / 8.0, bounds[1] * h**2 / 8.0, bounds[2] * h**4 / 384.0
 
 
 def propagate(basis: Basis, w: Array, steps: Array) -> Array:
