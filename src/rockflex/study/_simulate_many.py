@@ -1,7 +1,6 @@
 """The cross product of structures, motions, scales and models, one row a run."""
 
 from collections.abc import Iterator, Sequence
-from itertools import islice, product
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -80,10 +79,11 @@ def simulate_many(
     factors = _factors(scales)
     free = free_vibration_time(free_vibration)
     shape = (len(everything), len(records), len(chosen), len(factors))
-    table = _Table(int(np.prod(shape)), keep=output == "history")
+    inner = len(chosen) * len(factors)  # runs of one structure under one motion
+    each = len(records) * inner
+    table = _Table(len(everything) * each, keep=output == "history")
 
     def tasks() -> Iterator[tuple[int, int, int, list[ExactEngine | str | None]]]:
-        each = int(np.prod(shape[1:]))
         for index in range(len(everything)):
             engines: list[ExactEngine | str | None] = [None] * len(chosen)
             for first in range(0, each, CHUNK):
@@ -91,9 +91,9 @@ def simulate_many(
 
     def work(task: tuple[int, int, int, list[ExactEngine | str | None]]) -> None:
         index, first, last, engines = task
-        combinations = product(records, range(len(chosen)), factors)
-        for place, (motion, which, factor) in enumerate(islice(combinations, first, last), start=first):
-            row = index * int(np.prod(shape[1:])) + place
+        for place in range(first, last):
+            row = index * each + place
+            motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
             engine = engines[which]
             if engine is None:
                 engine = engines[which] = _engine(everything[index], chosen[which], output)
@@ -103,7 +103,7 @@ def simulate_many(
             try:
                 state = None if initial is None else initial.state(engine.model)
                 solution = engine.run(
-                    motion.acceleration * factor,
+                    motion.acceleration * factors[factor],
                     motion.dt,
                     free_vibration=free,
                     state=state,

@@ -2,12 +2,16 @@
 
 import math
 
+import numpy as np
+
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
 from rockflex.solve.exact.probe import examine, probe, raise_peaks, set_limits
 
 __all__ = ["march", "to_coordinates", "to_state"]
+
+WHOLE = np.int64(0)  # the level of a whole sample; a bare 0 would have its callees compiled once more
 
 
 @kernel
@@ -80,7 +84,7 @@ def march(
                 room.start[f] = room.end[f]
                 room.end[f] = value
         else:
-            examine(system, phase, 0, side, here, there, slope, room)
+            examine(system, phase, WHOLE, side, here, there, slope, room)
             started = True
         safe = True
         for f in range(room.start.size):
@@ -90,7 +94,7 @@ def march(
             low, high = min(room.start[f], room.end[f]), max(room.start[f], room.end[f])
             safe = safe and low - sag >= room.lower[f] and high + sag <= room.upper[f]
         if not safe:
-            if not probe(system, phase, 0, side, slope, room):
+            if not probe(system, phase, WHOLE, side, slope, room):
                 return i, slope, count
             raise_peaks(room.end, side, (offset + i + 1) * dt, log)
             set_limits(side, system.physics.resistance, log, room)

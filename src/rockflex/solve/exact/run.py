@@ -14,6 +14,7 @@ from rockflex.solve.exact.unit import CROSSED, raise_to_state
 __all__ = ["SETTLED", "UNSETTLED", "run"]
 
 SETTLED, UNSETTLED = 2, -2
+ZERO = np.int64(0)  # a bare 0 has a type of its own, for which every callee would be compiled once more
 
 
 @kernel
@@ -46,7 +47,7 @@ def run(
 
     With `settle` the run ends as soon as nothing more can happen, and it is an error if `free` samples pass first.
     """
-    piece, offset, count, last = record, 0, 0, np.nan
+    piece, offset, count, last = record, ZERO, ZERO, np.nan
     while True:
         to_coordinates(system, ROCKING if side != 0.0 else CONTACT, piece[0], 0.0, side, room)
         if offset > 0 and settle and side == 0.0 and settled(system, room, log):
@@ -78,7 +79,7 @@ def cross_piece(
     count: int,
 ) -> tuple[int, float, int]:
     """Carry the motion through one stretch of acceleration; return status, side and the count of nodes."""
-    slope, fresh, i, last = 0.0, True, 0, piece.size - 1
+    slope, fresh, i, last = 0.0, True, ZERO, piece.size - 1
     while True:
         before = i
         i, slope, count = march(system, piece, dt, i, offset, side, slope, log, room, nodes, count)

@@ -1,8 +1,8 @@
 """Propagators and curvature bounds of both phases for the steps dt, dt/2, ... dt/2^J.
 
 The bounds say where an event or a peak can hide between two instants. Over a step h a row leaves its chord by at
-most h²/8 max|row''|, its slope leaves its own chord by h²/8 max|row'''|, and the row leaves the cubic through
-the values and slopes at both ends by h⁴/384 max|row''''|. For one pair of coordinates |row''| ≤ |row B²| |w| exp(growth),
+most h²/8 max|row''|, its slope leaves its own chord by h²/8 max|row'''|, and the row leaves the cubic through the
+values and slopes at both ends by h⁴/384 max|row''''|. For one pair of coordinates |row''| ≤ |row B²| |w| exp(growth),
 and so on; a pair that turns more than once in the step is bounded by its amplitude instead.
 """
 
@@ -28,8 +28,8 @@ def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis
     return System(
         physics=physics,
         plain_rows=plain_rows,
-        basis=np.stack((contact.basis.T, rocking.basis.T)),
-        inverse=np.stack((contact.inverse.T, rocking.inverse.T)),
+        basis=np.ascontiguousarray(np.stack((contact.basis.T, rocking.basis.T))),
+        inverse=np.ascontiguousarray(np.stack((contact.inverse.T, rocking.inverse.T))),
         forced=np.stack((contact.forced, rocking.forced)),
         rows=np.stack((contact.rows, rocking.rows)),
         row_forcing=np.stack((contact.row_forcing, rocking.row_forcing)),

@@ -29,6 +29,7 @@ CROSSED, OVERTURNED, CHATTER = 0, 1, -1
 UPLIFTS, IMPACTS, EVENTS = 0, 1, 2  # places in the tally; EVENTS counts those of the present sample
 MOST_EVENTS = 20_000  # in one sample
 
+GUARD = np.int64(0)  # the row of the guard; a bare 0 would have its callees compiled once more
 SNAP = 1e-10  # an event this close to a unit's end is left to the next unit, which starts on it
 RESUME = 1e-7  # where contact is searched again after a guard that was touched but not passed
 
@@ -161,7 +162,7 @@ def cross_unit(
         here = acceleration + slope * step * u
         now = time + step * u
         expand(system.physics, side != 0.0, room.state, here, slope, side, lift, step, room.series)
-        row_series(system.plain_rows, phase, 0, room.series, here, slope, side, step, room.polys)
+        row_series(system.plain_rows, phase, GUARD, room.series, here, slope, side, step, room.polys)
         tips, next_side = np.inf, 0.0
         if side != 0.0:
             stop = rocking_exit(room.polys, side, lift, onset, span)
@@ -188,7 +189,7 @@ def cross_unit(
         if ends:
             stop = span
         if side != 0.0:
-            raise_peak(room.polys, 0, stop, now, step, log)
+            raise_peak(room.polys, GUARD, stop, now, step, log)
         advance(room.series, stop, step, room.state)
         for f in range(1, log.peaks.size):
             if not probed or room.doubt[f]:
@@ -221,7 +222,7 @@ def cross_unit(
             room.state[2 * n + 1] = 0.0
             excess = 0.0
             if resume > 0.0 and stop == resume:
-                excess = max(abs(evaluate(room.polys, 0, stop)[0]) - resistance, 0.0)
+                excess = max(abs(evaluate(room.polys, GUARD, stop)[0]) - resistance, 0.0)
             lift, onset, resume = next_side * excess / inertia, True, 0.0
         side, probed = next_side, False
         if log.tally[EVENTS] > MOST_EVENTS:

@@ -1,0 +1,172 @@
+"""Speed of the exact engine, as ratios within one run: against SciPy's solvers, and against the bare recurrence.
+
+``make bench`` prints one table. Every figure is the least of several repetitions (the ODE solvers run once, since they
+take seconds). Ratios hold on any machine; the times are this machine's.
+"""
+
+import resource
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numba import njit
+from rich.console import Console
+from rich.table import Table
+
+import rockflex as rf
+from rockflex.models import parse_model
+from rockflex.study._simulate import make_engine
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+from twins.ode import simulate_ode
+
+MODES = (1, 5, 15)
+BATCH = 400
+
+
+def main() -> None:
+    console = Console(width=120)
+    motion = rf.load_suite("fema-p695-far-field")["FF-1-a"].scaled(1.5)
+    steps = motion.acceleration.size - 1
+    started = time.perf_counter()
+    rf.simulate(frame(2), motion, "MDOF-S", output="peaks")
+    console.print(f"first call, kernels compiled or read from disk: {time.perf_counter() - started:.1f} s")
+    console.print(
+        f"record {motion.name} ×1.5: {steps} steps of {motion.dt} s; shear frames of N stories, T = 1 s, MDOF-S\n"
+    )
+    table = Table("", *(f"N = {n}" for n in MODES), title="time of one run (ms), and the engine's advantage")
+    columns = [measure(n, motion) for n in MODES]
+    for label in columns[0]:
+        table.add_row(label, *(column[label] for column in columns))
+    console.print(table)
+    console.print(memory())
+
+
+def measure(n: int, motion: rf.GroundMotion) -> dict[str, str]:
+    structure = frame(n)
+    steps = motion.acceleration.size - 1
+    engine = make_engine(parse_model("MDOF-S").of(structure.rocking()), "peaks")
+    kernel = least(lambda: engine.run(motion.acceleration, motion.dt), 100)
+    call = least(lambda: rf.simulate(structure, motion, "MDOF-S", output="peaks"), 50)
+    fresh = least(lambda: rf.simulate(frame(n), motion, "MDOF-S", output="peaks"), 50)
+    history = least(lambda: rf.simulate(structure, motion, "MDOF-S"), 20)
+    batch = least(lambda: rf.simulate_many(structure, [motion] * BATCH, "MDOF-S", workers=1), 3) / BATCH
+    cores = least(lambda: rf.simulate_many(structure, [motion] * BATCH, "MDOF-S"), 3) / BATCH
+    bare = floor(n, motion)
+    lsoda, dop853 = (ode(structure, motion, method) for method in ("LSODA", "DOP853"))
+    return {
+        "SciPy LSODA, events, rtol 1e-10": milliseconds(lsoda),
+        "SciPy DOP853, events, rtol 1e-10": milliseconds(dop853),
+        "one call, peaks": milliseconds(call),
+        "one call, peaks, structure assembled too": milliseconds(fresh),
+        "one call, history and floors": milliseconds(history),
+        "batch, peaks, one core": milliseconds(batch),
+        "batch, peaks, all cores": milliseconds(cores),
+        "engine alone": milliseconds(kernel),
+        "bare contact recurrence (floor)": f"{bare * 1e3:.4f}",
+        "million steps a second, one core": f"{steps / kernel / 1e6:.1f}",
+        "LSODA / one call": f"{lsoda / call:.0f}",
+        "LSODA / batch, one core": f"{lsoda / batch:.0f}",
+        "LSODA / batch, all cores": f"{lsoda / cores:.0f}",
+        "DOP853 / one call": f"{dop853 / call:.0f}",
+        "batch, one core / floor": f"{batch / bare:.1f}",
+    }
+
+
+def frame(n: int) -> rf.Frame:
+    return rf.Frame(
+        n_stories=n,
+        story_height=3.0,
+        story_mass=40e3,
+        base_mass=40e3,
+        stiffness_ratio=np.inf,
+        period=1.0,
+        aspect_ratio=10.0,
+        damping_ratio=0.02,
+    )
+
+
+def ode(structure: rf.Frame, motion: rf.GroundMotion, method: str) -> float:
+    """Seconds of one run of the independent reference implementation, as a user would write it."""
+    p = structure.rocking()
+    started = time.perf_counter()
+    simulate_ode(
+        p.omega,
+        p.effective_mass,
+        p.effective_height,
+        p.top_ordinate,
+        p.i_theta,
+        p.l0r,
+        p.m_tot,
+        p.half_width,
+        p.zeta,
+        motion.acceleration,
+        motion.dt,
+        method=method,
+        rtol=1e-10,
+        max_step=motion.dt,
+    )
+    return time.perf_counter() - started
+
+
+@njit
+def recurrence(record: np.ndarray, a: np.ndarray, b: np.ndarray, d: np.ndarray, v: np.ndarray) -> float:
+    """Displacements and velocities of N oscillators, sample by sample, and nothing else."""
+    total = 0.0
+    for i in range(record.size - 1):
+        before, after = record[i], record[i + 1]
+        for k in range(d.size):
+            x, y = d[k], v[k]
+            d[k] = a[0, k] * x + a[1, k] * y + b[0, k] * before + b[1, k] * after
+            v[k] = a[2, k] * x + a[3, k] * y + b[2, k] * before + b[3, k] * after
+        total += d[0]
+    return total
+
+
+def floor(n: int, motion: rf.GroundMotion) -> float:
+    """Seconds of the bare contact recurrence with the frame's own coefficients."""
+    p = frame(n).rocking()
+    dt = motion.dt
+    a, b = np.empty((4, n)), np.zeros((4, n))
+    damped = p.omega * np.sqrt(1.0 - p.zeta**2)
+    decay, sine, cosine = np.exp(-p.zeta * p.omega * dt), np.sin(damped * dt) / damped, np.cos(damped * dt)
+    a[0], a[1] = decay * (cosine + p.zeta * p.omega * sine), decay * sine
+    a[2], a[3] = -decay * p.omega**2 * sine, decay * (cosine - p.zeta * p.omega * sine)
+    b[0] = b[1] = -0.25 * dt**2
+    b[2] = b[3] = -0.5 * dt
+    return least(lambda: recurrence(motion.acceleration, a, b, np.zeros(n), np.zeros(n)), 200)
+
+
+def memory() -> str:
+    """Growth of the process over many short runs, next to that of the table they return."""
+    structure, motion = frame(1), rf.ricker_pulse(2.0, 0.5, dt=0.02)
+    lines = ['memory of simulate_many, output="peaks" (2DOF-S under a Ricker pulse):']
+    for runs in (10_000, 100_000, 1_000_000):
+        started = time.perf_counter()
+        table = rf.simulate_many(structure, motion, "2DOF-S", scales=np.linspace(0.5, 3.0, runs))
+        seconds = time.perf_counter() - started
+        size = table.memory_usage(deep=True).sum() / 2**20
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
+        lines.append(f"  {runs:9,d} runs: peak {peak:6.0f} MiB, of it the table {size:6.1f} MiB; {seconds:5.1f} s")
+    return "\n".join(lines)
+
+
+def least(function: Callable[[], object], repetitions: int) -> float:
+    function()
+    times = []
+    for _ in range(repetitions):
+        started = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - started)
+    return min(times)
+
+
+def milliseconds(seconds: float) -> str:
+    return f"{seconds * 1e3:.3f}"
+
+
+if __name__ == "__main__":
+    main()
