@@ -80,7 +80,7 @@ def simulate(
         raise InputError(message)
     engine = make_engine(tied, output)
     solution = engine.run(
-        motion.acceleration.copy(),
+        motion.acceleration,
         motion.dt,
         free_vibration=free_vibration_time(free_vibration),
         state=None if initial is None else initial.state(tied),

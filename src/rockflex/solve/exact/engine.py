@@ -70,18 +70,19 @@ class ExactEngine:
         side = float(np.sign(start[-2]) or np.sign(start[-1]))
         settle = free_vibration is None
         free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
+        record = np.require(acceleration, dtype=np.float64, requirements=("C", "W"))  # the type compiled for
         system = self.system(dt)
         rows = self._rows.shape[1]
-        room_for = acceleration.size + 64 + (0 if settle else free) if history else 0
+        room_for = record.size + 64 + (0 if settle else free) if history else 0
         while True:
             log = Log(np.zeros(rows), np.zeros(rows), np.zeros(3, dtype=np.int64))
             nodes = np.empty((room_for, HEADER + start.size))
             room = scratch(start.copy(), rows, system.order)
-            status, samples, count = run(system, acceleration, QUIET, dt, free, settle, side, log, room, nodes)
+            status, samples, count = run(system, record, QUIET, dt, free, settle, side, log, room, nodes)
             if not history or count <= room_for:
                 break
             room_for = count
-        if status in (CHATTER, UNSETTLED):
+        if status in (CHATTER, UNSETTLED) or not np.all(np.isfinite(room.state)):
             raise SolverError(self._complaint(status, samples * dt, room.state))
         end = samples * dt if status != OVERTURNED else float(log.times[0])
         return Solution(
@@ -131,6 +132,8 @@ class ExactEngine:
                 f"The free vibration of {self.model.label} has not settled {time:.6g} s after the start. {where} "
                 "Give free_vibration in seconds, or more damping."
             )
+        if status != CHATTER:
+            return f"The motion of {self.model.label} is not finite at {time:.6g} s. {where} Check the parameters."
         return (
             f"The impacts of {self.model.label} accumulate without end in the sample before {time:.6g} s. {where} "
             "Check the model's parameters, and refine the record."

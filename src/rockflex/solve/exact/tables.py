@@ -46,8 +46,8 @@ def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis
 
 
 def _series_order(turn: float) -> int:
-    """Order at which the power series of a mode that turns by `turn` ≤ 1 rad has converged."""
-    order, term = 4, turn**4 / 24.0
+    """Order at which a series that starts at t³, as at an uplift, has converged for a mode that turns by `turn`."""
+    order, term = 3, 1.0
     while term > 1e-17:
         order += 1
         term *= turn / order

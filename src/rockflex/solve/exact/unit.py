@@ -167,6 +167,7 @@ def cross_unit(
         if side != 0.0:
             stop = rocking_exit(room.polys, side, lift, onset, span)
             if stop < 0.0:
+                log.tally[EVENTS] += 1
                 side, lift, onset, resume, probed = 0.0, np.nan, False, RESUME, False
                 continue
             if onset:
