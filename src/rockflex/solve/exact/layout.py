@@ -9,14 +9,17 @@ K = N + 1 while rocking; pair k is ``(w[k], w[K + k])``. Under an acceleration t
 forcing, ``w(t + h) = exp(B h) w(t)``, and it jumps by ``-forced[1] Δa'`` where the acceleration's slope a' changes.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CONTACT", "ROCKING", "Array", "Log", "Physics", "Scratch", "System", "scratch"]
+__all__ = ["CONTACT", "ROCKING", "ZERO", "Array", "Log", "Physics", "Scratch", "System", "scratch"]
 
 CONTACT, ROCKING = 0, 1  # the phases, which lead the arrays of `System`
+
+# A bare 0 has a type of its own in numba, for which every callee would be compiled once more.
+ZERO = cast("int", np.int64(0))
 
 Array = NDArray[np.float64]
 

@@ -2,16 +2,14 @@
 
 import math
 
-import numpy as np
-
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.probe import examine, probe, raise_peaks, set_limits
 
 __all__ = ["march", "to_coordinates", "to_state"]
 
-WHOLE = np.int64(0)  # the level of a whole sample; a bare 0 would have its callees compiled once more
+WHOLE = ZERO  # the level of a whole sample
 
 
 @kernel

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.sample import cross_sample
 from rockflex.solve.exact.unit import CROSSED, raise_to_state
@@ -14,7 +14,6 @@ from rockflex.solve.exact.unit import CROSSED, raise_to_state
 __all__ = ["SETTLED", "UNSETTLED", "run"]
 
 SETTLED, UNSETTLED = 2, -2
-ZERO = np.int64(0)  # a bare 0 has a type of its own, for which every callee would be compiled once more
 
 
 @kernel

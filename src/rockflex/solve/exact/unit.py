@@ -10,7 +10,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.probe import HALF_TURN, raise_peaks
 from rockflex.solve.exact.series import advance, bend, evaluate, expand, first_descent, row_series
 
@@ -29,7 +29,7 @@ CROSSED, OVERTURNED, CHATTER = 0, 1, -1
 UPLIFTS, IMPACTS, EVENTS = 0, 1, 2  # places in the tally; EVENTS counts those of the present sample
 MOST_EVENTS = 20_000  # in one sample
 
-GUARD = np.int64(0)  # the row of the guard; a bare 0 would have its callees compiled once more
+GUARD = ZERO  # the row of the guard
 SNAP = 1e-10  # an event this close to a unit's end is left to the next unit, which starts on it
 RESUME = 1e-7  # where contact is searched again after a guard that was touched but not passed
 
