@@ -5,7 +5,8 @@ import math
 from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
-from rockflex.solve.exact.probe import examine, probe, raise_peaks, set_limits
+from rockflex.solve.exact.peaks import raise_peaks
+from rockflex.solve.exact.probe import examine, probe, set_limits
 
 __all__ = ["march", "to_coordinates", "to_state"]
 

@@ -3,9 +3,9 @@
 import math
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.layout import ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import ROCKING, Log, Scratch, System
 
-__all__ = ["HALF_TURN", "cubic_range", "examine", "probe", "raise_peaks", "set_limits"]
+__all__ = ["HALF_TURN", "cubic_range", "examine", "probe", "set_limits"]
 
 HALF_TURN = 0.5 * math.pi
 
@@ -122,12 +122,3 @@ def cubic_range(first: float, last: float, before: float, after: float) -> tuple
             value = first + u * (before + u * (square + u * cube))
             low, high = min(low, value), max(high, value)
     return low, high
-
-
-@kernel
-def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
-    """Note the values at the end of a step in which nothing hid."""
-    for f in range(0 if side != 0.0 else 1, values.size):
-        if abs(values[f]) > log.peaks[f]:
-            log.peaks[f] = abs(values[f])
-            log.times[f] = time

@@ -8,8 +8,9 @@ from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
+from rockflex.solve.exact.peaks import raise_to_state
 from rockflex.solve.exact.sample import cross_sample
-from rockflex.solve.exact.unit import CROSSED, raise_to_state
+from rockflex.solve.exact.unit import CROSSED
 
 __all__ = ["SETTLED", "UNSETTLED", "run"]
 

@@ -4,7 +4,8 @@ from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
 from rockflex.solve.exact.march import to_coordinates, to_state
-from rockflex.solve.exact.probe import examine, probe, raise_peaks, set_limits
+from rockflex.solve.exact.peaks import raise_peaks
+from rockflex.solve.exact.probe import examine, probe, set_limits
 from rockflex.solve.exact.unit import CROSSED, EVENTS, cross_unit, survey_unit
 
 __all__ = ["cross_sample"]

@@ -4,15 +4,15 @@ A unit is short enough for the series about any of its points to converge at onc
 root of the guard's polynomial; after the jump the series starts anew, until the unit is crossed.
 """
 
-import math
-
 import numpy as np
 
 from rockflex._kernel import kernel
+from rockflex.solve.exact.exits import contact_exit, overturning, rocking_exit
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
-from rockflex.solve.exact.probe import HALF_TURN, raise_peaks
-from rockflex.solve.exact.series import advance, bend, evaluate, expand, first_descent, row_series
+from rockflex.solve.exact.peaks import raise_peak, raise_peaks, raise_to
+from rockflex.solve.exact.probe import HALF_TURN
+from rockflex.solve.exact.series import advance, evaluate, expand, row_series
 
 __all__ = [
     "CHATTER",
@@ -21,7 +21,6 @@ __all__ = [
     "OVERTURNED",
     "UPLIFTS",
     "cross_unit",
-    "raise_to_state",
     "survey_unit",
 ]
 
@@ -32,110 +31,6 @@ MOST_EVENTS = 20_000  # in one sample
 GUARD = ZERO  # the row of the guard
 SNAP = 1e-10  # an event this close to a unit's end is left to the next unit, which starts on it
 RESUME = 1e-7  # where contact is searched again after a guard that was touched but not passed
-
-
-@kernel
-def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, log: Log) -> None:
-    """Raise a row's peak to the largest magnitude of its polynomial over [0, stop]; the last row is for work."""
-    reach = 0.0
-    for k in range(polys.shape[1]):
-        reach += abs(polys[row, k])
-    if reach <= log.peaks[row]:
-        return
-    first, last = abs(polys[row, 0]), abs(evaluate(polys, row, stop)[0])
-    if max(first, last) > log.peaks[row]:
-        log.peaks[row] = max(first, last)
-        log.times[row] = time + (step * stop if last >= first else 0.0)
-    if max(first, last) + bend(polys, row) * stop * stop / 8.0 <= log.peaks[row]:
-        return
-    work = polys.shape[0] - 1
-    direction = 1.0 if polys[row, 1] >= 0.0 else -1.0
-    u = 0.0
-    while True:
-        polys[work, polys.shape[1] - 1] = 0.0
-        for k in range(polys.shape[1] - 1):
-            polys[work, k] = direction * (k + 1.0) * polys[row, k + 1]
-        u = first_descent(polys, work, u, stop)
-        if u >= stop:
-            return
-        value = abs(evaluate(polys, row, u)[0])
-        if value > log.peaks[row]:
-            log.peaks[row] = value
-            log.times[row] = time + step * u
-        direction = -direction
-        u += 1e-9
-
-
-@kernel
-def raise_to(
-    rows: Array, phase: int, row: int, acceleration: float, side: float, time: float, log: Log, room: Scratch
-) -> None:
-    """Raise a row's peak to its magnitude in the present state: all that a row without an inner peak needs."""
-    value = rows[phase, row, room.state.size] * acceleration + rows[phase, row, room.state.size + 1] * side
-    for i in range(room.state.size):
-        value += rows[phase, row, i] * room.state[i]
-    if abs(value) > log.peaks[row]:
-        log.peaks[row] = abs(value)
-        log.times[row] = time
-
-
-@kernel
-def raise_to_state(system: System, side: float, acceleration: float, time: float, log: Log, room: Scratch) -> None:
-    """Raise all peaks to the present state."""
-    phase = ROCKING if side != 0.0 else CONTACT
-    for f in range(0 if side != 0.0 else 1, log.peaks.size):
-        raise_to(system.plain_rows, phase, f, acceleration, side, time, log, room)
-
-
-@kernel
-def rocking_exit(polys: Array, side: float, lift: float, onset: bool, span: float) -> float:
-    """Where the rotation returns to zero; -1 where it never left. At an onset its zeros at 0 are divided out."""
-    work, terms = polys.shape[0] - 1, polys.shape[1]
-    zeros = 0
-    if onset:
-        zeros = 2 if lift != 0.0 else 3
-    for k in range(terms):
-        polys[work, k] = side * polys[0, k + zeros] if k + zeros < terms else 0.0
-    if onset and polys[work, 0] <= 0.0:
-        return -1.0
-    if polys[work, 0] < 0.0:
-        polys[work, 0] = 0.0
-    return first_descent(polys, work, 0.0, span)
-
-
-@kernel
-def overturning(polys: Array, side: float, span: float) -> float:
-    """Where the rotation reaches a quarter turn; inf where it does not."""
-    work, reach = polys.shape[0] - 1, 0.0
-    for k in range(polys.shape[1]):
-        reach += abs(polys[0, k])
-        polys[work, k] = -side * polys[0, k]
-    if reach < HALF_TURN:
-        return np.inf
-    polys[work, 0] += HALF_TURN
-    return first_descent(polys, work, 0.0, span)
-
-
-@kernel
-def contact_exit(polys: Array, resistance: float, start: float, span: float) -> tuple[float, float]:
-    """Where the overturning moment reaches the resistance (Eq. 24), and the side it names."""
-    work = polys.shape[0] - 1
-    exit_at, exit_side = np.inf, 0.0
-    if math.isinf(resistance):
-        return exit_at, exit_side
-    play = 0.0
-    for k in range(1, polys.shape[1]):
-        play += abs(polys[0, k])
-    for side in (1.0, -1.0):
-        if resistance + side * polys[0, 0] > play:
-            continue
-        for k in range(polys.shape[1]):
-            polys[work, k] = side * polys[0, k]
-        polys[work, 0] += resistance
-        u = first_descent(polys, work, start, span)
-        if u < exit_at:
-            exit_at, exit_side = u, side
-    return exit_at, exit_side
 
 
 @kernel

@@ -1,0 +1,69 @@
+"""The peaks of a run, raised wherever the motion is looked at."""
+
+from rockflex._kernel import kernel
+from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.series import bend, evaluate, first_descent
+
+__all__ = ["raise_peak", "raise_peaks", "raise_to", "raise_to_state"]
+
+
+@kernel
+def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
+    """Note the values at the end of a step in which nothing hid."""
+    for f in range(0 if side != 0.0 else 1, values.size):
+        if abs(values[f]) > log.peaks[f]:
+            log.peaks[f] = abs(values[f])
+            log.times[f] = time
+
+
+@kernel
+def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, log: Log) -> None:
+    """Raise a row's peak to the largest magnitude of its polynomial over [0, stop]; the last row is for work."""
+    reach = 0.0
+    for k in range(polys.shape[1]):
+        reach += abs(polys[row, k])
+    if reach <= log.peaks[row]:
+        return
+    first, last = abs(polys[row, 0]), abs(evaluate(polys, row, stop)[0])
+    if max(first, last) > log.peaks[row]:
+        log.peaks[row] = max(first, last)
+        log.times[row] = time + (step * stop if last >= first else 0.0)
+    if max(first, last) + bend(polys, row) * stop * stop / 8.0 <= log.peaks[row]:
+        return
+    work = polys.shape[0] - 1
+    direction = 1.0 if polys[row, 1] >= 0.0 else -1.0
+    u = 0.0
+    while True:
+        polys[work, polys.shape[1] - 1] = 0.0
+        for k in range(polys.shape[1] - 1):
+            polys[work, k] = direction * (k + 1.0) * polys[row, k + 1]
+        u = first_descent(polys, work, u, stop)
+        if u >= stop:
+            return
+        value = abs(evaluate(polys, row, u)[0])
+        if value > log.peaks[row]:
+            log.peaks[row] = value
+            log.times[row] = time + step * u
+        direction = -direction
+        u += 1e-9
+
+
+@kernel
+def raise_to(
+    rows: Array, phase: int, row: int, acceleration: float, side: float, time: float, log: Log, room: Scratch
+) -> None:
+    """Raise a row's peak to its magnitude in the present state: all that a row without an inner peak needs."""
+    value = rows[phase, row, room.state.size] * acceleration + rows[phase, row, room.state.size + 1] * side
+    for i in range(room.state.size):
+        value += rows[phase, row, i] * room.state[i]
+    if abs(value) > log.peaks[row]:
+        log.peaks[row] = abs(value)
+        log.times[row] = time
+
+
+@kernel
+def raise_to_state(system: System, side: float, acceleration: float, time: float, log: Log, room: Scratch) -> None:
+    """Raise all peaks to the present state."""
+    phase = ROCKING if side != 0.0 else CONTACT
+    for f in range(0 if side != 0.0 else 1, log.peaks.size):
+        raise_to(system.plain_rows, phase, f, acceleration, side, time, log, room)
