@@ -110,10 +110,11 @@ def _dense_bounds(basis: Basis, steps: Array) -> tuple[Array, Array, Array]:
 
 def propagate(basis: Basis, w: Array, steps: Array) -> Array:
     """Coordinates after steps of any length, one a row of `w` (n, 2K)."""
-    if basis.dense:
-        return np.stack([expm(basis.matrix * step) @ row for step, row in zip(steps, w, strict=True)])
-    half = w.shape[1] // 2
     lengths, which = np.unique(steps, return_inverse=True)
+    if basis.dense:
+        propagators = np.stack([expm(basis.matrix * length) for length in lengths])
+        return np.einsum("nij,nj->ni", propagators[which], w)
+    half = w.shape[1] // 2
     blocks = _blocks(basis, lengths)[which]
     first, second = w[:, :half], w[:, half:]
     return np.concatenate(
