@@ -72,6 +72,7 @@ class Scratch(NamedTuple):
     state: Array  # (2K,)
     w: Array  # (2K,)
     w_end: Array  # (2K,): after the step under examination
+    held: Array  # (2K,): the same, while peaks are searched inside that step
     norms: Array  # (K,)
     lower: Array  # (F,): limits of the rows
     upper: Array  # (F,)
@@ -87,6 +88,7 @@ def scratch(state: Array, rows: int, order: int) -> Scratch:
     size = state.size
     return Scratch(
         state,
+        np.zeros(size),
         np.zeros(size),
         np.zeros(size),
         np.zeros(size // 2),

@@ -6,7 +6,7 @@ from rockflex._kernel import kernel
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.peaks import raise_peaks
-from rockflex.solve.exact.probe import examine, probe, set_limits
+from rockflex.solve.exact.probe import NOTHING, examine, probe, set_limits
 
 __all__ = ["march", "to_coordinates", "to_state"]
 
@@ -49,7 +49,7 @@ def march(
     room: Scratch,
     nodes: Array,
     count: int,
-) -> tuple[int, float, int]:
+) -> tuple[int, float, int, int]:
     """Carry `room.w` over samples from `first` on; stop before one that needs a closer look, or at the end.
 
     `offset` is the number of samples before this record. Returns the sample reached, the slope of the acceleration
@@ -93,8 +93,9 @@ def march(
             low, high = min(room.start[f], room.end[f]), max(room.start[f], room.end[f])
             safe = safe and low - sag >= room.lower[f] and high + sag <= room.upper[f]
         if not safe:
-            if not probe(system, phase, WHOLE, side, slope, room):
-                return i, slope, count
+            finding = probe(system, phase, WHOLE, side, slope, room)
+            if finding != NOTHING:
+                return i, slope, finding, count
             raise_peaks(room.end, side, (offset + i + 1) * dt, log)
             set_limits(side, system.physics.resistance, log, room)
         for k in range(2 * pairs):
@@ -102,4 +103,4 @@ def march(
         if nodes.shape[0] > 0:
             to_state(system, phase, there, slope, side, room)
             count = append(nodes, count, (offset + i + 1) * dt, side, there, room.state)
-    return record.size - 1, slope, count
+    return record.size - 1, slope, NOTHING, count

@@ -5,9 +5,10 @@ import math
 from rockflex._kernel import kernel
 from rockflex.solve.exact.layout import ROCKING, Log, Scratch, System
 
-__all__ = ["HALF_TURN", "cubic_range", "examine", "probe", "set_limits"]
+__all__ = ["EVENT", "HALF_TURN", "NOTHING", "PEAK", "cubic_range", "examine", "probe", "set_limits"]
 
 HALF_TURN = 0.5 * math.pi
+NOTHING, PEAK, EVENT = 0, 1, 2  # what a step may hide; the first row hides events, and the peak of the rotation
 
 
 @kernel
@@ -63,8 +64,8 @@ def examine(
 
 
 @kernel
-def probe(system: System, phase: int, level: int, side: float, slope: float, room: Scratch) -> bool:
-    """True where no event and no peak can hide in the step examined; else `room.doubt` marks the rows.
+def probe(system: System, phase: int, level: int, side: float, slope: float, room: Scratch) -> int:
+    """What can hide in the step examined: nothing, a peak, or an event; `room.doubt` marks the rows in question.
 
     A row within `sag` of its chord is settled at once. Else a slope that keeps its sign, within `swing` of
     its chord, proves that the row has its extremes at the ends, where `raise_peaks` picks them up; and a row that turns
@@ -72,7 +73,7 @@ def probe(system: System, phase: int, level: int, side: float, slope: float, roo
     """
     pairs = room.norms.size
     count = pairs if phase == ROCKING else pairs - 1
-    safe = True
+    finding = NOTHING
     for f in range(room.start.size):
         room.doubt[f] = False
         sag = 0.0
@@ -93,7 +94,7 @@ def probe(system: System, phase: int, level: int, side: float, slope: float, roo
             after += system.slope_rows[phase, f, pairs + k] * room.w_end[pairs + k]
         hidden = min(before, after) <= swing and max(before, after) >= -swing
         if hidden:
-            step = system.steps[level]
+            step = float(system.steps[level])
             low, high = cubic_range(first, last, before * step, after * step)
             hidden = low - ripple < room.lower[f] or high + ripple > room.upper[f]
         elif f == 0:
@@ -102,8 +103,9 @@ def probe(system: System, phase: int, level: int, side: float, slope: float, roo
             else:
                 hidden = side * last <= 0.0 or side * first < 0.0 or abs(last) >= HALF_TURN
         room.doubt[f] = hidden
-        safe = safe and not hidden
-    return safe
+        if hidden:
+            finding = max(finding, EVENT if f == 0 else PEAK)
+    return finding
 
 
 @kernel

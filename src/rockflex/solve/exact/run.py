@@ -82,12 +82,12 @@ def cross_piece(
     slope, fresh, i, last = 0.0, True, ZERO, piece.size - 1
     while True:
         before = i
-        i, slope, count = march(system, piece, dt, i, offset, side, slope, log, room, nodes, count)
+        i, slope, finding, count = march(system, piece, dt, i, offset, side, slope, log, room, nodes, count)
         fresh = fresh and i == before
         if i < last:
             time = (offset + i) * dt
             status, side, fresh, count = cross_sample(
-                system, side, fresh, piece[i], slope, dt, time, log, room, nodes, count
+                system, side, fresh, finding, piece[i], slope, dt, time, log, room, nodes, count
             )
             i += 1
             if status != CROSSED:

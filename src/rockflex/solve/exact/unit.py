@@ -10,19 +10,11 @@ from rockflex._kernel import kernel
 from rockflex.solve.exact.exits import contact_exit, overturning, rocking_exit
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
-from rockflex.solve.exact.peaks import raise_peak, raise_peaks, raise_to
+from rockflex.solve.exact.peaks import raise_peak, raise_to
 from rockflex.solve.exact.probe import HALF_TURN
 from rockflex.solve.exact.series import advance, evaluate, expand, row_series
 
-__all__ = [
-    "CHATTER",
-    "CROSSED",
-    "IMPACTS",
-    "OVERTURNED",
-    "UPLIFTS",
-    "cross_unit",
-    "survey_unit",
-]
+__all__ = ["CHATTER", "CROSSED", "EVENTS", "IMPACTS", "OVERTURNED", "UPLIFTS", "cross_unit"]
 
 CROSSED, OVERTURNED, CHATTER = 0, 1, -1
 UPLIFTS, IMPACTS, EVENTS = 0, 1, 2  # places in the tally; EVENTS counts those of the present sample
@@ -123,24 +115,3 @@ def cross_unit(
         side, probed = next_side, False
         if log.tally[EVENTS] > MOST_EVENTS:
             return CHATTER, side, count
-
-
-@kernel
-def survey_unit(
-    system: System,
-    side: float,
-    acceleration: float,
-    slope: float,
-    step: float,
-    time: float,
-    log: Log,
-    room: Scratch,
-) -> None:
-    """Raise the peaks of the rows in doubt over a unit without events."""
-    phase = ROCKING if side != 0.0 else CONTACT
-    expand(system.physics, side != 0.0, room.state, acceleration, slope, side, np.nan, step, room.series)
-    for f in range(1, log.peaks.size):
-        if room.doubt[f]:
-            row_series(system.plain_rows, phase, f, room.series, acceleration, slope, side, step, room.polys)
-            raise_peak(room.polys, f, 1.0, time, step, log)
-    raise_peaks(room.end, side, time + step, log)
