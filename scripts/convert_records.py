@@ -67,9 +67,7 @@ def fema_records(path: Path, prefix: str, source: str) -> list[tuple[dict, np.nd
         ]
 
 
-def fema_record(
-    series: h5py.Group, row: dict, fact: dict, prefix: str, source: str
-) -> tuple[dict, np.ndarray]:
+def fema_record(series: h5py.Group, row: dict, fact: dict, prefix: str, source: str) -> tuple[dict, np.ndarray]:
     identity, component = row["RecordID"], row["ComponentID"]
     data = series[f"{identity}/{component}"]
     samples, time, dt = data["RecordedAcceleration"][:], data["Time"][:], row["DT"]

@@ -99,9 +99,7 @@ def test_decimals_survive_their_encoding(decimals):
 
 
 @settings(deadline=None)
-@given(
-    st.lists(values, min_size=3, max_size=30), st.integers(1, 9), st.sampled_from(["", " ", "  "]), st.data()
-)
+@given(st.lists(values, min_size=3, max_size=30), st.integers(1, 9), st.sampled_from(["", " ", "  "]), st.data())
 def test_wrapping_does_not_matter(tmp_path_factory, numbers, columns, gap, data):
     words = [f"{value:+.10E}" for value in numbers]
     lines = [gap.join(words[i : i + columns]) for i in range(0, len(words), columns)]

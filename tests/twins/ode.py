@@ -175,9 +175,7 @@ class _Run:
         for row, by_a, limit in guards:
             value = row @ sol.y + by_a * seg.excitations(times) - limit
             rate = row @ self._rates(seg, times, sol.y) + by_a * slopes
-            reach = np.maximum(value[:-1], value[1:]) + np.diff(times) * np.maximum(
-                abs(rate[:-1]), abs(rate[1:])
-            )
+            reach = np.maximum(value[:-1], value[1:]) + np.diff(times) * np.maximum(abs(rate[:-1]), abs(rate[1:]))
             rise_and_fall = (rate[:-1] > 0.0) & (rate[1:] < 0.0)
             for k in np.flatnonzero(rise_and_fall & (value[:-1] < 0.0) & (value[1:] < 0.0) & (reach > 0.0)):
 

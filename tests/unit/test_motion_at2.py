@@ -73,9 +73,7 @@ def test_title_of_the_nga_form(tmp_path):
 
 
 def test_title_of_the_old_form(tmp_path):
-    info = read_at2(
-        write(tmp_path, OLD.format(header="NPTS= 6, DT= .005 SEC") + BODY, "H-E06230.AT2")
-    ).metadata
+    info = read_at2(write(tmp_path, OLD.format(header="NPTS= 6, DT= .005 SEC") + BODY, "H-E06230.AT2")).metadata
     assert (info.event, info.year, info.rsn) == ("IMPERIAL VALLEY", 1979, None)
     assert (info.station, info.component) == ("EL CENTRO ARRAY #6", "230")
 

@@ -71,9 +71,7 @@ def test_columns_are_chosen_by_their_labels(tmp_path):
 
 def test_one_column(tmp_path):
     path = write(tmp_path, "1\n2\n-3.5e0\n1D-1\n")
-    assert read_motion(path, units="cm/s2", dt=0.02).acceleration == pytest.approx(
-        [0.01, 0.02, -0.035, 0.001]
-    )
+    assert read_motion(path, units="cm/s2", dt=0.02).acceleration == pytest.approx([0.01, 0.02, -0.035, 0.001])
     path = write(tmp_path, "acc (g)\n1\n2\n3\n")
     assert read_motion(path, dt=0.02).pga == 3 * GRAVITY
     with pytest.raises(InputError, match="has one column and no times: give the sampling step"):

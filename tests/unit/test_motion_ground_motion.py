@@ -82,9 +82,7 @@ def test_scaling_stays_finite(factor, text):
 
 
 def test_importing_the_layer_loads_no_heavy_package():
-    code = (
-        "import sys, rockflex.motion; print(sorted({'scipy', 'numba', 'pandas', 'h5py'} & set(sys.modules)))"
-    )
+    code = "import sys, rockflex.motion; print(sorted({'scipy', 'numba', 'pandas', 'h5py'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 

@@ -10,10 +10,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, quiet_motion
 
-RECORDS = [
-    GroundMotion(np.random.default_rng(seed).normal(size=n), dt)
-    for seed, n, dt in [(1, 40, 0.3), (2, 7, 0.02)]
-]
+RECORDS = [GroundMotion(np.random.default_rng(seed).normal(size=n), dt) for seed, n, dt in [(1, 40, 0.3), (2, 7, 0.02)]]
 
 
 def polynomial(motion):
@@ -74,9 +71,7 @@ def test_significant_duration(motion, low, high):
 
     total = energy(motion.duration)
     ends = [
-        motion.duration * x
-        if x in (0, 1)
-        else brentq(lambda t, x=x: energy(t) - x * total, 0, motion.duration)
+        motion.duration * x if x in (0, 1) else brentq(lambda t, x=x: energy(t) - x * total, 0, motion.duration)
         for x in (low, high)
     ]
     assert motion.significant_duration(low, high) == pytest.approx(ends[1] - ends[0], abs=1e-10)

@@ -57,9 +57,7 @@ def test_suite_refuses(motions, text):
 
 
 def test_unknown_names_suggest_the_nearest():
-    with pytest.raises(
-        InputError, match=r"'fema-p695-far-field' is named 'FF-12-c'.*'FF-12-b'.*lists all 44"
-    ):
+    with pytest.raises(InputError, match=r"'fema-p695-far-field' is named 'FF-12-c'.*'FF-12-b'.*lists all 44"):
         load_suite("fema-p695-far-field")["FF-12-c"]
     with pytest.raises(InputError, match="nearest names are 'm1', 'm2', 'm3'"):
         SUITE["zzz"]
@@ -103,9 +101,7 @@ def test_metadata_and_licences_are_there():
 
 
 def test_encoding_is_exact():
-    samples = np.array(
-        [float(f"{m}e-{e}") for m in (0, 1, -935864, 8425513, -1178028) for e in (3, 7, 12, 14)]
-    )
+    samples = np.array([float(f"{m}e-{e}") for m in (0, 1, -935864, 8425513, -1178028) for e in (3, 7, 12, 14)])
     assert decode(encode(samples, 7)).tobytes() == samples.tobytes()
     with pytest.raises(ValueError, match="not decimals of 7 significant digits"):
         encode(np.array([1 / 3]), 7)

@@ -30,9 +30,7 @@ def frame(n_modes=3, **changes):
 def shaking(dt=0.02, duration=4.0):
     """Two sines under an envelope; starts and ends away from zero."""
     t = np.arange(0.0, duration + 0.5 * dt, dt)
-    return (
-        3.5 * np.sin(np.pi * (t + 0.2) / (duration + 0.5)) * (np.sin(9.0 * t + 0.4) + 0.6 * np.sin(27.0 * t))
-    )
+    return 3.5 * np.sin(np.pi * (t + 0.2) / (duration + 0.5)) * (np.sin(9.0 * t + 0.4) + 0.6 * np.sin(27.0 * t))
 
 
 def assert_same(one, two, rtol):

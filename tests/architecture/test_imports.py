@@ -1,0 +1,273 @@
+"""The layers' allowed imports, as docs/design/0001-layers.md has them, against the source as it stands."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2] / "src" / "rockflex"
+
+# What each layer may import besides itself and the foundation. A new layer needs a row here.
+ALLOWED = {
+    "motion": set(),
+    "modal": set(),
+    "parallel": set(),
+    "structure": {"modal"},
+    "models": {"modal"},
+    "solve": {"models", "motion"},
+    "response": {"solve", "models", "modal"},
+    "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel"},
+    "plot": {"motion", "modal", "structure", "response", "study"},
+}
+FOUNDATION = {"_checks", "_constants", "_errors", "_kernel"}  # every layer may import these; they only each other
+FACES = {"cli", "__main__"}  # may import anything, and nothing below may import them or the package's front
+
+# The one place of each of these libraries.
+HOME = {"matplotlib": {"plot"}, "typer": {"cli"}, "rich": {"cli"}, "numba": {"_kernel"}}
+NEVER_AT_IMPORT = {"pandas"}  # only inside functions, or for the type checker
+NOT_LOADED = {"numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic"}  # by `import rockflex`
+LONGEST = 300  # lines
+
+RUNTIME, TYPING, DEFERRED = "when the module is imported", "for the type checker", "inside a function"
+
+
+@dataclass(frozen=True)
+class Import:
+    """One imported module: from where, what, and when it is loaded."""
+
+    importer: str
+    line: int
+    target: str
+    when: str
+
+    def __str__(self) -> str:
+        return f"{self.importer}:{self.line} imports {self.target} {self.when}"
+
+
+def read(root: Path) -> dict[str, str]:
+    """Source of every module of the package by its dotted name, `__init__` included."""
+    paths = sorted(root.rglob("*.py"))
+    names = [".".join(path.relative_to(root.parent).with_suffix("").parts) for path in paths]
+    return {name: path.read_text("utf-8") for name, path in zip(names, paths, strict=True)}
+
+
+def imports(sources: dict[str, str]) -> list[Import]:
+    """Every import of every module, wherever it stands."""
+    modules = {public(name) for name in sources}
+    return [found for name in sources for found in _walk(name, ast.parse(sources[name]), modules, RUNTIME)]
+
+
+def _walk(name: str, node: ast.AST, modules: set[str], when: str) -> Iterator[Import]:
+    for child in ast.iter_child_nodes(node):
+        for target in _targets(name, child, modules):
+            yield Import(name, child.lineno, target, when)
+        then = when
+        if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            then = DEFERRED
+        elif isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test) and when == RUNTIME:
+            for part in child.body:  # what stands under `else` is loaded
+                yield from _walk(name, ast.Module([part], []), modules, TYPING)
+            child = ast.Module(child.orelse, [])
+        yield from _walk(name, child, modules, then)
+
+
+def _targets(name: str, node: ast.AST, modules: set[str]) -> list[str]:
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    if isinstance(node, ast.ImportFrom):
+        above = name.split(".")[: -node.level] if node.level else []
+        base = ".".join([*above, node.module] if node.module else above)
+        # `from package import module` names a module, `from module import thing` does not.
+        return [full if (full := f"{base}.{alias.name}") in modules else base for alias in node.names]
+    if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__"):
+        return [arg.value for arg in node.args[:1] if isinstance(arg, ast.Constant) and isinstance(arg.value, str)]
+    return []
+
+
+def public(name: str) -> str:
+    """Name by which a module is imported."""
+    return name.removesuffix(".__init__")
+
+
+def layer(module: str) -> str:
+    """Second part of the dotted name; empty for the package's own front."""
+    return [*public(module).split("."), ""][1]
+
+
+def forbidden(found: list[Import]) -> list[str]:
+    """Imports between our modules that the table does not have."""
+    wrong = []
+    for each in found:
+        if each.target.split(".")[0] != "rockflex":
+            continue
+        importer, target = layer(each.importer), layer(each.target)
+        if importer in FACES or importer == target:
+            continue
+        known = FOUNDATION if importer in FOUNDATION or importer == "" else ALLOWED.get(importer, set()) | FOUNDATION
+        if target not in known:
+            wrong.append(str(each))
+    return wrong
+
+
+def misplaced(found: list[Import]) -> list[str]:
+    """Imports of libraries outside their one place, or at a time when they cost every user."""
+    wrong = []
+    for each in found:
+        library = each.target.split(".")[0]
+        home = HOME.get(library)
+        elsewhere = home is not None and layer(each.importer) not in home
+        if elsewhere or (library in NEVER_AT_IMPORT and each.when == RUNTIME):
+            wrong.append(str(each))
+    return wrong
+
+
+def cycle(found: list[Import], sources: dict[str, str]) -> list[str]:
+    """Modules that import each other in a ring, the type checker's imports included; empty if there is none."""
+    graph: dict[str, set[str]] = {public(name): set() for name in sources}
+    for each in found:
+        if each.when != DEFERRED and each.target in graph:
+            graph[public(each.importer)].add(each.target)
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def careless(sources: dict[str, str]) -> list[str]:
+    """Modules without a docstring, too long, or of a layer that the table does not know."""
+    wrong = []
+    for name, source in sources.items():
+        length = len(source.splitlines())
+        if length > LONGEST:
+            wrong.append(f"{name} has {length} lines")
+        if not ast.get_docstring(ast.parse(source)):
+            wrong.append(f"{name} has no docstring")
+        if layer(name) not in ALLOWED.keys() | FOUNDATION | FACES | {""}:
+            wrong.append(f"{name} belongs to no layer of the table")
+    return wrong
+
+
+SOURCES = read(ROOT)
+FOUND = imports(SOURCES)
+
+
+def test_the_walk_sees_the_package() -> None:
+    assert {"rockflex.__init__", "rockflex._kernel", "rockflex.solve.exact.unit"} <= SOURCES.keys()
+    assert [each.importer for each in FOUND if each.target == "numba"] == ["rockflex._kernel"]
+    assert any(each.when == DEFERRED for each in FOUND)
+    assert any(each.when == TYPING for each in FOUND)
+
+
+def test_the_table_points_downward_only() -> None:
+    TopologicalSorter(ALLOWED).prepare()
+    assert set().union(*ALLOWED.values()) <= ALLOWED.keys()
+
+
+def test_layers_import_only_what_the_table_allows() -> None:
+    assert forbidden(FOUND) == []
+
+
+def test_libraries_stay_in_their_place() -> None:
+    assert misplaced(FOUND) == []
+
+
+def test_no_import_cycles_between_files() -> None:
+    assert cycle(FOUND, SOURCES) == []
+
+
+def test_every_module_is_short_documented_and_of_a_layer() -> None:
+    assert careless(SOURCES) == []
+
+
+def test_importing_the_package_loads_no_heavy_library() -> None:
+    program = f"import sys, rockflex; rockflex.__version__; print(*sorted({NOT_LOADED!r} & sys.modules.keys()))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
+def synthetic(modules: dict[str, str]) -> dict[str, str]:
+    """A package of one's own: keys are paths; every package has an `__init__`."""
+    sources = {f"rockflex.{name.replace('/', '.')}": text for name, text in modules.items()}
+    packages = {".".join(name.split(".")[:i]) for name in sources for i in range(1, name.count(".") + 1)}
+    return {f"{package}.__init__": "" for package in packages} | sources
+
+
+@pytest.mark.parametrize(
+    ("module", "source"),
+    [
+        ("motion/_pulses", "from rockflex.structure import Frame"),
+        ("motion/_pulses", "import rockflex.solve.exact as engine"),
+        ("motion/_pulses", "from rockflex import study"),
+        ("motion/_pulses", "from rockflex import Frame"),
+        ("motion/_pulses", "from ..study import simulate"),
+        ("motion/__init__", "from ..study import simulate"),
+        ("modal/_rocking", "def f():\n    from rockflex.motion import GroundMotion"),
+        ("modal/_rocking", "class A:\n    def f(self):\n        if self:\n            import rockflex.plot"),
+        ("solve/exact/unit", "if TYPE_CHECKING:\n    from rockflex.modal import RockingProperties"),
+        ("solve/exact/unit", "if typing.TYPE_CHECKING:\n    pass\nelse:\n    from rockflex.modal import X"),
+        ("solve/exact/unit", "engine = importlib.import_module('rockflex.study')"),
+        ("models/_linear", "try:\n    from rockflex.solve import Solution\nexcept ImportError:\n    pass"),
+        ("response/_file", "from rockflex.cli import main"),
+        ("plot/_history", "from rockflex.solve import Solution"),
+        ("_checks", "from rockflex.motion import GroundMotion"),
+    ],
+)
+def test_a_forbidden_arrow_is_seen(module: str, source: str) -> None:
+    sources = synthetic({"study/_table": "", "plot/_style": "", module: source})
+    (wrong,) = forbidden(imports(sources))
+    assert f"rockflex.{module.replace('/', '.')}:" in wrong
+
+
+def test_allowed_arrows_pass() -> None:
+    sources = synthetic(
+        {
+            "_checks": "from rockflex._errors import InputError",
+            "structure/_frame": "from rockflex.modal import f\nfrom ._lumped import g\nfrom .. import _checks",
+            "structure/_lumped": "import numpy",
+            "cli/_run": "import rockflex as rf, typer, rich.console\nfrom rockflex.study import simulate",
+            "study/_table": "import pandasql\ndef f():\n    import pandas\nif TYPE_CHECKING:\n    import pandas as pd",
+            "plot/_history": "import matplotlib.pyplot as plt",
+        }
+    )
+    found = imports(sources)
+    assert len(found) == 13
+    assert forbidden(found) == []
+    assert misplaced(found) == []
+    assert cycle(found, sources) == []
+
+
+@pytest.mark.parametrize(
+    ("module", "source"),
+    [
+        ("study/_table", "import pandas as pd"),
+        ("study/_table", "class A:\n    from pandas import DataFrame"),
+        ("study/_table", "if TYPE_CHECKING:\n    pass\nelse:\n    import pandas"),
+        ("response___history", "def show():\n    import matplotlib.pyplot as plt"),
+        ("study/_table", "from rich.table import Table"),
+        ("motion/_spectrum_kernel", "from numba import njit"),
+    ],
+)
+def test_a_misplaced_library_is_seen(module: str, source: str) -> None:
+    (wrong,) = misplaced(imports(synthetic({module: source})))
+    assert "imports" in wrong
+
+
+def test_a_cycle_is_seen() -> None:
+    ring = synthetic({"modal/_a": "from rockflex.modal._b import x", "modal/_b": "from . import _a"})
+    assert {"rockflex.modal._a", "rockflex.modal._b"} == set(cycle(imports(ring), ring))
+    late = synthetic({"modal/_a": "from rockflex.modal._b import x", "modal/_b": "def f():\n    from . import _a"})
+    assert cycle(imports(late), late) == []
+
+
+def test_a_careless_module_is_seen() -> None:
+    text = '"""A docstring."""\n'
+    assert careless({"rockflex.modal": text * LONGEST}) == []
+    assert careless({"rockflex.modal": text * (LONGEST + 1)}) == ["rockflex.modal has 301 lines"]
+    assert careless({"rockflex.modal": "x = 1"}) == ["rockflex.modal has no docstring"]
+    assert careless({"rockflex.wizard._a": text}) == ["rockflex.wizard._a belongs to no layer of the table"]

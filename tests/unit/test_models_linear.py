@@ -1,0 +1,100 @@
+"""The rows of the simplified models against Eqs. 15 and 23-25 as they are printed, in random states."""
+
+import numpy as np
+import pytest
+
+from rockflex import Frame
+from rockflex.models import LinearModel, Model
+
+GRAVITY = 9.81
+
+
+def model(n_modes, *, lifts=True):
+    frame = Frame(
+        n_stories=4,
+        story_height=3.0,
+        story_mass=40e3,
+        base_mass=60e3,
+        stiffness_ratio=0.125,
+        period=0.6,
+        aspect_ratio=9.0,
+        damping_ratio=0.03,
+    )
+    return Model(n_modes, lifts).of(frame.rocking())
+
+
+def draw(n, seed=0):
+    """A state with the ground acceleration and the side: the vector on which rows act."""
+    return np.random.default_rng(seed).standard_normal(2 * n + 4) * 0.1
+
+
+@pytest.mark.parametrize("n", [1, 2, 4])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_rocking_accelerations_satisfy_equation_23(n, side):
+    tied = model(n)
+    p, x = tied.properties, draw(n)
+    x[-1] = side
+    d, v, turn, a = x[:n], x[n : 2 * n], x[2 * n], x[-2]
+    angular = tied.angular_acceleration() @ x
+    modal = tied.modal_accelerations(rocking=True) @ x
+    arm = p.effective_mass * p.effective_height
+    weight = -side * p.m_tot * GRAVITY * p.half_width + p.l0r * GRAVITY * turn
+    assert p.i_theta * angular + arm @ modal == pytest.approx(weight - p.l0r * a, rel=1e-12)
+    inertial = modal + p.effective_height * angular
+    np.testing.assert_allclose(
+        inertial + 2.0 * p.zeta * p.omega * v + p.omega**2 * d, np.full(n, -a), rtol=0.0, atol=1e-10 * abs(modal).max()
+    )
+
+
+@pytest.mark.parametrize("n", [1, 2, 4])
+def test_contact_satisfies_equations_15_and_24(n):
+    tied = model(n)
+    p, x = tied.properties, draw(n, 1)
+    d, v, a = x[:n], x[n : 2 * n], x[-2]
+    modal = tied.modal_accelerations(rocking=False) @ x
+    np.testing.assert_allclose(modal, -a - 2.0 * p.zeta * p.omega * v - p.omega**2 * d, rtol=1e-13)
+    moment = (p.effective_mass * p.effective_height) @ modal + p.l0r * a
+    assert tied.contact_moment() @ x == pytest.approx(moment, rel=1e-12)
+
+
+def test_at_uplift_the_rotation_starts_from_what_the_weight_cannot_hold():
+    tied = model(2)
+    x = draw(2, 2)
+    x[4:6] = 0.0
+    for side in (1.0, -1.0):
+        x[-1] = side
+        excess = -tied.contact_moment() @ x - side * tied.resistance
+        assert tied.angular_acceleration() @ x == pytest.approx(excess / tied.free_inertia, rel=1e-12)
+
+
+def test_impact_keeps_what_each_mode_moves_horizontally():
+    tied = model(4)
+    p = tied.properties
+    before = draw(4, 3)[:-2]
+    kept = before.copy()
+    after = tied.after_impact(before)
+    assert np.array_equal(before, kept)  # the state given is left as it was
+    assert np.array_equal(after[:4], before[:4])
+    np.testing.assert_allclose(after[4:8], before[4:8] + p.effective_height * before[-1])
+    assert not after[-2:].any()
+
+    def kinetic(state):
+        v, spin = state[4:8], state[-1]
+        lever = p.effective_mass * p.effective_height
+        return 0.5 * p.i_theta * spin**2 + spin * (lever @ v) + 0.5 * p.effective_mass @ v**2
+
+    loss = 0.5 * before[-1] ** 2 * tied.free_inertia
+    assert kinetic(before) - kinetic(after) == pytest.approx(loss, rel=1e-10)
+
+
+def test_a_fixed_base_resists_any_moment():
+    free, fixed = model(2), model(2, lifts=False)
+    assert free.resistance == free.properties.m_tot * GRAVITY * free.properties.half_width
+    assert fixed.resistance == np.inf
+    assert np.array_equal(free.contact_moment(), fixed.contact_moment())
+
+
+def test_with_all_modes_the_free_inertia_is_that_of_the_half_width():
+    # Σ m* h*² = Σ m h² then, so that m_tot B² is left of I_θ.
+    p = model(4).properties
+    assert LinearModel("MDOF-S", p).free_inertia == pytest.approx(p.m_tot * p.half_width**2, rel=1e-9)
