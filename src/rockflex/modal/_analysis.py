@@ -6,9 +6,9 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._checks import mode_count
 from rockflex._errors import InputError
-from rockflex.modal._arguments import mode_count
-from rockflex.modal._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
+from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
 
 __all__ = ["ModalProperties", "modal_properties"]
 

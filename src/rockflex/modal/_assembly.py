@@ -5,12 +5,11 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import damping_ratios, mode_count, positive
 from rockflex._errors import InputError
+from rockflex._matrices import checked_heights, checked_mass, mass_times
 from rockflex.modal._analysis import ModalProperties
-from rockflex.modal._arguments import damping_ratios, mode_count
 from rockflex.modal._floors import FloorModes
-from rockflex.modal._matrices import checked_heights, checked_mass, mass_times
 from rockflex.modal._rocking import RockingProperties
 
 __all__ = ["rocking_properties"]

@@ -6,8 +6,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import finite_vector
-from rockflex.modal._arguments import dimensions, finite_matrix, mode_count
+from rockflex._checks import dimensions, finite_matrix, finite_vector, mode_count
 
 __all__ = ["FloorModes"]
 

@@ -7,10 +7,9 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import damping_ratios, finite_vector, mode_count, positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.modal._arguments import damping_ratios, mode_count
 from rockflex.modal._floors import FloorModes
 
 __all__ = ["RockingProperties"]

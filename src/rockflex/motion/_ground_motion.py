@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import finite, finite_vector, positive
 from rockflex._errors import InputError
 from rockflex.motion import _measures, _processing
-from rockflex.motion._arguments import finite
 from rockflex.motion._record_info import RecordInfo
 
 if TYPE_CHECKING:

@@ -4,9 +4,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
-from rockflex.motion._arguments import whole
 from rockflex.motion._measures import velocity
 
 __all__ = ["band_pass", "baseline_correct", "refine", "refinement_of"]
@@ -16,7 +15,7 @@ Float = NDArray[np.float64]
 
 def refine(a: Float, k: int) -> Float:
     """Split every interval into `k` collinear ones."""
-    k = whole("k", k, 1)
+    k = whole_number("k", k, 1)
     inside = a[:-1, None] + np.diff(a)[:, None] * (np.arange(k) / k)
     return np.append(inside.ravel(), a[-1])
 
@@ -39,7 +38,7 @@ def refinement_of(old: float, new: float) -> int:
 
 def baseline_correct(a: Float, dt: float, degree: int) -> Float:
     """Remove the polynomial whose exact integral fits the velocity best (least squares at the samples)."""
-    degree = whole("degree", degree, 0)
+    degree = whole_number("degree", degree, 0)
     if degree > a.size - 2:
         message = (
             f"degree must be at most {a.size - 2} for {a.size} samples, but {degree} was given: "
@@ -64,7 +63,7 @@ def band_pass(a: Float, dt: float, low: float, high: float, order: int) -> Float
             f"of dt = {dt:g} s, but low={low!r} and high={high!r} were given."
         )
         raise InputError(message)
-    order = whole("order", order, 1)
+    order = whole_number("order", order, 1)
     sections = butter(order, (low, high), btype="bandpass", output="sos", fs=1 / dt)
     padding = 3 * (2 * len(sections) + 1)
     if a.size <= padding:

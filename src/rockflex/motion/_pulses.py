@@ -11,9 +11,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import finite, positive
 from rockflex._errors import InputError
-from rockflex.motion._arguments import finite
 from rockflex.motion._ground_motion import GroundMotion
 
 __all__ = [

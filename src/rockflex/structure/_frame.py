@@ -8,10 +8,9 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import in_range, positive
+from rockflex._checks import in_range, positive, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties
-from rockflex.modal._arguments import whole_number
 from rockflex.structure._lumped import LumpedStructure
 
 __all__ = ["Frame"]

@@ -7,10 +7,9 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import damping_ratios, positive
+from rockflex._matrices import checked_heights, checked_mass, checked_stiffness
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
-from rockflex.modal._arguments import damping_ratios
-from rockflex.modal._matrices import checked_heights, checked_mass, checked_stiffness
 
 __all__ = ["LumpedStructure"]
 

@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import finite_vector
+from rockflex._checks import dimensions, finite_matrix, finite_vector
 from rockflex._errors import InputError
-from rockflex.modal._arguments import dimensions, finite_matrix
 
 __all__ = ["checked_heights", "checked_mass", "checked_stiffness", "mass_times"]
 
