@@ -6,6 +6,8 @@ from rockflex.solve.exact.series import bend, evaluate, first_descent
 
 __all__ = ["raise_peak", "raise_peaks", "raise_to", "raise_to_state"]
 
+MOST_TURNS = 64  # of a row within a unit, in which no mode turns by more than a radian
+
 
 @kernel
 def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
@@ -33,7 +35,7 @@ def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, lo
     work = polys.shape[0] - 1
     direction = 1.0 if polys[row, 1] >= 0.0 else -1.0
     u = 0.0
-    while True:
+    for _ in range(MOST_TURNS):
         polys[work, polys.shape[1] - 1] = 0.0
         for k in range(polys.shape[1] - 1):
             polys[work, k] = direction * (k + 1.0) * polys[row, k + 1]

@@ -14,6 +14,8 @@ from rockflex.solve.exact.layout import Array, Physics
 
 __all__ = ["advance", "bend", "evaluate", "expand", "first_descent", "row_series"]
 
+MOST_STEPS = 10_000  # a few do; only a root touched to a high order takes more, and then this close is close enough
+
 
 @kernel
 def expand(
@@ -137,7 +139,7 @@ def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
     """
     curvature = bend(polys, row)
     u = start
-    while True:
+    for _ in range(MOST_STEPS):
         value, slope = evaluate(polys, row, u)
         if value <= 0.0 and slope <= 0.0:
             return u
@@ -153,3 +155,4 @@ def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
         if step <= 2e-16:
             return u
         u += step
+    return u
