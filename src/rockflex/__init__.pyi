@@ -21,6 +21,12 @@ from .motion import read_suite as read_suite
 from .motion import rectangular_pulse as rectangular_pulse
 from .motion import ricker_pulse as ricker_pulse
 from .motion import suite_names as suite_names
+from .plot import plot_energy as plot_energy
+from .plot import plot_history as plot_history
+from .plot import plot_mode_shapes as plot_mode_shapes
+from .plot import plot_moment_rotation as plot_moment_rotation
+from .plot import plot_motion as plot_motion
+from .plot import save_figure as save_figure
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History

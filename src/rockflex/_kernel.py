@@ -1,6 +1,9 @@
 """The one decorator of every compiled kernel."""
 
+import hashlib
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from numba import njit
@@ -24,4 +27,20 @@ def kernel(function: F) -> F:
 
     A kernel writes into the arrays that it is given; it can neither make an array nor return one.
     """
-    return cast("F", njit(**_OPTIONS)(function))
+    compiled = njit(**_OPTIONS)(function)
+    # numba's cache sees a change of a kernel's own file alone, not of the kernels that were compiled into it.
+    file = getattr(getattr(compiled, "_cache", None), "_cache_file", None)
+    if file is not None:
+        file._source_stamp = (file._source_stamp, sources_digest())
+    return cast("F", compiled)
+
+
+@cache
+def sources_digest() -> str:
+    """Digest of all sources that hold kernels, so that none compiled from others is ever used again."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        source = path.read_bytes()
+        if b"_kernel import kernel" in source:
+            digest.update(source)
+    return digest.hexdigest()

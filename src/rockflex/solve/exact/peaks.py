@@ -6,6 +6,7 @@ from rockflex.solve.exact.series import bend, evaluate, first_descent
 
 __all__ = ["raise_peak", "raise_peaks", "raise_to", "raise_to_state"]
 
+ROUNDING = 1e-16
 MOST_TURNS = 64  # of a row within a unit, in which no mode turns by more than a radian
 
 
@@ -30,15 +31,17 @@ def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, lo
     if max(first, last) > log.peaks[row]:
         log.peaks[row] = max(first, last)
         log.times[row] = time + (step * stop if last >= first else 0.0)
-    if max(first, last) + bend(polys, row) * stop * stop / 8.0 <= log.peaks[row]:
+    if max(first, last) + bend(polys, row, stop) * stop * stop / 8.0 <= log.peaks[row]:
         return
-    work = polys.shape[0] - 1
-    direction = 1.0 if polys[row, 1] >= 0.0 else -1.0
+    # From rest a row grows like a power of time; the slope's zeros at 0 are divided out, else they are found for ever.
+    work, terms, zeros = polys.shape[0] - 1, polys.shape[1], 1
+    while zeros < terms - 1 and abs(polys[row, zeros]) <= ROUNDING * reach:
+        zeros += 1
+    direction = 1.0 if polys[row, zeros] >= 0.0 else -1.0
     u = 0.0
     for _ in range(MOST_TURNS):
-        polys[work, polys.shape[1] - 1] = 0.0
-        for k in range(polys.shape[1] - 1):
-            polys[work, k] = direction * (k + 1.0) * polys[row, k + 1]
+        for k in range(terms):
+            polys[work, k] = direction * (k + zeros) * polys[row, k + zeros] if k + zeros < terms else 0.0
         u = first_descent(polys, work, u, stop)
         if u >= stop:
             return

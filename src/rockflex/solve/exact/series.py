@@ -120,38 +120,46 @@ def evaluate(polys: Array, row: int, u: float) -> tuple[float, float]:
 
 
 @kernel
-def bend(polys: Array, row: int) -> float:
-    """Bound of the second derivative's magnitude over [0, 1]."""
+def bend(polys: Array, row: int, u: float) -> float:
+    """Bound of the second derivative's magnitude over [0, u]."""
     total = 0.0
-    factor = 2.0
-    for k in range(2, polys.shape[1]):
-        total += factor * abs(polys[row, k])
-        factor += 2.0 * k
+    for k in range(polys.shape[1] - 1, 1, -1):
+        total = total * u + k * (k - 1.0) * abs(polys[row, k])
     return total
 
 
 @kernel
+def rootless(value: float, slope: float, curvature: float) -> float:
+    """Length from a point on over which a function, not negative there, cannot fall below zero."""
+    root = math.sqrt(max(slope * slope + 2.0 * curvature * value, 0.0))
+    if slope < 0.0:
+        return 2.0 * value / (root - slope)
+    return (slope + root) / curvature if curvature > 0.0 else np.inf
+
+
+@kernel
 def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
-    """First point of [start, stop] in [0, 1] where a polynomial, not negative at `start`, falls to zero; inf if none.
+    """First point of [start, stop] where a polynomial, not negative at `start`, falls to zero; inf if none.
 
     Each step is the longest over which the bound of the second derivative forbids a root. Near a simple root
     that is Newton's step, always from the safe side, so no root can be passed over.
     """
-    curvature = bend(polys, row)
+    curvature = bend(polys, row, stop)
     u = start
     for _ in range(MOST_STEPS):
         value, slope = evaluate(polys, row, u)
         if value <= 0.0 and slope <= 0.0:
             return u
-        root = math.sqrt(max(slope * slope + 2.0 * curvature * value, 0.0))
-        if slope < 0.0:
-            step = 2.0 * value / (root - slope)
-        elif curvature > 0.0:
-            step = (slope + root) / curvature
-        else:
-            return np.inf
+        step = rootless(value, slope, curvature)
         if u + step >= stop:
             return np.inf
+        if step < u:
+            # Where a polynomial is flat at first, the bound over what lies just ahead is much the lesser one.
+            ahead = min(2.0 * u, stop)
+            near = rootless(value, slope, bend(polys, row, ahead))
+            if u + near >= stop and ahead == stop:
+                return np.inf
+            step = max(step, min(near, ahead - u))
         if step <= 2e-16:
             return u
         u += step

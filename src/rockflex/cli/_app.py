@@ -1,0 +1,78 @@
+"""The application: its commands, its version, and how its failures end."""
+
+import sys
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from rockflex import __version__
+from rockflex._errors import InputError, SolverError
+from rockflex.cli import _modes, _motion, _run
+from rockflex.cli._console import complain
+
+__all__ = ["app", "main"]
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex motion fema-p695-far-field
+
+rockflex modes structure.toml
+
+rockflex run structure.toml el-centro-1940 --model 2DOF-S,MDOF-S --scale 1.5 --out results
+
+[bold]Exit codes[/bold]
+
+0: done; 1: a run could not be solved; 2: something given cannot be used."""
+
+
+class Commands(TyperGroup):
+    """Commands whose errors end in one paragraph on stderr and an exit code: 2 for input, 1 for the solver."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that the line names."""
+        try:
+            return super().invoke(ctx)
+        except (InputError, SolverError) as error:
+            complain(str(error))
+            raise typer.Exit(2 if isinstance(error, InputError) else 1) from error
+
+
+app = typer.Typer(
+    name="rockflex",
+    cls=Commands,
+    epilog=EPILOG,
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command("run", epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
+app.command("modes", epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
+app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"rockflex {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def rockflex(
+    _: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit."),
+    ] = False,
+) -> None:
+    """Seismic response of flexible structures whose base may uplift and rock: exact, and fast."""
+
+
+def main() -> None:
+    """Run the command line; the entry point of ``rockflex`` and ``python -m rockflex``."""
+    for stream in (sys.stdout, sys.stderr):
+        # A terminal without Greek letters shows question marks, and no traceback.
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # pyright: ignore[reportAttributeAccessIssue]
+    app(prog_name="rockflex")

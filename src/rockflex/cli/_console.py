@@ -1,0 +1,108 @@
+"""What is printed: tables on stdout, everything else on stderr."""
+
+import math
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+__all__ = ["complain", "fits", "grid", "moment_unit", "note", "number", "output", "progress", "show"]
+
+
+def complain(message: str) -> None:
+    """Print an error to stderr as one paragraph."""
+    from rich.console import Console
+    from rich.text import Text
+
+    text = Text.assemble(("Error: ", "bold red"), " ".join(message.split()))
+    Console(stderr=True).print(text, soft_wrap=True)
+
+
+def note(message: str) -> None:
+    """Print a remark to stderr."""
+    from rich.console import Console
+
+    Console(stderr=True).print(message, markup=False, highlight=False, soft_wrap=True)
+
+
+def output() -> "Console":
+    """Return the console of stdout."""
+    from rich.console import Console
+
+    return Console(highlight=False)
+
+
+def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
+    """Return a table whose first `n_left` columns are words, aligned to the left, and the others numbers."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    look: dict[str, Any] = {"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "collapse_padding": True}
+    table = Table(**look)
+    for place, heading in enumerate(headings):
+        # Units stand below the names, which keeps the columns narrow.
+        table.add_column(
+            Text(heading.replace(" [", "\n[")), justify="left" if place < n_left else "right", no_wrap=True
+        )
+    for row in rows:
+        table.add_row(*(Text(cell, style=STYLES.get(cell.rstrip(" †"), "")) for cell in row))
+    return table
+
+
+STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no uplift": "green"}
+
+
+@contextmanager
+def progress(title: str, total: int | None = None) -> Generator[Callable[[int], None], None, None]:
+    """Show a bar on stderr while the work lasts, on a terminal only; what is given advances it by so many steps."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    from rich.progress import Progress
+
+    with Progress(console=console, transient=True) as bar:
+        task = bar.add_task(title, total=total)
+        yield lambda steps: bar.advance(task, steps)
+
+
+def fits(console: "Console", table: "Table") -> bool:
+    """Tell whether a table can be printed without cutting it."""
+    return _width(console, table) <= console.width
+
+
+def show(console: "Console", table: "Table") -> None:
+    """Print a table whole, if need be beyond the width of the terminal."""
+    from rich.console import Console
+
+    width = _width(console, table)
+    if width > console.width:
+        console = Console(width=width, highlight=False)
+    console.print(table)
+
+
+def _width(console: "Console", table: "Table") -> int:
+    return console.measure(table, options=console.options.update(width=100_000)).maximum
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """Write a number with so many significant digits, with an exponent only where it is very large or small."""
+    if value is None or math.isnan(value):
+        return "-"
+    if value == 0.0 or math.isinf(value):
+        return f"{value:g}"
+    magnitude = math.floor(math.log10(abs(value)))
+    if not -5 <= magnitude < 7:
+        return f"{value:.{digits - 1}e}"
+    return f"{value:.{max(0, digits - 1 - magnitude)}f}"
+
+
+def moment_unit(largest: float) -> tuple[str, float]:
+    """Return the unit in which moments up to `largest` (N m) are written, and its size in N m."""
+    return ("MN m", 1e6) if largest >= 1e7 else ("kN m", 1e3)

@@ -1,0 +1,149 @@
+"""``rockflex modes``: modes and rocking parameters of a structure."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rockflex._errors import InputError
+from rockflex.cli import _options as options
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rockflex.cli._structures import LoadedStructure
+    from rockflex.modal import RockingProperties
+
+__all__ = ["EPILOG", "modes"]
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex modes structure.toml
+
+rockflex modes structure.toml --modes 3 --json
+
+rockflex modes --stories 5 --story-height 3 --story-mass 40e3 --base-mass 40e3 --stiffness-ratio inf \
+--period 1 --aspect-ratio 10 --damping-ratio 0.02 --out modes"""
+
+UNITS = {
+    "period": "s",
+    "omega": "rad/s",
+    "effective_mass": "kg",
+    "effective_height": "m",
+    "i_theta": "kg m²",
+    "l0r": "kg m",
+    "m_tot": "kg",
+    "half_width": "m",
+    "resisting_moment": "N m",
+    "nominal_overturning_rotation": "rad",
+    "translational_inertia": "kg m²",
+}
+
+
+def modes(
+    file: Annotated[
+        str | None, typer.Argument(metavar="STRUCTURE.toml", help="The structure's file.", show_default=False)
+    ] = None,
+    structure: options.StructureFile = None,
+    n_modes: Annotated[int | None, typer.Option("--modes", metavar="N", help="The first N modes alone.")] = None,
+    json: options.Json = False,
+    out: options.Out = None,
+    force: options.Force = False,
+    stories: options.Stories = None,
+    story_height: options.StoryHeight = None,
+    story_mass: options.StoryMass = None,
+    base_mass: options.BaseMass = None,
+    stiffness_ratio: options.Stiffness = None,
+    period: options.Period = None,
+    aspect_ratio: options.AspectRatio = None,
+    damping_ratio: options.DampingRatio = None,
+) -> None:
+    """Print the modes of a structure on a fixed base, and what it takes to rock."""
+    from rockflex.cli._output import check_folder, to_json, versions
+    from rockflex.cli._structures import describe_properties, load_structure, split_arguments
+
+    check_folder(out, force=force)
+    frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
+    path, rest = split_arguments(structure, [] if file is None else [file])
+    if rest:
+        message = f"{file} is no structure file: a name that ends in .toml is expected."
+        raise InputError(message)
+    loaded = load_structure(path, options.frame_arguments(frame))
+    properties = loaded.properties
+    if n_modes is not None:
+        properties = properties.truncated(n_modes)
+    rows = _rows(loaded, properties)
+    rocking = describe_properties(properties)
+    document: dict[str, Any] = {
+        "versions": versions(),
+        "structure": loaded.describe(),
+        "modes": rows,
+        "rocking": {name: value for name, value in rocking.items() if isinstance(value, float)},
+        "units": UNITS,
+    }
+    if out is not None:
+        _write(out, document, loaded, properties.n_modes, force=force)
+    if json:
+        typer.echo(to_json(document))
+    else:
+        _print(loaded, rows, properties)
+
+
+def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:
+    """One row a mode, in SI units; the share is of the mass above the base where that is known, else of all."""
+    import math
+
+    return [
+        {
+            "mode": k + 1,
+            "period": 2.0 * math.pi / properties.omega[k],
+            "omega": properties.omega[k],
+            "effective_mass": properties.effective_mass[k],
+            "mass_share": properties.effective_mass[k] / loaded.reference_mass,
+            "effective_height": properties.effective_height[k],
+            "top_ordinate": properties.top_ordinate[k],
+            "zeta": properties.zeta[k],
+        }
+        for k in range(properties.n_modes)
+    ]
+
+
+def _print(loaded: "LoadedStructure", rows: list[dict[str, Any]], p: "RockingProperties") -> None:
+    from rockflex.cli._console import grid, moment_unit, number, output, show
+
+    console = output()
+    console.print(f"{loaded.title}\n", markup=False, soft_wrap=True)
+    share = "m*_n/m_tot" if loaded.kind == "properties" else "m*_n/Σm"
+    headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
+    keys = ("period", "omega", "mass_share", "effective_height", "top_ordinate", "zeta")
+    show(console, grid(headings, [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]))
+    total = sum(float(row["mass_share"]) for row in rows)
+    unit, size = moment_unit(p.resisting_moment)
+    values = (
+        (f"Sum of {share}", number(total), ""),
+        ("Moment of inertia about a pivot, I_θ", number(p.i_theta), "kg m²"),
+        ("First moment of mass, L_0^r", number(p.l0r), "kg m"),
+        ("Total mass with the base, m_tot", number(p.m_tot), "kg"),
+        ("Half width of the base, B", number(p.half_width), "m"),
+        ("Resisting moment, M_r = m_tot g B", number(p.resisting_moment / size), unit),
+        ("Nominal limit, 0.7 atan(B/h*_1)", number(p.nominal_overturning_rotation), "rad"),
+    )
+    console.print()
+    show(console, grid(("Rocking", "", ""), values))
+
+
+def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", n_modes: int, *, force: bool) -> None:
+    import pandas as pd
+
+    from rockflex.cli._console import note
+    from rockflex.cli._output import staged
+    from rockflex.modal import RockingProperties
+
+    built = loaded.built
+    drawn = not isinstance(built, RockingProperties)
+    with staged(folder, document, force=force) as stage:
+        pd.DataFrame(document["modes"]).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
+        if drawn:
+            from rockflex.plot import plot_mode_shapes, save_figure
+
+            save_figure(plot_mode_shapes(built, n_modes=n_modes), stage / "mode-shapes.png")
+    note(f"Written to {folder}" + ("" if drawn else "; no figure, as [properties] hold no mode shapes"))

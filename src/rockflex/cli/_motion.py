@@ -1,0 +1,167 @@
+"""``rockflex motion``: what is in a record or a suite."""
+
+from collections.abc import Sequence
+from textwrap import fill
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rockflex.cli import _options as options
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rockflex.cli._motions import FoundMotion
+
+__all__ = ["EPILOG", "motion"]
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex motion
+
+rockflex motion fema-p695-far-field --period 0.5 --period 1 --damping 0.02
+
+rockflex motion fema-p695-far-field/FF-12-a --out record
+
+rockflex motion record.csv --units g --dt 0.01 --json"""
+
+UNITS = {
+    "dt": "s",
+    "duration": "s",
+    "pga": "m/s²",
+    "pgv": "m/s",
+    "pgd": "m",
+    "arias": "m/s",
+    "cav": "m/s",
+    "d5_95": "s",
+    "sa_*": "m/s², at the period in s",
+    "metadata.distance_km": "km",
+    "metadata.vs30": "m/s",
+}
+MEASURES = ("pga", "pgv", "pgd", "arias", "cav", "d5_95")
+
+
+def motion(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="MOTION",
+            help="Suites, records (suite/name), files or directories; none: the suites that come with rockflex.",
+            show_default=False,
+        ),
+    ] = None,
+    period: Annotated[
+        list[float] | None,
+        typer.Option(
+            "--period", metavar="S", help="Period of Sa in s; may be repeated. Default: 1.", show_default=False
+        ),
+    ] = None,
+    damping: Annotated[float, typer.Option("--damping", metavar="ZETA", help="Damping ratio of Sa.")] = 0.05,
+    json: options.Json = False,
+    out: options.Out = None,
+    figures: options.Figures = 4,
+    force: options.Force = False,
+    units: options.Units = None,
+    dt: options.Dt = None,
+) -> None:
+    """Print what is known of ground motions and measured from them; without a name, list the embedded suites."""
+    from rockflex.cli._motions import embedded_suites, find_motions
+    from rockflex.cli._output import check_folder, to_json, versions
+
+    check_folder(out, force=force)
+    # A folder or a unit asks for motions, so an empty list of names is an error then.
+    if not names and out is None and units is None and dt is None and period is None:
+        suites = embedded_suites()
+        if json:
+            typer.echo(to_json({"versions": versions(), "suites": suites}))
+        else:
+            _print_suites(suites)
+        return
+    found = find_motions(names or [], units, dt)
+    periods = list(dict.fromkeys(period or [1.0]))
+    rows = [{**item.describe(), **_measures(item, periods, damping)} for item in found]
+    document: dict[str, Any] = {
+        "versions": versions(),
+        "options": {"periods": periods, "damping_ratio": damping},
+        "units": UNITS,
+        "motions": rows,
+    }
+    if out is not None:
+        _write(out, document, found, figures, force=force)
+    if json:
+        typer.echo(to_json(document))
+    else:
+        _print(rows, periods, damping)
+
+
+def _measures(item: "FoundMotion", periods: Sequence[float], damping: float) -> dict[str, float]:
+    sa = item.motion.spectrum(periods, damping).sa
+    spectral = {f"sa_{period:g}": float(value) for period, value in zip(periods, sa, strict=True)}
+    return {**{name: getattr(item.motion, name) for name in MEASURES}, **spectral}
+
+
+def _print_suites(suites: Sequence[dict[str, Any]]) -> None:
+    from rockflex.cli._console import grid, output, show
+
+    console = output()
+    spans = [" ... ".join(dict.fromkeys((row["first"], row["last"]))) for row in suites]
+    rows = [[row["suite"], span, str(row["motions"])] for row, span in zip(suites, spans, strict=True)]
+    show(console, grid(("suite", "records", "motions"), rows, 2))
+    console.print("\nDetails: rockflex motion SUITE, or SUITE/RECORD", markup=False, soft_wrap=True)
+
+
+def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
+    from rockflex._constants import GRAVITY
+    from rockflex.cli._console import fits, grid, number, output, show
+
+    console = output()
+    records: list[list[str]] = []
+    measures: list[list[str]] = []
+    for row in rows:
+        info = row["metadata"]
+        facts = [None, None, None] if info is None else [info.magnitude, info.distance_km, info.vs30]
+        words = ["-", "-"] if info is None else [info.event or "-", str(info.year or "-")]
+        samples = [f"{row['dt']:g}", str(row["npts"]), number(row["duration"])]
+        records.append([row["name"], *words, *("-" if fact is None else f"{fact:g}" for fact in facts), *samples])
+        spectral = [number(row[f"sa_{period:g}"] / GRAVITY) for period in periods]
+        others = [number(row[name]) for name in MEASURES[1:]]
+        measures.append([row["name"], number(row["pga"] / GRAVITY), *others, *spectral])
+    head = ("name", "event", "year", "M", "R [km]", "Vs30 [m/s]", "dt [s]", "npts", "length [s]")
+    table = grid(head, records, 2)
+    if not fits(console, table):
+        table = grid(head, [[name, fill(event, 12), *rest] for name, event, *rest in records], 2)
+    show(console, table)
+    console.print()
+    head = ("name", "PGA [g]", "PGV [m/s]", "PGD [m]", "Arias [m/s]", "CAV [m/s]", "D5-95 [s]")
+    show(console, grid((*head, *(f"Sa({period:g} s) [g]" for period in periods)), measures))
+    console.print(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²", markup=False)
+
+
+def _write(
+    folder: "Path", document: dict[str, Any], found: Sequence["FoundMotion"], figures: int, *, force: bool
+) -> None:
+    from dataclasses import asdict
+
+    import pandas as pd
+
+    from rockflex.cli._console import note
+    from rockflex.cli._output import file_stems, staged
+
+    few = len(found) <= figures
+    with staged(folder, document, force=force) as stage:
+        rows = [
+            {**row, "metadata": None} | (asdict(row["metadata"]) if row["metadata"] else {})
+            for row in document["motions"]
+        ]
+        table = pd.DataFrame(rows).drop(columns="metadata")
+        table.to_csv(stage / "motions.csv", index=False, lineterminator="\n")
+        if few:
+            from rockflex.plot import plot_motion, save_figure
+
+            for stem, item in zip(file_stems(f"motion-{item.motion.name}" for item in found), found, strict=True):
+                series = {
+                    name: getattr(item.motion, name) for name in ("time", "acceleration", "velocity", "displacement")
+                }
+                pd.DataFrame(series).to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
+                save_figure(plot_motion(item.motion), stage / f"{stem}.png")
+    note(f"Written to {folder}" + ("" if few else f"; series and figures only of up to --figures {figures} motions"))

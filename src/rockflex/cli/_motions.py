@@ -1,0 +1,119 @@
+"""Ground motions by the name of a suite, of a record in it, or by path."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from rockflex._errors import InputError
+from rockflex.motion import GroundMotion, load_suite, read_motion, read_suite, suite_names
+
+__all__ = ["FoundMotion", "embedded_suites", "find_motions"]
+
+
+@dataclass(frozen=True)
+class FoundMotion:
+    """A motion, and the suite or path that it came from."""
+
+    motion: GroundMotion
+    origin: str
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the samples in m/s² as little-endian doubles."""
+        return hashlib.sha256(self.motion.acceleration.astype("<f8").tobytes()).hexdigest()
+
+    def describe(self) -> dict[str, Any]:
+        """Return what identifies the motion, for a document."""
+        motion = self.motion
+        return {
+            "name": motion.name,
+            "origin": self.origin,
+            "sha256": self.sha256,
+            "npts": motion.acceleration.size,
+            "dt": motion.dt,
+            "duration": motion.duration,
+            "pga": motion.pga,
+            "metadata": motion.metadata,
+        }
+
+
+def embedded_suites() -> list[dict[str, Any]]:
+    """Return the name, size, first and last record of every embedded suite."""
+    suites = [load_suite(name) for name in suite_names()]
+    return [
+        {"suite": suite.name, "motions": len(suite), "first": suite.names[0], "last": suite.names[-1]}
+        for suite in suites
+    ]
+
+
+def find_motions(names: Sequence[str], units: str | None = None, dt: float | None = None) -> list[FoundMotion]:
+    """Find motions, in the order of their names; one that is named twice is taken once.
+
+    Parameters
+    ----------
+    names
+        Each is an embedded suite, ``suite/record``, a file, or a directory of files.
+    units, dt
+        As in `read_motion`, for the files.
+
+    Raises
+    ------
+    InputError
+        If there is no name, one is unknown, a file cannot be read, two different motions have the same name, or units
+        or dt are given without a file.
+    """
+    if not names:
+        message = (
+            f"No ground motion was given. Name a suite ({', '.join(suite_names())}), a record in one, such as "
+            "fema-p695-far-field/FF-12-a, or a file."
+        )
+        raise InputError(message)
+    found: dict[str, FoundMotion] = {}
+    used_files = False
+    for name in names:
+        suite, _, record = name.partition("/")
+        if suite in suite_names():
+            motions = load_suite(suite) if name == suite else (load_suite(suite)[record],)
+            members: Iterator[FoundMotion] = (FoundMotion(motion, suite) for motion in motions)
+        else:
+            used_files = True
+            members = _from_path(name, units, dt)
+        for member in members:
+            first = found.setdefault(member.motion.name, member)
+            if first.sha256 != member.sha256 or first.motion.dt != member.motion.dt:
+                message = (
+                    f"{member.origin} and {first.origin} hold different motions, both named {member.motion.name!r}. "
+                    "Rename one of the files."
+                )
+                raise InputError(message)
+    if not used_files and (units is not None or dt is not None):
+        message = "--units and --dt say what a file does not, but no file was given. Leave them out."
+        raise InputError(message)
+    return list(found.values())
+
+
+def _from_path(name: str, units: str | None, dt: float | None) -> Iterator[FoundMotion]:
+    path = Path(name)
+    if path.suffix.lower() == ".toml":
+        message = f"{name} is a structure file, and one structure is simulated at a time. Give one such file, first."
+        raise InputError(message)
+    if not path.exists():
+        near = get_close_matches(name.partition("/")[0], suite_names(), n=1)
+        hint = f" Did you mean {near[0]}?" if near else ""
+        message = (
+            f"{name!r} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
+            f"fema-p695-far-field/FF-12-a, nor a file or directory (working directory: {Path.cwd()}).{hint}"
+        )
+        raise InputError(message)
+    try:
+        motions = read_suite(path, units=units, dt=dt) if path.is_dir() else [read_motion(path, units=units, dt=dt)]
+    except InputError as error:
+        if "units=" not in str(error) and "dt=" not in str(error):
+            raise
+        message = f"{error} On the command line these are --units and --dt."
+        raise InputError(message) from error
+    for motion in motions:
+        yield FoundMotion(motion, name)

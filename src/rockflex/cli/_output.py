@@ -1,0 +1,130 @@
+"""Results as files: whole or not at all."""
+
+import json
+import math
+import platform
+import re
+import tempfile
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
+from dataclasses import asdict, is_dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockflex import __version__
+from rockflex._errors import InputError
+
+__all__ = ["check_folder", "file_stems", "staged", "to_json", "versions"]
+
+SUMMARY = "summary.json"
+
+
+def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
+    """Return strictly valid JSON: what is not a number becomes null, and an infinity the string "inf" or "-inf"."""
+    return json.dumps(_plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of everything that the numbers depend on."""
+    return {
+        "rockflex": __version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("numpy", "scipy", "numba")},
+    }
+
+
+def check_folder(folder: Path | None, *, force: bool) -> None:
+    """Raise an InputError where results must not be written, or where --force has nothing to do with."""
+    if folder is None:
+        if force:
+            message = "--force says what --out may replace, but no --out was given. Add --out DIR, or leave it out."
+            raise InputError(message)
+        return
+    if folder.exists() and not folder.is_dir():
+        message = f"--out {folder} is a file. Give a folder; it is made where it does not exist."
+        raise InputError(message)
+    if folder.is_dir() and not force and any(folder.iterdir()):
+        message = f"The folder {folder} is not empty. Give another one, or --force to replace the results in it."
+        raise InputError(message)
+
+
+@contextmanager
+def staged(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
+    """Give a temporary folder to write to; at the end its files move to `folder`, with `document` as summary.json.
+
+    Where anything fails before the end, `folder` stays as it was. Files of earlier results there, and no others, are
+    removed or replaced.
+
+    Raises
+    ------
+    InputError
+        If the folder must not or cannot be written to.
+    """
+    check_folder(folder, force=force)
+    home = folder if folder.is_dir() else folder.absolute().parent
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".rockflex-", dir=home) as temporary:
+            stage = Path(temporary) / "results"
+            stage.mkdir()
+            yield stage
+            names = sorted(file.name for file in stage.iterdir())
+            text = to_json({**document, "files": [*names, SUMMARY]}, ascii_only=False)
+            (stage / SUMMARY).write_text(text + "\n", "utf-8", newline="\n")
+            _move(stage, folder, [*names, SUMMARY])
+    except OSError as error:
+        message = f"Cannot write to {folder}: {error.strerror or error}. Give a folder that can be written to."
+        raise InputError(message) from error
+
+
+def file_stems(names: Iterable[str]) -> list[str]:
+    """Return a file name, without its ending, for each name; no two alike."""
+    stems: list[str] = []
+    for name in names:
+        stem = plain = re.sub(r"[^\w.+-]+", "_", name).strip(".") or "motion"
+        count = 1
+        while stem.lower() in (used.lower() for used in stems):
+            count += 1
+            stem = f"{plain}-{count}"
+        stems.append(stem)
+    return stems
+
+
+def _move(stage: Path, folder: Path, names: list[str]) -> None:
+    if not folder.exists():
+        stage.rename(folder)
+        return
+    # Results that the new ones do not replace would pass for theirs.
+    for name in _earlier(folder):
+        if name not in names:
+            (folder / name).unlink(missing_ok=True)
+    for name in names:
+        (stage / name).replace(folder / name)
+
+
+def _earlier(folder: Path) -> list[str]:
+    """Names of the files that an earlier summary in the folder lists as its own."""
+    try:
+        document = json.loads((folder / SUMMARY).read_text("utf-8"))
+        names = document["files"] if "rockflex" in document["versions"] else []
+    except (OSError, ValueError, LookupError, TypeError):
+        return []
+    return [name for name in names if isinstance(name, str) and name == Path(name).name and (folder / name).is_file()]
+
+
+def _plain(value: Any) -> Any:
+    """Replace everything that JSON does not know."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return _plain(asdict(value))
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else f"{value:g}"
+    return str(value) if isinstance(value, Path) else value

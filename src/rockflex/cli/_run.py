@@ -1,0 +1,122 @@
+"""``rockflex run``: one structure under ground motions, by several models side by side."""
+
+from typing import Annotated, Any
+
+import typer
+
+from rockflex.cli import _options as options
+
+__all__ = ["EPILOG", "run"]
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex run structure.toml el-centro-1940
+
+rockflex run structure.toml fema-p695-far-field --model MDOF-S,fixed --out results
+
+rockflex run structure.toml record.csv --units g --free-vibration settle --times
+
+rockflex run --stories 5 --story-height 3 --story-mass 40e3 --base-mass 40e3 --stiffness-ratio inf \
+--period 1 --aspect-ratio 10 --damping-ratio 0.02 fema-p695-far-field/FF-2-a --scale 1 --scale 1.5 --json"""
+
+MODELS = ["2DOF-S", "MDOF-S", "fixed"]
+
+
+def run(
+    arguments: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="STRUCTURE.toml MOTION",
+            help="The structure's file, then ground motions: suites, records (suite/name), files or directories.",
+            show_default=False,
+        ),
+    ] = None,
+    structure: options.StructureFile = None,
+    motion: Annotated[
+        list[str] | None,
+        typer.Option("--motion", "-m", metavar="MOTION", help="A ground motion; may be repeated.", show_default=False),
+    ] = None,
+    model: Annotated[
+        list[str],
+        typer.Option(
+            "--model", metavar="LABEL", help="2DOF-S, 3DOF-S, ... MDOF-S, fixed, 5DOF-fixed; several by commas."
+        ),
+    ] = MODELS,
+    scale: Annotated[
+        list[float], typer.Option("--scale", metavar="FACTOR", help="Factor on the acceleration; may be repeated.")
+    ] = [1.0],  # noqa: B006
+    free_vibration: Annotated[
+        str,
+        typer.Option(metavar="S|settle", help="Seconds after the record, or settle: until at rest or overturned."),
+    ] = "0",
+    times: Annotated[bool, typer.Option("--times", help="Print when the peaks occur, too.")] = False,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="Threads. Default: one a core; one alone for 64 runs or fewer."),
+    ] = None,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,
+    json: options.Json = False,
+    out: options.Out = None,
+    figures: options.Figures = 4,
+    force: options.Force = False,
+    stories: options.Stories = None,
+    story_height: options.StoryHeight = None,
+    story_mass: options.StoryMass = None,
+    base_mass: options.BaseMass = None,
+    stiffness_ratio: options.Stiffness = None,
+    period: options.Period = None,
+    aspect_ratio: options.AspectRatio = None,
+    damping_ratio: options.DampingRatio = None,
+    units: options.Units = None,
+    dt: options.Dt = None,
+) -> None:
+    """Simulate a structure under ground motions and print the peaks of each run.
+
+    Peaks are those of the continuous motion, between samples too. Everything given is in kg, m, s, N and rad.
+    """
+    from time import perf_counter
+
+    from rockflex.cli._motions import find_motions
+    from rockflex.cli._output import check_folder, to_json, versions
+    from rockflex.cli._run_output import UNITS, write_runs
+    from rockflex.cli._run_tables import print_failures, print_runs
+    from rockflex.cli._simulations import Plan, parse_free_vibration, parse_models, parse_scales, perform, warm_up
+    from rockflex.cli._structures import describe_properties, load_structure, split_arguments
+
+    check_folder(out, force=force)
+    file, names = split_arguments(structure, arguments or [])
+    frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
+    loaded = load_structure(file, options.frame_arguments(frame))
+    found = find_motions([*names, *(motion or [])], units, dt)
+    scales = parse_scales(scale)
+    plan = Plan(
+        properties=loaded.properties,
+        motions=[item.motion for item in found],
+        scales=scales,
+        models=parse_models(model, loaded.properties),
+        free_vibration=parse_free_vibration(free_vibration),
+        history=out is not None and len(found) * len(scales) <= figures,
+        workers=workers,
+    )
+    warm_up(plan)
+    start = perf_counter()
+    runs = perform(plan)
+    elapsed = perf_counter() - start
+    document: dict[str, Any] = {
+        "versions": versions(),
+        "structure": loaded.describe(),
+        "properties": describe_properties(plan.properties),
+        "motions": [item.describe() for item in found],
+        "options": {"models": plan.models, "scales": plan.scales, "free_vibration": plan.free_vibration},
+        "units": UNITS,
+        "elapsed": elapsed,
+        "runs": [{**item.row(), "run_time": item.run_time} for item in runs],
+    }
+    if out is not None:
+        write_runs(out, document, plan, runs, force=force)
+    if json:
+        typer.echo(to_json(document))
+    else:
+        print_runs(loaded.title, plan, runs, elapsed, times=times)
+    if print_failures(runs) and strict:
+        raise typer.Exit(1)

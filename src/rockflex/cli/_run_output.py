@@ -1,0 +1,78 @@
+"""What ``rockflex run --out`` writes."""
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockflex.cli._console import note
+from rockflex.cli._output import file_stems, staged
+from rockflex.cli._simulations import Plan, Run
+from rockflex.response import Response
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["UNITS", "write_runs"]
+
+UNITS = {
+    "dt": "s",
+    "duration": "s",
+    "pga": "m/s²",
+    "elapsed": "s",
+    "run_time": "s",
+    "end_time": "s",
+    "time_of_max_*": "s",
+    "max_rotation": "rad",
+    "max_top_displacement": "m",
+    "max_base_moment": "N m",
+    "max_base_shear": "N",
+}
+SERIES = (
+    "time", "side", "ground_acceleration", "rotation", "rotation_velocity", "top_displacement", "base_moment",
+    "base_shear",
+)  # fmt: skip
+
+
+def write_runs(folder: Path, document: dict[str, Any], plan: Plan, runs: Sequence[Run], *, force: bool) -> None:
+    """Write results.csv, summary.json and, of a plan with histories, one CSV file and one figure for each motion.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written to, or holds something and `force` is not set.
+    """
+    import pandas as pd
+
+    with staged(folder, document, force=force) as stage:
+        pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
+        if plan.history:
+            _write_histories(stage, runs)
+    note(f"Written to {folder}" + ("" if plan.history else "; histories and figures only up to --figures motions"))
+
+
+def _write_histories(stage: Path, runs: Sequence[Run]) -> None:
+    import pandas as pd
+
+    from rockflex.plot import plot_history, save_figure
+
+    groups = [(place, list(members)) for place, members in groupby(runs, key=lambda run: (run.motion, run.scale))]
+    several = len({scale for (_, scale), _ in groups}) > 1
+    names = [f"history-{motion}-x{scale:g}" if several else f"history-{motion}" for (motion, scale), _ in groups]
+    for stem, ((motion, scale), members) in zip(file_stems(names), groups, strict=True):
+        responses = [run.response for run in members if run.response is not None]
+        if not responses:
+            continue
+        table = pd.concat(list(_series(responses)))
+        table.to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
+        title = None if scale == 1.0 else f"{motion} × {scale:g}"
+        labels = [response.model for response in responses]
+        save_figure(plot_history(responses, labels=labels, title=title), stage / f"{stem}.png")
+
+
+def _series(responses: Sequence[Response]) -> "Iterator[pd.DataFrame]":
+    """Histories as tables, one model below the other; an event is two rows at the same time."""
+    import pandas as pd
+
+    for response in responses:
+        yield pd.DataFrame({"model": response.model, **{name: getattr(response, name) for name in SERIES}})

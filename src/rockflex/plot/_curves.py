@@ -1,0 +1,165 @@
+"""Responses made ready to be drawn: checked, named, each with its own look, and what of an overturning run counts."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, RED, Look, literal
+
+if TYPE_CHECKING:
+    from rockflex.response import History, Response
+
+__all__ = ["Curve", "curves_of", "rotation_limit"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One response with its history, label and look."""
+
+    response: "Response"
+    history: "History"
+    label: str
+    look: Look
+
+    @property
+    def overturned(self) -> bool:
+        """Whether |θ| reached π/2."""
+        return self.response.status == "overturned"
+
+    @property
+    def lifts(self) -> bool:
+        """Whether the base of the model can lift."""
+        return self.history.model.lifts
+
+    @property
+    def order(self) -> float:
+        """Drawing order: the fewer modes the higher, as gaps between dashes let a curve below show through."""
+        return 2.0 + 1.0 / (1.0 + self.history.model.properties.n_modes) if self.lifts else 1.9
+
+    @property
+    def balance_rotation(self) -> float:
+        """Rotation α = m_tot g B / (L_0^r g) in rad at which the static resisting moment vanishes."""
+        p = self.history.model.properties
+        return p.resisting_moment / (p.l0r * GRAVITY)
+
+    @property
+    def uplifts(self) -> Array:
+        """Start and end of every phase of rocking in s, shape (n_phases, 2)."""
+        h = self.history
+        starts, ends = h.uplift_times, h.impact_times
+        if h.side[0] != 0.0:
+            starts = np.insert(starts, 0, h.time[0])
+        if h.side[-1] != 0.0:
+            ends = np.append(ends, h.time[-1])
+        return np.column_stack((starts, ends))
+
+    @property
+    def falls(self) -> bool:
+        """Whether it passed the rotation of balance and was still beyond it, or overturned, when the run ended."""
+        rotation = np.abs(self.history.rotation)
+        return bool(rotation[-1] > self.balance_rotation >= rotation.min())
+
+    @property
+    def before_fall(self) -> slice:
+        """Nodes until θ passes the rotation of balance for the last time; all of them if it does not fall."""
+        if not self.falls:
+            return slice(None)
+        inside = np.flatnonzero(np.abs(self.history.rotation) <= self.balance_rotation)
+        return slice(int(inside[-1]) + 1)
+
+    @property
+    def finished_rotation(self) -> float:
+        """Largest |θ| in rad, without the phase of rocking in which the structure falls."""
+        if not self.falls:
+            return self.response.max_rotation
+        contact = np.flatnonzero(self.history.side == 0.0)
+        return float(np.max(np.abs(self.history.rotation[: contact[-1] + 1]))) if contact.size else 0.0
+
+
+def rotation_limit(curves: list[Curve]) -> float:
+    """Largest |θ| in rad that an axis should hold; where all that rock fall, the rotation of balance too."""
+    finished = max(curve.finished_rotation for curve in curves)
+    fallen = [curve.balance_rotation for curve in curves if curve.falls]
+    standing = any(curve.finished_rotation > 0.0 for curve in curves if not curve.falls)
+    return finished if standing else max(finished, *fallen, 0.0)
+
+
+def curves_of(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> list[Curve]:
+    """Check the responses, and give each a label and a look.
+
+    Raises
+    ------
+    InputError
+        If there are none or too many, one of them is no response or has no history, or the labels do not fit.
+    """
+    everything: list[Response] = [responses] if hasattr(responses, "history") else list(responses)  # pyright: ignore
+    if not everything:
+        message = 'There is no response to plot. Give at least one from simulate(..., output="history").'
+        raise InputError(message)
+    histories = [_history(i, response) for i, response in enumerate(everything)]
+    names = _names(everything, labels)
+    looks = _looks(histories)
+    return [Curve(*parts) for parts in zip(everything, histories, names, looks, strict=True)]
+
+
+def _history(index: int, response: "Response") -> "History":
+    if not hasattr(response, "history"):
+        message = (
+            f"responses[{index}] must be a Response, but {type(response).__name__} was given. "
+            'Give what simulate returned, or the column "response" of simulate_many(..., output="history").'
+        )
+        raise InputError(message)
+    if response.history is None:
+        message = (
+            f"responses[{index}] ({response.model} under {response.motion!r}) keeps peaks only, but a plot needs the "
+            'history. Simulate it with output="history".'
+        )
+        raise InputError(message)
+    return response.history
+
+
+def _names(responses: "list[Response]", labels: Sequence[str] | None) -> list[str]:
+    if labels is None:
+        models = [response.model for response in responses]
+        if len(set(models)) == len(models):
+            return [literal(model) for model in models]
+        return [literal(f"{response.model}, {response.motion}") for response in responses]
+    if isinstance(labels, str) or len(labels) != len(responses):
+        given = f"the string {labels!r}" if isinstance(labels, str) else f"{len(labels)}"
+        message = f"labels must be a sequence of {len(responses)} strings, one a response, but {given} was given."
+        raise InputError(message)
+    return list(labels)
+
+
+def _looks(histories: "list[History]") -> list[Look]:
+    """Looks of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two; others for what is left."""
+    most = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
+    spare, looks = list(LOOKS), list[Look]()
+    for history in histories:
+        own = _own_look(history, most)
+        if own is None or own in looks:
+            if not spare:
+                message = (
+                    f"{len(histories)} responses are too many to be told apart in one figure. Plot fewer at a time."
+                )
+                raise InputError(message)
+            own = spare.pop(0)
+        looks.append(own)
+    return looks
+
+
+def _own_look(history: "History", most: int) -> Look | None:
+    model = history.model
+    n = model.properties.n_modes
+    if not model.lifts:
+        return Look(GRAY, "-", 1.4)
+    if model.label.startswith("M") or n == most > 2:
+        return Look(BLACK, "-")
+    return {1: Look(RED, "-."), 2: Look(GREEN, "--")}.get(n)

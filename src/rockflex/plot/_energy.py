@@ -1,0 +1,78 @@
+"""Energy over time."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rockflex.plot._curves import curves_of
+from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, RED, SKY, literal, new_figure, styled
+from rockflex.plot._units import readable
+
+if TYPE_CHECKING:
+    from rockflex.response import Response
+
+__all__ = ["plot_energy"]
+
+# From the bottom: what is gone never falls, so what can still return rides on it.
+_LAYERS = (
+    ("damped", "damped", GRAY),
+    ("lost", "lost in impacts", RED),
+    ("gravity", "raised weight", GREEN),
+    ("strain", "strain", SKY),
+    ("kinetic", "kinetic", ORANGE),
+)
+
+
+def plot_energy(response: "Response") -> Figure:
+    """Plot where the energy is and where it went, stacked, under what the ground put in.
+
+    The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
+    Eqs. 15, 23 and 25). In sum they meet the line of the input, which starts from the energy at t = 0; the title
+    states how closely. A run that overturns is drawn until θ passes for the last time the rotation at which the
+    static resisting moment vanishes: from there the weight pulls it over.
+
+    Parameters
+    ----------
+    response
+        One response with its history.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; time in s, energy in the unit that suits its size. Layers that stay empty are left out.
+
+    Raises
+    ------
+    InputError
+        If the response has no history.
+    """
+    (curve,) = curves_of([response])
+    history = curve.history
+    ledger, drawn = history.energy, curve.before_fall
+    layers = [(label, color, np.asarray(getattr(ledger, name))[drawn]) for name, label, color in _LAYERS]
+    layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
+    start = float(ledger.kinetic[0] + ledger.strain[0] + ledger.gravity[0])
+    supply = ledger.input[drawn] + start
+    factor, unit = readable(float(np.max(np.abs(supply))), "J")
+    time = history.time[drawn]
+    with styled():
+        figure = new_figure(6.3, 3.4)
+        axes = figure.subplots()
+        if layers:
+            axes.stackplot(
+                time, *(values / factor for _, _, values in layers), labels=[label for label, _, _ in layers],
+                colors=[color for _, color, _ in layers], linewidth=0.0,
+            )  # fmt: skip
+        axes.plot(time, supply / factor, color=BLACK, linewidth=0.9, label="input" if start == 0.0 else "start + input")
+        if curve.falls:
+            axes.axvline(time[-1], color=BLUE, linestyle=":", label="overturning")
+        axes.set_xlim(float(history.time[0]), float(history.time[-1]))
+        axes.set_ylim(0.0, 1.06 * float(np.max(supply)) / factor or 1.0)
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel(f"energy [{unit}]")
+        title = f"{curve.label} under {literal(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
+        axes.set_title(title)
+        handles, labels = axes.get_legend_handles_labels()
+        figure.legend(handles[::-1], labels[::-1], loc="outside right upper")
+    return figure

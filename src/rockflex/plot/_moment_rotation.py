@@ -1,0 +1,99 @@
+"""Base moment over rotation."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.plot._curves import Curve, curves_of, rotation_limit
+from rockflex.plot._style import BLUE, new_figure, styled
+from rockflex.plot._units import readable
+
+if TYPE_CHECKING:
+    from rockflex.response import Response
+
+__all__ = ["plot_moment_rotation"]
+
+_HEADROOM = 1.1
+_PER_ROW = 3
+
+
+def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> Figure:
+    """Plot the base moment M_b over the rotation θ, and the static resisting moment of the simplified models.
+
+    The resisting moment is ±(m_tot g B - L_0^r g |θ|) (Silva & Stojadinović 2024, Fig. 11 and Eq. 23); M_b is that of
+    the elastic forces, and departs from it by the inertia of the rotation and by damping. Responses of a base that
+    cannot lift have no rotation and are left out. The phase in which a structure overturns does not stretch the axes.
+
+    Parameters
+    ----------
+    responses
+        One response or several, each with its history.
+    labels
+        A name for each response. Default: the models, with the motions where a model occurs twice.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes a response, three a row, with common scales; θ in rad, M_b in the unit that suits its size.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, one has no history, there is not one label a response, or no base
+        can lift.
+    """
+    curves = [curve for curve in curves_of(responses, labels) if curve.lifts]
+    if not curves:
+        message = (
+            "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
+            'Give at least one of a model that rocks, such as "2DOF-S".'
+        )
+        raise InputError(message)
+    rotation = _HEADROOM * (rotation_limit(curves) or max(curve.balance_rotation for curve in curves))
+    largest = max(_largest_moment(curve) for curve in curves)
+    factor, unit = readable(largest, "N m")
+    columns = min(len(curves), _PER_ROW)
+    rows = math.ceil(len(curves) / columns)
+    with styled():
+        figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
+        grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        panels: list[Axes] = list(grid.flat)
+        panels[0].set_xlim(-rotation, rotation)
+        panels[0].set_ylim(-_HEADROOM * largest / factor, _HEADROOM * largest / factor)
+        panels[0].locator_params(axis="x", nbins=5)
+        for axes, curve in zip(panels, curves, strict=False):
+            moment = curve.history.base_moment / factor
+            axes.plot(curve.history.rotation, moment, color=curve.look.color, linewidth=0.8, label=curve.label)
+            axes.add_line(_resistance(curve, rotation, factor))
+            axes.set_title(curve.label)
+            axes.tick_params(labelbottom=True)
+        for axes in panels[len(curves) :]:
+            axes.set_axis_off()
+        figure.supxlabel("θ [rad]", fontsize=9.0)
+        figure.supylabel(f"$M_b$ [{unit}]", fontsize=9.0)
+        figure.legend(handles=panels[0].get_lines()[1:], loc="outside upper center", handlelength=3.0)
+    return figure
+
+
+def _largest_moment(curve: Curve) -> float:
+    """Largest of the moments that the axes must hold: the static one, and M_b but for a fall."""
+    moment = curve.response.max_base_moment
+    if curve.falls:
+        moment = float(np.max(np.abs(curve.history.base_moment[curve.before_fall])))
+    return max(moment, curve.history.model.properties.resisting_moment)
+
+
+def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
+    p = curve.history.model.properties
+    start, end = p.resisting_moment / factor, (p.resisting_moment - p.l0r * GRAVITY * rotation) / factor
+    return Line2D(
+        [-rotation, 0.0, 0.0, rotation], [-end, -start, start, end], color=BLUE, linestyle=(0, (4, 2)), linewidth=1.1,
+        label=r"static, $\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$", zorder=3.0,
+    )  # fmt: skip

@@ -1,0 +1,83 @@
+"""A ground motion and its spectrum."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.plot._style import BLACK, BLUE, SHADE, literal, new_figure, styled
+from rockflex.plot._units import short
+
+if TYPE_CHECKING:
+    from rockflex.motion import GroundMotion
+
+__all__ = ["plot_motion"]
+
+_PERIODS = np.geomspace(0.02, 10.0, 240)
+_DAMPING = 0.05
+
+
+def plot_motion(motion: "GroundMotion") -> Figure:
+    """Plot ground acceleration, velocity and displacement, and the 5 % damped spectrum of pseudo-acceleration.
+
+    PGA, PGV, PGD, the Arias intensity I_a and the significant duration D_5-95 stand over the panels; the time that
+    D_5-95 spans is shaded. All are those of `GroundMotion`, exact for an acceleration linear between its samples.
+
+    Parameters
+    ----------
+    motion
+        A ground motion.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Four axes: a in m/s², v in m/s and d in m over time in s, and S_a in m/s² over the period in s.
+
+    Raises
+    ------
+    InputError
+        If it is not a ground motion.
+    """
+    if not hasattr(motion, "acceleration"):
+        message = (
+            f"motion must be a GroundMotion, but {type(motion).__name__} was given. "
+            "Read one from a file, take one of a suite, or build it from its samples."
+        )
+        raise InputError(message)
+    spectrum = motion.spectrum(_PERIODS, _DAMPING)
+    first = motion.significant_duration(0.0, 0.05)
+    histories = (
+        ("a", "m/s²", motion.acceleration, f"PGA = {short(motion.pga)} m/s² ({short(motion.pga / GRAVITY)} g)"),
+        ("v", "m/s", motion.velocity, f"PGV = {short(motion.pgv)} m/s"),
+        ("d", "m", motion.displacement, f"PGD = {short(motion.pgd)} m"),
+    )
+    with styled():
+        figure = new_figure(7.2, 4.6)
+        panels = figure.subplot_mosaic([["a", "spectrum"], ["v", "spectrum"], ["d", "spectrum"]], width_ratios=(3, 2))
+        for symbol, unit, values, peak in histories:
+            axes = panels[symbol]
+            axes.axvspan(first, first + motion.d5_95, color=SHADE, zorder=0.5)
+            axes.plot(motion.time, values, color=BLACK, linewidth=0.7)
+            limit = 1.1 * float(np.max(np.abs(values))) or 1.0
+            axes.set_ylim(-limit, limit)
+            axes.set_xlim(0.0, motion.duration)
+            axes.set_ylabel(f"${symbol}$ [{unit}]")
+            axes.set_title(peak, loc="right", fontsize=8.0)
+        for symbol in ("a", "v"):
+            panels[symbol].sharex(panels["d"])
+            panels[symbol].tick_params(labelbottom=False)
+        panels["d"].set_xlabel("time [s]")
+        axes = panels["spectrum"]
+        axes.plot(spectrum.period, spectrum.sa, color=BLUE, linewidth=1.2)
+        axes.set_xscale("log")
+        axes.set_xlim(_PERIODS[0], _PERIODS[-1])
+        axes.set_ylim(0.0, 1.08 * float(spectrum.sa.max()) or 1.0)
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set_xlabel("$T$ [s]")
+        axes.set_ylabel("$S_a$ [m/s²]")
+        measures = f"$I_a$ = {short(motion.arias)} m/s, $D_{{5–95}}$ = {short(motion.d5_95)} s (shaded)"
+        axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=8.0)
+        figure.suptitle(literal(motion.name) or "ground motion", fontsize=9.0)
+    return figure

@@ -1,0 +1,62 @@
+"""Figures on disk."""
+
+import io
+import os
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from matplotlib.figure import Figure
+
+from rockflex._errors import InputError
+from rockflex.plot._style import styled
+
+__all__ = ["save_figure"]
+
+# A date in the file would make equal figures differ.
+_UNDATED: dict[str, dict[str, Any]] = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+_DPI = 200
+
+
+def save_figure(figure: Figure, path: str | Path) -> Path:
+    """Write a figure as PNG (200 dots per inch), PDF or SVG, by the suffix of `path`.
+
+    Missing folders are made. The file appears whole or not at all, and equal figures give equal files.
+
+    Parameters
+    ----------
+    figure
+        What one of the plot functions returned, or any matplotlib figure.
+    path
+        Where to; a file that is there is replaced.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    InputError
+        If the suffix is none of .png, .pdf and .svg.
+    """
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in _UNDATED:
+        message = (
+            f"A figure can be saved as .png, .pdf or .svg, but the path {str(path)!r} ends in {target.suffix!r}. "
+            "Change the suffix."
+        )
+        raise InputError(message)
+    content = io.BytesIO()
+    with styled():
+        figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
+    target.parent.mkdir(parents=True, exist_ok=True)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}-{uuid4().hex}")
+    try:
+        temporary.write_bytes(content.getvalue())
+        temporary.replace(target)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    return target

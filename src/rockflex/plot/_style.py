@@ -1,0 +1,111 @@
+"""How all figures look: sizes, colours and line styles, without touching the settings of the caller."""
+
+from collections.abc import Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from threading import RLock
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+__all__ = [
+    "BLACK",
+    "BLUE",
+    "GRAY",
+    "GREEN",
+    "LOOKS",
+    "ORANGE",
+    "PURPLE",
+    "RED",
+    "SHADE",
+    "SKY",
+    "SMALL",
+    "Look",
+    "columns",
+    "letter",
+    "literal",
+    "new_figure",
+    "styled",
+]
+
+# Okabe & Ito's palette, which colour-blind readers can tell apart.
+BLACK, GRAY, GREEN, RED = "#000000", "#8c8c8c", "#009e73", "#d55e00"
+BLUE, ORANGE, SKY, PURPLE = "#0072b2", "#e69f00", "#56b4e9", "#cc79a7"
+SHADE = "#e9edf2"
+SMALL = 7.5
+
+_STYLE: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.labelsize": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.linewidth": 0.7,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "axes.unicode_minus": True,
+    "figure.facecolor": "white",
+    "grid.color": "#d9d9d9",
+    "grid.linewidth": 0.5,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "lines.linewidth": 1.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "mathtext.fontset": "dejavusans",
+    "path.simplify": True,
+    "pdf.fonttype": 42,
+    "svg.hashsalt": "rockflex",
+}
+_LOCK = RLock()
+
+
+@dataclass(frozen=True)
+class Look:
+    """Colour and line style of one curve."""
+
+    color: str
+    dashes: str | tuple[int, tuple[int, ...]]
+    width: float = 1.0
+
+
+_DASHES = ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1, 1, 1)))
+LOOKS = tuple(Look(color, dashes) for dashes in _DASHES for color in (PURPLE, ORANGE, SKY))
+"""Looks for models without one of their own, the most distinct first; blue is left to reference lines."""
+
+
+@contextmanager
+def styled() -> Generator[None, None, None]:
+    """Apply the style while a figure is made; matplotlib's settings are global, so one thread at a time."""
+    with _LOCK, rc_context(_STYLE):
+        yield
+
+
+def literal(text: str) -> str:
+    """Keep names from being read as mathematics."""
+    return text.replace("$", r"\$")
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Empty figure of a size in inches; no window and no global list of figures holds it."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def letter(axes: Axes, text: str) -> None:
+    """Panel letter outside the axes, left of their upper corner."""
+    axes.annotate(
+        text, (0.0, 1.0), xytext=(-46, 1), xycoords="axes fraction", textcoords="offset points", weight="bold", va="top"
+    )
+
+
+def columns(names: list[str], width: int) -> int:
+    """How many columns a legend may have, where a row has room for `width` letters; it fills column by column."""
+    for count in range(len(names), 1, -1):
+        rows = -(-len(names) // count)
+        if sum(max(map(len, names[i : i + rows])) + 7 for i in range(0, len(names), rows)) <= width:
+            return count
+    return 1

@@ -1,0 +1,18 @@
+"""Units that make the numbers of a figure short."""
+
+__all__ = ["readable", "short"]
+
+_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+
+
+def readable(largest: float, unit: str) -> tuple[float, str]:
+    """Divisor and name of the largest of G, M, k and no prefix at which `largest` is not below 1."""
+    for factor, prefix in _PREFIXES:
+        if abs(largest) >= factor:
+            return factor, prefix + unit
+    return 1.0, unit
+
+
+def short(value: float) -> str:
+    """Three significant digits, without an exponent up to a million and down to 1e-4."""
+    return f"{float(f'{value:.3g}'):g}".replace("-", "−")

@@ -1,0 +1,102 @@
+"""Ground motions by name and path."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from rockflex import InputError, load_suite
+from rockflex.cli._motions import embedded_suites, find_motions
+
+ACCELERATION = 0.1 * np.sin(np.arange(50))
+
+
+@pytest.fixture
+def record(tmp_path):
+    path = tmp_path / "record.csv"
+    np.savetxt(path, ACCELERATION)
+    return path
+
+
+def names(found):
+    return [item.motion.name for item in found]
+
+
+def test_suites_records_and_files_in_order(record):
+    found = find_motions(["fema-p695-far-field/FF-12-a", "el-centro-1940", str(record)], "g", 0.01)
+    assert names(found) == ["FF-12-a", "EL-CENTRO-1940-NS", "record"]
+    assert [item.origin for item in found] == ["fema-p695-far-field", "el-centro-1940", str(record)]
+    np.testing.assert_allclose(found[2].motion.acceleration, 9.81 * ACCELERATION, rtol=1e-15)
+    assert found[2].motion.dt == 0.01
+
+
+def test_whole_suite():
+    assert names(find_motions(["fema-p695-near-field-pulse"])) == list(load_suite("fema-p695-near-field-pulse").names)
+
+
+def test_directory(tmp_path):
+    for name in ("b", "a"):
+        np.savetxt(tmp_path / f"{name}.txt", np.column_stack((0.02 * np.arange(50), ACCELERATION)))
+    assert names(find_motions([str(tmp_path)], units="m/s2")) == ["a", "b"]
+
+
+def test_named_twice_is_taken_once():
+    assert names(find_motions(["el-centro-1940", "el-centro-1940/EL-CENTRO-1940-NS"])) == ["EL-CENTRO-1940-NS"]
+
+
+def test_checksum_is_of_the_samples():
+    found = find_motions(["el-centro-1940"])[0]
+    samples = found.motion.acceleration.astype("<f8").tobytes()
+    assert found.describe()["sha256"] == hashlib.sha256(samples).hexdigest()
+    assert found.describe()["pga"] == found.motion.pga
+
+
+def test_embedded_suites():
+    rows = embedded_suites()
+    assert rows[0] == {"suite": "fema-p695-far-field", "motions": 44, "first": "FF-1-a", "last": "FF-22-b"}
+    assert [row["motions"] for row in rows] == [44, 28, 28, 1]
+
+
+def test_two_motions_of_one_name(tmp_path, record):
+    other = tmp_path / "other"
+    other.mkdir()
+    np.savetxt(other / "record.csv", 2 * ACCELERATION)
+    with pytest.raises(InputError, match=r"hold different motions, both named 'record'\. Rename one of the files\."):
+        find_motions([str(record), str(other / "record.csv")], "g", 0.01)
+
+
+def test_unknown_names():
+    with pytest.raises(
+        InputError, match=r"'el-centro' is neither a suite \(fema.*\), nor a record in one.*el-centro-1940\?"
+    ):
+        find_motions(["el-centro"])
+    with pytest.raises(InputError, match=r"No motion of the suite 'el-centro-1940' is named 'EW'"):
+        find_motions(["el-centro-1940/EW"])
+
+
+def test_nothing_given():
+    with pytest.raises(InputError, match=r"No ground motion was given\. Name a suite \(fema-p695-far-field, "):
+        find_motions([])
+
+
+def test_structure_among_motions():
+    with pytest.raises(InputError, match=r"other\.toml is a structure file, and one structure is simulated at a time"):
+        find_motions(["el-centro-1940", "other.toml"])
+
+
+def test_units_without_a_file():
+    with pytest.raises(InputError, match="--units and --dt say what a file does not, but no file was given"):
+        find_motions(["el-centro-1940"], units="g")
+
+
+def test_missing_unit_and_step_name_the_options(record):
+    for units, dt in ((None, 0.01), ("g", None)):
+        with pytest.raises(InputError, match=r"On the command line these are --units and --dt\.$"):
+            find_motions([str(record)], units, dt)
+
+
+def test_other_faults_of_a_file_are_told_as_they_are(tmp_path):
+    path = tmp_path / "empty.csv"
+    path.touch()
+    with pytest.raises(InputError, match=r"empty\.csv is empty\.$"):
+        find_motions([str(path)])

@@ -1,0 +1,181 @@
+"""JSON, and results as files: whole or not at all."""
+
+import json
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockflex import InputError
+from rockflex.cli import _console
+from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
+
+
+def contents(folder):
+    return {path.name: path.read_text("utf-8") for path in sorted(folder.iterdir())}
+
+
+def write(folder, files, *, force=False):
+    with staged(folder, {"versions": versions()}, force=force) as stage:
+        for name, text in files.items():
+            (stage / name).write_text(text)
+
+
+def test_json_is_strict():
+    @dataclass
+    class Info:
+        year: int
+
+    document = {
+        "nan": math.nan,
+        "list": [np.float64("nan"), math.inf, -math.inf, 1.5],
+        "array": np.array([[1.0, np.nan], [np.inf, 2.0]]),
+        "scalars": (np.int64(3), np.bool_(True), np.float64(0.1)),
+        "info": Info(1940),
+        "path": Path("a"),
+        1: "m²",
+    }
+
+    def refuse(token):
+        pytest.fail(f"{token} is not JSON")
+
+    text = to_json(document)
+    assert text.isascii()
+    assert json.loads(text, parse_constant=refuse) == {
+        "nan": None,
+        "list": [None, "inf", "-inf", 1.5],
+        "array": [[1.0, None], ["inf", 2.0]],
+        "scalars": [3, True, 0.1],
+        "info": {"year": 1940},
+        "path": "a",
+        "1": "m²",
+    }
+
+
+def test_numbers_survive_json():
+    values = np.random.default_rng(1).normal(size=100) * 10.0 ** np.arange(-50, 50)
+    assert json.loads(to_json({"values": values}))["values"] == values.tolist()
+
+
+def test_new_folder_gets_everything_and_a_summary(tmp_path):
+    folder = tmp_path / "a" / "b"
+    write(folder, {"x.csv": "1"})
+    assert list(contents(folder)) == ["summary.json", "x.csv"]
+    assert json.loads(contents(folder)["summary.json"])["files"] == ["x.csv", "summary.json"]
+    assert list(folder.parent.iterdir()) == [folder]
+
+
+def test_empty_folder_is_used(tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    write(folder, {"x.csv": "1"})
+    assert list(contents(folder)) == ["summary.json", "x.csv"]
+
+
+@pytest.mark.parametrize("exists", [False, True])
+def test_nothing_is_left_of_a_failure(tmp_path, exists):
+    folder = tmp_path / "out"
+    if exists:
+        write(folder, {"x.csv": "old"})
+    before = contents(folder) if exists else None
+
+    def fail():
+        with staged(folder, {}, force=True) as stage:
+            (stage / "x.csv").write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fail()
+    assert folder.exists() == exists
+    assert (contents(folder) if exists else None) == before
+    assert list(tmp_path.iterdir()) == ([folder] if exists else [])
+
+
+def test_document_that_is_not_json_leaves_nothing(tmp_path):
+    with pytest.raises(TypeError), staged(tmp_path / "out", {"x": object()}, force=False) as stage:
+        (stage / "x.csv").write_text("half")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_full_folder_is_refused_and_force_replaces_results_alone(tmp_path):
+    folder = tmp_path / "out"
+    write(folder, {"x.csv": "old", "y.csv": "old"})
+    (folder / "notes.txt").write_text("mine")
+    with pytest.raises(InputError, match=r"The folder .*out is not empty\. Give another one, or --force to replace"):
+        write(folder, {"x.csv": "new"})
+    assert contents(folder)["x.csv"] == "old"
+    write(folder, {"x.csv": "new"}, force=True)
+    assert list(contents(folder)) == ["notes.txt", "summary.json", "x.csv"]
+    assert contents(folder)["x.csv"] == "new"
+
+
+@pytest.mark.parametrize(
+    "summary", ["[", '{"files": ["notes.txt"]}', '{"versions": {"other": "1"}, "files": ["notes.txt"]}']
+)
+def test_summary_of_another_program_removes_nothing(tmp_path, summary):
+    (tmp_path / "notes.txt").write_text("mine")
+    (tmp_path / "summary.json").write_text(summary)
+    write(tmp_path, {"x.csv": "new"}, force=True)
+    assert list(contents(tmp_path)) == ["notes.txt", "summary.json", "x.csv"]
+
+
+def test_summary_cannot_reach_out_of_its_folder(tmp_path):
+    (tmp_path / "outside.csv").write_text("mine")
+    folder = tmp_path / "out"
+    write(folder, {"x.csv": "old"})
+    document = {"versions": versions(), "files": ["../outside.csv", 3, "x.csv"]}
+    (folder / "summary.json").write_text(json.dumps(document))
+    write(folder, {"y.csv": "new"}, force=True)
+    assert (tmp_path / "outside.csv").read_text() == "mine"
+    assert list(contents(folder)) == ["summary.json", "y.csv"]
+
+
+def test_where_results_cannot_go(tmp_path):
+    file = tmp_path / "file"
+    file.touch()
+    with pytest.raises(InputError, match=r"--out .*file is a file\. Give a folder; it is made where it does not exist"):
+        check_folder(file, force=True)
+    with pytest.raises(InputError, match=r"--force says what --out may replace, but no --out was given\."):
+        check_folder(None, force=True)
+    with pytest.raises(InputError, match=r"Cannot write to .*file/out: .*\. Give a folder that can be written to\."):
+        write(file / "out", {})
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
+def test_new_folder_has_ordinary_permissions(tmp_path):
+    plain = tmp_path / "plain"
+    plain.mkdir()
+    write(tmp_path / "out", {"x.csv": "1"})
+    assert (tmp_path / "out").stat().st_mode == plain.stat().st_mode
+
+
+def test_file_names():
+    stems = file_stems(["FF-1-a", "a/b: c", "a/b? c", "A_b_c", "..", "Kōbe 1995"])
+    assert stems == ["FF-1-a", "a_b_c", "a_b_c-2", "A_b_c-3", "motion", "Kōbe_1995"]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (None, "-"),
+        (math.nan, "-"),
+        (math.inf, "inf"),
+        (0.0164760, "0.01648"),
+        (-3.6108, "-3.611"),
+        (31407.0, "31407"),
+        (1.2e-5, "0.00001200"),
+        (1.2e-6, "1.200e-06"),
+        (2.0066e7, "2.007e+07"),
+    ],
+)
+def test_numbers_in_tables(value, text):
+    assert _console.number(value) == text
+
+
+@pytest.mark.parametrize(("largest", "unit"), [(9.99e6, "kN m"), (1e7, "MN m")])
+def test_unit_of_moments(largest, unit):
+    assert _console.moment_unit(largest)[0] == unit

@@ -1,0 +1,332 @@
+"""``rockflex run``: what is printed and written agrees with the library."""
+
+import csv
+import json
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import rockflex as rf
+from rockflex.cli import _run_output, _simulations, app
+from rockflex.response import PEAKS
+
+EXAMPLES = Path(rf.__file__).parents[2] / "examples"
+STRUCTURE = str(EXAMPLES / "structure_1.toml")
+FRAME = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
+FLAGS = [
+    *("--stories", "5", "--story-height", "3", "--story-mass", "40e3", "--base-mass", "40e3"),
+    *("--stiffness-ratio", "inf", "--period", "1", "--aspect-ratio", "10", "--damping-ratio", "0.02"),
+]
+EL_CENTRO = rf.load_suite("el-centro-1940")[0]
+FF = rf.load_suite("fema-p695-far-field")
+
+
+def invoke(*arguments, columns=200):
+    return CliRunner().invoke(app, ["run", *map(str, arguments)], env={"COLUMNS": str(columns)})
+
+
+def document(*arguments):
+    result = invoke(*arguments, "--json")
+    assert result.exit_code == 0, result.stderr
+
+    def refuse(token):
+        pytest.fail(f"{token} is not JSON")
+
+    return json.loads(result.stdout, parse_constant=refuse)
+
+
+def assert_is_run(row, motion, scale, model, **more):
+    response = rf.simulate(FRAME, motion.scaled(scale), model, output="peaks", **more)
+    expected = response.peaks() | {"motion": motion.name, "scale": scale, "error": None}
+    assert {name: row[name] for name in expected} == expected
+
+
+def test_default_models_side_by_side():
+    found = document(STRUCTURE, "el-centro-1940")
+    assert [row["model"] for row in found["runs"]] == ["2DOF-S", "MDOF-S", "fixed"]
+    for row in found["runs"]:
+        assert_is_run(row, EL_CENTRO, 1.0, row["model"])
+        assert 0.0 < row["run_time"] < found["elapsed"]
+
+
+def test_document_says_what_was_run():
+    found = document(STRUCTURE, "fema-p695-far-field/FF-2-a", "--model", "fixed")
+    props = FRAME.rocking()
+    assert found["versions"]["rockflex"] == rf.__version__
+    assert found["structure"]["stiffness_ratio"] == "inf"
+    assert found["structure"]["name"] == "Structure 1 of Table 1"
+    assert found["properties"]["omega"] == props.omega.tolist()
+    assert found["properties"]["resisting_moment"] == props.resisting_moment
+    assert found["motions"][0]["pga"] == FF["FF-2-a"].pga
+    assert found["motions"][0]["metadata"]["event"] == "Northridge"
+    assert found["options"] == {"models": ["fixed"], "scales": [1.0], "free_vibration": 0.0}
+
+
+def test_flags_and_options_in_the_place_of_arguments():
+    by_file = document(STRUCTURE, "el-centro-1940", "--model", "MDOF-S")["runs"][0]
+    by_flags = document(*FLAGS, "--motion", "el-centro-1940", "--model", "MDOF-S")["runs"][0]
+    by_option = document("el-centro-1940", "--structure", STRUCTURE, "--model", "MDOF-S")["runs"][0]
+    for row in (by_file, by_flags, by_option):
+        del row["run_time"]
+    assert by_file == by_flags == by_option
+
+
+def test_motions_scales_models_in_this_order():
+    names = ("fema-p695-far-field/FF-9-a", "el-centro-1940")
+    found = document(STRUCTURE, *names, "--scale", 1, "--scale", 2, "--model", "2DOF-S,fixed", "--model", "3DOF-S")
+    expected = list(product((FF["FF-9-a"], EL_CENTRO), (1.0, 2.0), ("2DOF-S", "fixed", "3DOF-S")))
+    for row, (motion, scale, model) in zip(found["runs"], expected, strict=True):
+        assert_is_run(row, motion, scale, model)
+
+
+@pytest.mark.parametrize(("given", "value"), [("2.5", 2.5), ("settle", "settle")])
+def test_free_vibration(given, value):
+    found = document(STRUCTURE, "fema-p695-far-field/FF-2-a", "--model", "2DOF-S", "--free-vibration", given)
+    assert_is_run(found["runs"][0], FF["FF-2-a"], 1.0, "2DOF-S", free_vibration=value)
+    assert found["runs"][0]["end_time"] > FF["FF-2-a"].duration + 2.0
+
+
+@pytest.mark.parametrize("workers", [[], ["--workers", 3]])
+def test_many_runs_are_those_done_one_by_one(monkeypatch, workers):
+    arguments = [
+        STRUCTURE,
+        "fema-p695-near-field-pulse",
+        "--scale",
+        1,
+        "--scale",
+        0.5,
+        "--model",
+        "2DOF-S,fixed",
+        *workers,
+    ]
+    monkeypatch.setattr(_simulations, "BATCH", 24)  # several batches
+    many = document(*arguments)["runs"]
+    monkeypatch.setattr(_simulations, "FEW", 10**6)
+    few = document(*arguments)["runs"]
+    assert len(many) == len(few) == 112
+    assert {row.pop("run_time") for row in many} == {None}
+    assert all(row.pop("run_time") > 0.0 for row in few)
+    assert many == few
+
+
+def test_file_with_units_and_step(tmp_path):
+    path = tmp_path / "record.txt"
+    np.savetxt(path, EL_CENTRO.acceleration / 9.81)
+    row = document(STRUCTURE, path, "--units", "g", "--dt", "0.02", "--model", "2DOF-S")["runs"][0]
+    expected = rf.simulate(FRAME, EL_CENTRO, "2DOF-S", output="peaks")
+    assert row["motion"] == "record"
+    assert row["max_rotation"] == pytest.approx(expected.max_rotation, rel=1e-9)
+
+
+def test_table_on_a_wide_terminal():
+    lines = invoke(STRUCTURE, "el-centro-1940", "--model", "MDOF-S").stdout.splitlines()
+    assert lines[0] == "Structure 1 of Table 1: 5 modes, T_1 = 1 s, h*_1/B = 10, ζ_1 = 0.02"
+    assert lines[2].split() == ["θ_max", "u_top", "M_b", "V_b", "time"]
+    assert lines[3].split() == ["motion", "model", "status", "[rad]", "[m]", "[kN", "m]", "[kN]", "impacts", "[ms]"]
+    peaks = ["0.01648", "0.05371", "3141", "502.1", "25"]
+    assert lines[5].split()[:8] == ["EL-CENTRO-1940-NS", "MDOF-S", "rocking", *peaks]
+
+
+def test_chimney_in_larger_units_reproduces_section_4_1_1():
+    result = invoke(
+        EXAMPLES / "structure_properties.toml", "el-centro-1940", "--scale", 2, "--model", "6DOF-S,5DOF-fixed"
+    )
+    rows = [line.split() for line in result.stdout.splitlines() if line.startswith("EL-CENTRO")]
+    assert "[MN m]" in result.stdout
+    assert rows[0][4] == "0.003152"
+    assert 1.0 - float(rows[0][6]) / float(rows[1][7]) == pytest.approx(0.44, abs=0.005)
+
+
+def test_narrow_terminal_gets_a_table_a_motion_and_nothing_is_cut():
+    arguments = (STRUCTURE, "el-centro-1940", "fema-p695-far-field/FF-9-a", "--scale", 2, "--times")
+    wide, narrow, tiny = (invoke(*arguments, columns=columns).stdout for columns in (200, 80, 30))
+    assert max(map(len, narrow.splitlines())) <= 80
+    assert "EL-CENTRO-1940-NS × 2" in narrow.splitlines()
+    assert "FF-9-a × 2" in narrow.splitlines()
+    for text in (wide, narrow, tiny):
+        assert "…" not in text
+        for word in ("overturned †", "no uplift", "t(θ_max)", "19.159", "0.7 atan(B/h*_1)"):
+            assert word in text
+
+
+def test_times_are_those_of_the_peaks():
+    response = rf.simulate(FRAME, EL_CENTRO, "MDOF-S", output="peaks")
+    result = invoke(STRUCTURE, "el-centro-1940", "--model", "MDOF-S", "--times")
+    last = [line for line in result.stdout.splitlines() if line.startswith("EL-CENTRO")][-1].split()
+    names = ("rotation", "top_displacement", "base_moment", "base_shear")
+    times = [getattr(response, f"time_of_max_{name}") for name in names]
+    assert list(map(float, last[2:])) == pytest.approx([*times, response.end_time], abs=1e-3)
+
+
+def test_folder_of_results(tmp_path):
+    folder = tmp_path / "out"
+    scales = ("--scale", 1, "--scale", 2)
+    result = invoke(STRUCTURE, "fema-p695-far-field/FF-2-a", *scales, "--model", "2DOF-S,fixed", "--out", folder)
+    assert result.exit_code == 0, result.stderr
+    assert result.stderr == f"Written to {folder}\n"
+    names = ["history-FF-2-a-x1.csv", "history-FF-2-a-x1.png", "history-FF-2-a-x2.csv", "history-FF-2-a-x2.png"]
+    assert sorted(path.name for path in folder.iterdir()) == [*names, "results.csv", "summary.json"]
+
+    summary = json.loads((folder / "summary.json").read_text("utf-8"))
+    assert summary["files"] == [*names, "results.csv", "summary.json"]
+    with (folder / "results.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    peaks = [name for name in PEAKS if name not in ("model", "motion", "status")]
+    assert list(rows[0]) == ["motion", "scale", "model", "status", "error", *peaks]
+    assert [float(row["max_base_moment"]) for row in rows] == [row["max_base_moment"] for row in summary["runs"]]
+    assert [row["model"] for row in rows] == ["2DOF-S", "fixed", "2DOF-S", "fixed"]
+
+    response = rf.simulate(FRAME, FF["FF-2-a"].scaled(2.0), "2DOF-S")
+    with (folder / names[2]).open(newline="") as file:
+        history = [row for row in csv.DictReader(file) if row["model"] == "2DOF-S"]
+    for name in ("time", "rotation", "top_displacement", "base_moment", "base_shear", "ground_acceleration"):
+        np.testing.assert_array_equal([float(row[name]) for row in history], getattr(response, name))
+    for name in (names[1], names[3]):
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
+
+
+def test_no_histories_beyond_the_limit(tmp_path):
+    folder = tmp_path / "out"
+    names = ("el-centro-1940", "fema-p695-far-field/FF-2-a")
+    result = invoke(STRUCTURE, *names, "--figures", 1, "--out", folder, "--json")
+    assert sorted(path.name for path in folder.iterdir()) == ["results.csv", "summary.json"]
+    assert "histories and figures only up to --figures" in result.stderr
+    printed, written = json.loads(result.stdout), json.loads((folder / "summary.json").read_text("utf-8"))
+    del written["files"]
+    assert printed == written
+
+
+def test_nothing_is_written_when_a_figure_fails(tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("rockflex.plot.save_figure", fail)
+    result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "Cannot write to" in result.stderr
+    assert "No space left on device" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_full_folder_is_refused_before_anything_runs(tmp_path, monkeypatch):
+    (tmp_path / "notes.txt").touch()
+    monkeypatch.setattr(_simulations, "perform", lambda _: pytest.fail("must not run"))
+    result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path)
+    assert result.exit_code == 2
+    assert "is not empty. Give another one, or --force" in result.stderr
+
+
+class Flaky:
+    """Stands in for `simulate`: a model that cannot be solved."""
+
+    def __init__(self, monkeypatch, broken):
+        self.simulate = _simulations.simulate
+        self.broken = broken
+        monkeypatch.setattr(_simulations, "simulate", self)
+
+    def __call__(self, structure, motion, model, **options):
+        if model in self.broken:
+            message = "The motion is not finite at 1 s."
+            raise rf.SolverError(message)
+        return self.simulate(structure, motion, model, **options)
+
+
+@pytest.mark.parametrize(("more", "code"), [([], 0), (["--strict"], 1)])
+def test_failed_runs_are_told_and_the_others_go_on(monkeypatch, more, code):
+    Flaky(monkeypatch, {"MDOF-S"})
+    result = invoke(STRUCTURE, "el-centro-1940", *more)
+    assert result.exit_code == code
+    assert "1 of 3 runs could not be solved:" in result.stderr
+    assert "MDOF-S under EL-CENTRO-1940-NS × 1: The motion is not finite at 1 s." in result.stderr
+    row = next(line.split() for line in result.stdout.splitlines() if "MDOF-S" in line)
+    assert row[2:] == ["failed", *"------"]
+    assert "fixed" in result.stdout
+
+
+def test_failed_runs_in_the_files(monkeypatch, tmp_path):
+    Flaky(monkeypatch, {"MDOF-S"})
+    result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out", "--json")
+    failed = json.loads(result.stdout)["runs"][1]
+    assert failed["status"] is None
+    assert failed["max_rotation"] is None
+    assert failed["error"] == "The motion is not finite at 1 s."
+    with (tmp_path / "out" / "results.csv").open(newline="") as file:
+        row = list(csv.DictReader(file))[1]
+    assert (row["status"], row["max_rotation"], row["error"]) == ("", "", "The motion is not finite at 1 s.")
+
+
+def test_long_list_of_failures_is_cut(monkeypatch):
+    Flaky(monkeypatch, {"MDOF-S"})
+    scales = [item for k in range(1, 8) for item in ("--scale", k)]
+    result = invoke(STRUCTURE, "el-centro-1940", *scales)
+    assert "7 of 21 runs could not be solved:" in result.stderr
+    assert "and 2 more; --json and results.csv hold them all" in result.stderr
+
+
+@pytest.mark.parametrize("strict", [[], ["--strict"]])
+def test_nothing_solved_is_a_solver_error(monkeypatch, tmp_path, strict):
+    Flaky(monkeypatch, {"MDOF-S", "2DOF-S", "fixed"})
+    result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out", *strict)
+    assert result.exit_code == 1
+    assert result.stdout == ""
+    assert result.stderr == (
+        "Error: None of the 3 runs could be solved; 2DOF-S under EL-CENTRO-1940-NS: The motion is not finite at 1 s.\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([STRUCTURE, "el-centro"], "'el-centro' is neither a suite"),
+        ([STRUCTURE], "No ground motion was given."),
+        (["el-centro-1940"], "No structure was given."),
+        ([STRUCTURE, "missing.csv"], "'missing.csv' is neither a suite"),
+        ([STRUCTURE, "el-centro-1940", "--model", "2DOF-X"], "Unknown model '2DOF-X'. Expected \"2DOF-S\""),
+        ([STRUCTURE, "el-centro-1940", "--model", ","], "No model was given. Expected labels such as"),
+        ([STRUCTURE, "el-centro-1940", "--model", "9DOF-S"], "Model 9DOF-S needs 8 modes, but the structure has 5."),
+        (
+            [STRUCTURE, "el-centro-1940", "--scale", "nan"],
+            "--scale must be a finite factor on the acceleration, but nan",
+        ),
+        ([STRUCTURE, "el-centro-1940", "--free-vibration", "-1"], "--free-vibration must be zero or more seconds, or"),
+        ([STRUCTURE, "el-centro-1940", "--free-vibration", "soon"], "or settle, but 'soon' was given."),
+        ([STRUCTURE, "el-centro-1940", "--stories", "3"], "The structure was given by"),
+        (
+            ["el-centro-1940", *FLAGS, "--story-mass", "-4"],
+            "story_mass must be a positive, finite number in kg, but -4.0",
+        ),
+        (["el-centro-1940", *FLAGS, "--period", "nan"], "period must be a positive, finite number in s, but nan"),
+    ],
+)
+def test_bad_input(arguments, said, tmp_path):
+    result = invoke(*arguments, "--out", tmp_path / "out", "--json")
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.startswith("Error: ")
+    assert said in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bad_usage():
+    assert invoke(STRUCTURE, "el-centro-1940", "--workers", 0).exit_code == 2
+    assert invoke(STRUCTURE, "el-centro-1940", "--stories", "many").exit_code == 2
+
+
+def test_units_cover_every_number_of_a_run():
+    dimensionless = {"scale", "n_uplifts", "n_impacts"}
+    named = {name.replace("time_of_max_*", "time_of_max_") for name in _run_output.UNITS}
+    row = document(STRUCTURE, "el-centro-1940", "--model", "fixed")["runs"][0]
+    for name, value in row.items():
+        if isinstance(value, int | float) and not isinstance(value, bool) and name not in dimensionless:
+            assert any(name.startswith(known) for known in named), name
+
+
+def test_bar_on_a_terminal_leaves_stdout_alone():
+    arguments = ["run", STRUCTURE, "fema-p695-near-field-pulse", "--model", "2DOF-S,3DOF-S,fixed", "--json"]
+    result = CliRunner().invoke(app, arguments, env={"FORCE_COLOR": "1", "TERM": "xterm"})
+    assert "Simulating" in result.stderr
+    assert len(json.loads(result.stdout)["runs"]) == 84

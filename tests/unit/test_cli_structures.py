@@ -1,0 +1,211 @@
+"""Structures from files and flags."""
+
+import numpy as np
+import pytest
+
+from rockflex import Frame, InputError, LumpedStructure, RockingProperties
+from rockflex.cli._structures import load_structure, split_arguments
+
+FRAME = {
+    "n_stories": 5,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 40e3,
+    "stiffness_ratio": float("inf"),
+    "period": 1.0,
+    "aspect_ratio": 10.0,
+    "damping_ratio": 0.02,
+}
+NO_FLAGS = dict.fromkeys(FRAME)
+
+
+def toml(values, table="frame"):
+    return f"[{table}]\n" + "".join(f"{key} = {value!r}\n" for key, value in values.items())
+
+
+@pytest.fixture
+def write(tmp_path):
+    def file(text):
+        path = tmp_path / "structure.toml"
+        path.write_text(text, "utf-8")
+        return path
+
+    return file
+
+
+@pytest.fixture
+def failing(write):
+    def message(text):
+        path = write(text)
+        with pytest.raises(InputError) as caught:
+            load_structure(path, NO_FLAGS)
+        assert str(caught.value).startswith(str(path))
+        return str(caught.value).removeprefix(str(path))
+
+    return message
+
+
+def test_frame_by_file_and_by_flags_are_the_same(write):
+    by_file = load_structure(write(toml(FRAME)), NO_FLAGS)
+    by_flags = load_structure(None, FRAME)
+    assert by_file.built == by_flags.built == Frame(**FRAME)
+    assert by_file.name == "structure"
+    assert by_flags.name == "5-story frame"
+    assert by_file.describe() == {"name": "structure", "kind": "frame", **FRAME}
+
+
+def test_whole_numbers_stand_for_decimals(write):
+    assert load_structure(write(toml({**FRAME, "story_height": 3})), NO_FLAGS).built == Frame(**FRAME)
+
+
+@pytest.mark.parametrize("masses", [[2.0, 1.0], [[2.0, 0.0], [0.0, 1.0]]])
+@pytest.mark.parametrize("damping", [0.02, [0.02, 0.03]])
+def test_lumped(write, masses, damping):
+    values = {"masses": masses, "stiffness": [[300.0, -100.0], [-100.0, 100.0]], "heights": [1.0, 2.0]}
+    rest = {"base_mass": 1.0, "half_width": 0.5, "damping_ratio": damping}
+    loaded = load_structure(write('name = "Two"\n' + toml({**values, **rest}, "lumped")), NO_FLAGS)
+    expected = LumpedStructure(**values, **rest).rocking()
+    assert loaded.name == "Two"
+    np.testing.assert_array_equal(loaded.properties.omega, expected.omega)
+    np.testing.assert_array_equal(loaded.properties.zeta, expected.zeta)
+    assert loaded.properties.i_theta == expected.i_theta
+    assert loaded.reference_mass == 3.0
+
+
+PROPERTIES = {
+    "omega": [6.0, 18.0],
+    "effective_mass": [170e3, 20e3],
+    "effective_height": [10.5, -3.6],
+    "top_ordinate": [1.25, -0.36],
+    "i_theta": 20e6,
+    "l0r": 1.8e6,
+    "m_tot": 240e3,
+    "half_width": 1.0,
+    "zeta": 0.02,
+}
+
+
+@pytest.mark.parametrize("more", [{}, {"translational_inertia": 19.5e6}])
+def test_properties_by_hand(write, more):
+    loaded = load_structure(write(toml({**PROPERTIES, **more}, "properties")), NO_FLAGS)
+    expected = RockingProperties(**PROPERTIES, **more)
+    assert isinstance(loaded.built, RockingProperties)
+    np.testing.assert_array_equal(loaded.properties.effective_height, [10.5, -3.6])
+    assert loaded.properties.translational_inertia == expected.translational_inertia
+    assert loaded.reference_mass == 240e3
+
+
+def test_title_tells_what_counts():
+    assert load_structure(None, FRAME).title == "5-story frame: 5 modes, T_1 = 1 s, h*_1/B = 10, ζ_1 = 0.02"
+    assert "1 mode," in load_structure(None, {**FRAME, "n_stories": 1}).title
+
+
+def test_unknown_key_is_named_with_its_neighbour(failing):
+    message = failing(toml({**FRAME, "story_hieght": 3.0}))
+    assert message == (
+        ": [frame] story_hieght is not known; there are n_stories, story_height, story_mass, base_mass, "
+        "stiffness_ratio, period, aspect_ratio, damping_ratio. Did you mean story_height?"
+    )
+
+
+def test_unknown_table(failing):
+    message = failing(toml(FRAME, "frmae"))
+    assert message == ": frmae is not known; there are name, frame, lumped, properties. Did you mean frame?"
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("story_mass", "heavy", "[frame] story_mass must be the mass of each floor, a number in kg, but 'heavy'"),
+        ("story_mass", "40e3", "[frame] story_mass must be the mass of each floor, a number in kg, but '40e3'"),
+        ("story_mass", [1.0], "[frame] story_mass must be the mass of each floor, a number in kg, but [1.0]"),
+        ("n_stories", 5.0, "[frame] n_stories must be the number of stories, a whole number, but 5.0"),
+    ],
+)
+def test_wrong_type(failing, key, value, said):
+    assert failing(toml({**FRAME, key: value})) == f": {said} was given."
+
+
+def test_booleans_are_no_numbers(failing):
+    text = toml(FRAME).replace("period = 1.0", "period = true")
+    assert (
+        failing(text) == ": [frame] period must be the first period on a fixed base, a number in s, but True was given."
+    )
+
+
+def test_every_problem_is_told_once(failing):
+    values = {
+        "masses": "heavy",
+        "stiffness": [[1.0]],
+        "heights": [1.0, "top"],
+        "half_width": 1.0,
+        "damping_ratio": 0.02,
+    }
+    assert failing(toml(values, "lumped")) == (
+        ": [lumped] masses must be a list of masses in kg, from the lowest up, or the mass matrix, but 'heavy' was "
+        "given. [lumped] heights must be a list of the heights of the masses above the base in m, from the lowest "
+        "up, but [1.0, 'top'] was given. [lumped] base_mass is missing: the mass of the base, a number in kg."
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"story_mass": -4.0}, "story_mass must be a positive, finite number in kg, but -4.0 was given."),
+        ({"period": float("nan")}, "period must be a positive, finite number in s, but nan was given."),
+        ({"damping_ratio": 2.0}, "damping_ratio must lie in [0, 1), but 2.0 was given. Give the fraction"),
+    ],
+)
+def test_values_out_of_range_name_file_and_table(failing, change, said):
+    assert failing(toml({**FRAME, **change})).startswith(f", [frame]: {said}")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"), [("", "none"), (toml(FRAME) + toml(PROPERTIES, "properties"), "[frame] and [properties]")]
+)
+def test_one_structure_a_file(failing, text, found):
+    expected = f" must hold one structure, [frame], [lumped] or [properties], but {found} was found."
+    assert failing(text) == expected
+
+
+def test_a_table_is_expected(failing):
+    assert failing("frame = 3\n") == ": frame must be a table, but 3 was given."
+    assert failing("name = 3\n" + toml(FRAME)) == ": name must be a name, in quotes, but 3 was given."
+
+
+def test_not_toml(failing, tmp_path):
+    assert " is not a valid TOML file: " in failing("[frame\n")
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="is not a valid TOML file: "):
+        load_structure(binary, NO_FLAGS)
+
+
+def test_file_that_cannot_be_read(tmp_path):
+    with pytest.raises(InputError, match=r"The structure file .*x\.toml does not exist \(working directory: "):
+        load_structure(tmp_path / "x.toml", NO_FLAGS)
+    with pytest.raises(InputError, match=r"The structure file .* cannot be read: Is a directory\."):
+        load_structure(tmp_path, NO_FLAGS)
+
+
+def test_file_and_flags_exclude_each_other(write):
+    with pytest.raises(InputError, match=r"was given by .* and by --stories, --period\. Give one or the other\."):
+        load_structure(write(toml(FRAME)), {**NO_FLAGS, "n_stories": 5, "period": 1.0})
+
+
+def test_missing_flags_are_named():
+    with pytest.raises(InputError, match=r"The frame lacks --period, --damping-ratio\. Give a structure file"):
+        load_structure(None, {**FRAME, "period": None, "damping_ratio": None})
+    with pytest.raises(
+        InputError, match=r"No structure was given\. Give a structure file, such as structure\.toml, or"
+    ):
+        load_structure(None, NO_FLAGS)
+
+
+def test_structure_is_the_first_argument_or_an_option(tmp_path):
+    path = tmp_path / "a.toml"
+    assert split_arguments(None, [str(path), "m"]) == (path, ["m"])
+    assert split_arguments(path, ["m", "n"]) == (path, ["m", "n"])
+    assert split_arguments(None, []) == (None, [])
+    with pytest.raises(InputError, match=r"Two structures were given, .*a\.toml and b\.toml\. Give one at a time\."):
+        split_arguments(path, ["b.toml"])

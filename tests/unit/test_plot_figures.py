@@ -1,0 +1,336 @@
+import io
+import math
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
+from scipy.integrate import cumulative_trapezoid
+
+import rockflex as rf
+from rockflex.plot import plot_energy, plot_mode_shapes, plot_moment_rotation, plot_motion
+from rockflex.plot._units import readable, short
+
+FRAME = rf.Frame(
+    n_stories=5,
+    story_height=3.0,
+    story_mass=40e3,
+    base_mass=40e3,
+    stiffness_ratio=math.inf,
+    period=1.0,
+    aspect_ratio=10.0,
+    damping_ratio=0.02,
+)
+RECORD = rf.load_suite("el-centro-1940")[0]
+HALF_WIDTH = FRAME.modal().effective_height[0] / 10.0
+RESISTANCE = 6 * 40e3 * 9.81 * HALF_WIDTH
+SLOPE = 40e3 * 3.0 * (1 + 2 + 3 + 4 + 5) * 9.81
+
+
+@pytest.fixture(scope="module")
+def responses():
+    return {model: rf.simulate(FRAME, RECORD, model) for model in ("2DOF-S", "MDOF-S", "fixed")}
+
+
+@pytest.fixture(scope="module")
+def fallen():
+    initial = rf.InitialState(rotation=0.05, rotation_velocity=0.5)
+    return rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=initial)
+
+
+def drawn(figure):
+    """Draw, with every warning an error; texts must stay inside the figure and the legend off the panels."""
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw(renderer)
+    panels = [axes.get_window_extent() for axes in figure.axes]
+    for legend in figure.legends:
+        box = legend.get_window_extent(renderer)
+        assert not any(box.overlaps(panel) for panel in panels)
+        assert box.x1 <= figure.bbox.x1 + 1.0
+    titles = [axes.title.get_window_extent(renderer) for axes in figure.axes if axes.title.get_text()]
+    for i, title in enumerate(titles):
+        assert figure.bbox.x0 - 1.0 <= title.x0 < title.x1 <= figure.bbox.x1 + 1.0
+        assert not any(title.overlaps(other) for other in titles[i + 1 :])
+    return figure
+
+
+# --- moment over rotation ------------------------------------------------------------------------------------------
+
+
+def test_moment_rotation_draws_the_loops_and_the_static_line(responses):
+    figure = drawn(plot_moment_rotation(responses.values()))
+    assert [axes.get_title() for axes in figure.axes] == ["2DOF-S", "MDOF-S"]
+    for axes, response in zip(figure.axes, (responses["2DOF-S"], responses["MDOF-S"]), strict=True):
+        loop, static = axes.get_lines()
+        np.testing.assert_array_equal(loop.get_xdata(), response.rotation)
+        np.testing.assert_allclose(loop.get_ydata(), response.base_moment / 1e6, rtol=1e-14)
+        theta, moment = np.array(static.get_xdata()), 1e6 * np.array(static.get_ydata())
+        np.testing.assert_allclose(moment[[1, 2]], [-RESISTANCE, RESISTANCE], rtol=1e-12)
+        np.testing.assert_allclose(moment[[0, 3]], np.array([-1, 1]) * (RESISTANCE - SLOPE * theta[3]), rtol=1e-12)
+        assert theta[3] == -theta[0] == axes.get_xlim()[1] > response.max_rotation
+        assert axes.get_ylim()[1] * 1e6 > max(response.max_base_moment, RESISTANCE)
+    assert figure.get_supylabel() == "$M_b$ [MN m]"
+    assert figure.get_supxlabel() == "θ [rad]"
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        r"static, $\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
+    ]
+
+
+def test_loops_of_a_rigid_structure_lie_on_a_share_of_the_static_line():
+    """In the rigid limit θ'' is minus the static moment over I_θ, and M_b what accelerates the mode: -m* h*² θ''."""
+    p = FRAME.rocking(1)
+    stiff = rf.RockingProperties(
+        30 * p.omega, p.effective_mass, p.effective_height, p.top_ordinate, p.i_theta, p.l0r, p.m_tot, p.half_width, 0.9
+    )
+    response = rf.simulate(stiff, rf.quiet_motion(1.4), "2DOF-S", initial=rf.InitialState(rotation=0.1))
+    loop, static = plot_moment_rotation(response).axes[0].get_lines()
+    late = response.time > 0.5
+    expected = np.interp(loop.get_xdata()[late], static.get_xdata()[2:], static.get_ydata()[2:])
+    share = float(p.effective_mass[0] * p.effective_height[0] ** 2) / p.i_theta
+    np.testing.assert_allclose(loop.get_ydata()[late], share * expected, rtol=0.01)
+
+
+def test_moment_rotation_keeps_labels_with_their_curves(responses):
+    figure = plot_moment_rotation([responses["fixed"], responses["MDOF-S"], responses["2DOF-S"]], ["f", "m", "t"])
+    assert [axes.get_title() for axes in figure.axes] == ["m", "t"]
+    assert [to_hex(axes.get_lines()[0].get_color()) for axes in figure.axes] == ["#000000", "#d55e00"]
+
+
+def test_moment_rotation_has_three_panels_a_row(responses):
+    figure = drawn(plot_moment_rotation([responses["2DOF-S"]] * 4))
+    assert [axes.axison for axes in figure.axes] == [True] * 4 + [False] * 2
+    assert len({axes.get_xlim() for axes in figure.axes[:4]}) == 1
+
+
+def test_moment_rotation_of_an_overturning_run_keeps_its_scale(fallen, responses):
+    figure = plot_moment_rotation([fallen, responses["2DOF-S"]])
+    assert figure.axes[0].get_xlim()[1] == pytest.approx(1.1 * responses["2DOF-S"].max_rotation)
+    assert plot_moment_rotation(fallen).axes[0].get_xlim()[1] == pytest.approx(1.1 * RESISTANCE / SLOPE)
+    limit = plot_moment_rotation(fallen).axes[0].get_ylim()[1] * 1e6
+    assert RESISTANCE < limit < 0.5 * fallen.max_base_moment
+
+
+def test_moment_rotation_without_uplift_shows_the_static_line_whole():
+    figure = plot_moment_rotation(rf.simulate(FRAME, RECORD.scaled(0.1), "2DOF-S"))
+    assert figure.axes[0].get_xlim()[1] == pytest.approx(1.1 * RESISTANCE / SLOPE)
+    assert figure.axes[0].get_ylim()[1] == pytest.approx(1.1 * RESISTANCE / 1e6)
+
+
+def test_moment_rotation_needs_a_base_that_lifts(responses):
+    with pytest.raises(rf.InputError) as caught:
+        plot_moment_rotation(responses["fixed"])
+    assert str(caught.value) == (
+        "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
+        'Give at least one of a model that rocks, such as "2DOF-S".'
+    )
+
+
+# --- mode shapes ---------------------------------------------------------------------------------------------------
+
+
+def test_mode_shapes_start_at_the_base_and_sum_to_one():
+    figure = drawn(plot_mode_shapes(FRAME))
+    lines = [axes.get_lines()[1] for axes in figure.axes]
+    assert len(lines) == 5
+    for line in lines:
+        np.testing.assert_array_equal(line.get_ydata(), [0, 3, 6, 9, 12, 15])
+    np.testing.assert_allclose(sum(line.get_xdata() for line in lines), [0, 1, 1, 1, 1, 1], atol=1e-12)
+    for axes, line in zip(figure.axes, lines, strict=True):
+        low, high = axes.get_xlim()
+        assert low < line.get_xdata().min() < line.get_xdata().max() < high
+        assert axes.get_ylim()[1] > 15
+
+
+def test_mode_shapes_state_what_the_modes_are():
+    modes = FRAME.modal()
+    titles = [axes.get_title() for axes in plot_mode_shapes(FRAME, 2).axes]
+    assert len(titles) == 2
+    assert titles[0].splitlines()[0] == "$T_{1}$ = 1 s"
+    share = 100.0 * modes.effective_mass[1] / (5 * 40e3)
+    assert titles[1].splitlines() == [
+        f"$T_{{2}}$ = {modes.period[1]:.3g} s",
+        rf"$m^*_{{2}}/Σm$ = {share:.3g} %",
+        rf"$h^*_{{2}}$ = −{-modes.effective_height[1]:.3g} m",
+    ]
+
+
+def test_mode_shapes_of_some_modes_alone_give_masses_in_kg():
+    modes = FRAME.modal(2)
+    title = plot_mode_shapes(modes).axes[0].get_title().splitlines()[1]
+    assert title.startswith("$m^*_{1}$ = ")
+    assert title.endswith(" kg")
+    assert float(title.split()[2]) == pytest.approx(modes.effective_mass[0], rel=5e-3)
+
+
+def test_mode_shapes_fold_into_rows_and_thin_out_their_marks():
+    high = rf.Frame(50, 3.0, 40e3, 40e3, 0.0, 2.0, 10.0, 0.02)
+    figure = drawn(plot_mode_shapes(high, 7))
+    assert [axes.axison for axes in figure.axes] == [True] * 7 + [False] * 3
+    assert figure.axes[0].get_lines()[1].get_marker() in ("", "None")
+    assert plot_mode_shapes(FRAME).axes[0].get_lines()[1].get_marker() == "o"
+
+
+def test_a_mode_that_takes_no_part_has_no_height():
+    """Two equal masses on equal springs to the ground: the second mode has neither shear nor moment at h = const."""
+    modes = rf.ModalProperties(
+        omega=np.array([1.0, 2.0]), effective_mass=np.array([2.0, 0.0]), effective_height=np.array([1.5, math.inf]),
+        participation=np.array([1.0, 0.0]), shapes=np.array([[1.0, -1.0], [1.0, 1.0]]), heights=np.array([1.0, 2.0]),
+    )  # fmt: skip
+    first, second = drawn(plot_mode_shapes(modes)).axes
+    assert first.get_title().endswith("= 1.5 m")
+    assert second.get_title().endswith("= none")
+    np.testing.assert_array_equal(second.get_lines()[1].get_xdata(), 0.0)
+    assert second.get_xlim() == (-1.25, 1.25)
+
+
+def test_mode_shapes_refuse_what_has_no_modes():
+    with pytest.raises(rf.InputError) as caught:
+        plot_mode_shapes(FRAME.rocking())
+    assert str(caught.value) == (
+        "structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
+        "RockingProperties was given. Give the structure itself, or structure.modal()."
+    )
+    with pytest.raises(rf.InputError, match="n_modes must be a whole number from 1 to 5, but 6 was given"):
+        plot_mode_shapes(FRAME, 6)
+
+
+# --- energy --------------------------------------------------------------------------------------------------------
+
+
+def layers(axes):
+    """Height of every layer over time, from the corners of its polygon."""
+    found = {}
+    for collection in axes.collections:
+        vertices = collection.get_paths()[0].vertices
+        n = (len(vertices) - 1) // 2
+        bottom, top = vertices[1:n, 1], vertices[n + 1 : 2 * n, 1][::-1]
+        found[collection.get_label()] = (vertices[1:n, 0], bottom, top)
+    return found
+
+
+def test_energy_layers_stack_up_to_the_input(responses):
+    response = responses["MDOF-S"]
+    figure = drawn(plot_energy(response))
+    axes = figure.axes[0]
+    stack = layers(axes)
+    assert list(stack) == ["damped", "lost in impacts", "raised weight", "strain", "kinetic"]
+    (line,) = axes.get_lines()
+    np.testing.assert_allclose(line.get_ydata(), response.energy.input / 1e3, rtol=1e-14)
+    top = stack["kinetic"][2]
+    np.testing.assert_allclose(top, line.get_ydata()[: top.size], atol=1e-9 * line.get_ydata().max())
+    lost = stack["lost in impacts"]
+    assert (lost[2] - lost[1])[-1] == pytest.approx(response.energy.impact_losses.sum() / 1e3, rel=1e-9)
+    assert axes.get_ylabel() == "energy [kJ]"
+    assert axes.get_ylim()[1] > line.get_ydata().max()
+    assert axes.get_title() == (f"MDOF-S under {RECORD.name}, closing error {response.energy.closing_error:.1e}")
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["input", *reversed(stack)]
+
+
+def test_energy_leaves_out_what_stays_empty(responses):
+    assert list(layers(plot_energy(responses["fixed"]).axes[0])) == ["damped", "strain", "kinetic"]
+    rest = rf.simulate(FRAME, rf.quiet_motion(2.0), "fixed")
+    axes = drawn(plot_energy(rest)).axes[0]
+    assert layers(axes) == {}
+    assert axes.get_ylim() == (0.0, 1.0)
+
+
+def test_energy_of_a_release_starts_from_what_was_raised():
+    start = 0.05
+    response = rf.simulate(FRAME, rf.quiet_motion(5.0), "2DOF-S", initial=rf.InitialState(rotation=start))
+    (line,) = plot_energy(response).axes[0].get_lines()
+    assert line.get_label() == "start + input"
+    np.testing.assert_allclose(1e3 * line.get_ydata(), RESISTANCE * start - 0.5 * SLOPE * start**2, rtol=1e-9)
+
+
+def test_energy_is_drawn_up_to_the_fall(fallen):
+    axes = drawn(plot_energy(fallen)).axes[0]
+    supply, mark = axes.get_lines()
+    assert mark.get_label() == "overturning"
+    reached = supply.get_xdata()[-1]
+    assert mark.get_xdata()[0] == reached
+    at = float(np.interp(reached, fallen.time, fallen.rotation))
+    assert 0.8 * RESISTANCE / SLOPE < at <= RESISTANCE / SLOPE
+    assert all(np.all(top >= bottom - 1e-9) for _, bottom, top in layers(axes).values())
+
+
+def test_energy_needs_a_history():
+    with pytest.raises(rf.InputError, match="keeps peaks only, but a plot needs the history"):
+        plot_energy(rf.simulate(FRAME, RECORD, "2DOF-S", output="peaks"))
+
+
+# --- ground motion -------------------------------------------------------------------------------------------------
+
+
+def test_motion_draws_its_integrals_and_its_spectrum():
+    figure = drawn(plot_motion(RECORD))
+    a, spectrum, v, d = figure.axes
+    assert [axes.get_ylabel() for axes in (a, v, d, spectrum)] == ["$a$ [m/s²]", "$v$ [m/s]", "$d$ [m]", "$S_a$ [m/s²]"]
+    samples = RECORD.acceleration
+    velocity = cumulative_trapezoid(samples, dx=RECORD.dt, initial=0.0)
+    np.testing.assert_array_equal(a.get_lines()[0].get_ydata(), samples)
+    np.testing.assert_allclose(v.get_lines()[0].get_ydata(), velocity, atol=1e-12)
+    np.testing.assert_allclose(d.get_lines()[0].get_ydata(), RECORD.displacement)
+    for axes in (a, v, d):
+        assert axes.get_xlim() == (0.0, RECORD.duration)
+        assert axes.get_ylim()[1] > np.abs(axes.get_lines()[0].get_ydata()).max()
+    (curve,) = spectrum.get_lines()
+    for i in (0, 100, 239):
+        assert curve.get_ydata()[i] == pytest.approx(RECORD.sa(float(curve.get_xdata()[i]), 0.05), rel=1e-12)
+    assert spectrum.get_xscale() == "log"
+    assert spectrum.get_ylim()[1] > curve.get_ydata().max()
+
+
+def test_motion_states_its_measures():
+    a, spectrum, v, d = plot_motion(RECORD).axes
+    assert a.get_title(loc="right") == f"PGA = {RECORD.pga:.3g} m/s² ({RECORD.pga / 9.81:.3g} g)"
+    assert v.get_title(loc="right") == f"PGV = {RECORD.pgv:.3g} m/s"
+    assert d.get_title(loc="right") == f"PGD = {RECORD.pgd:.3g} m"
+    assert spectrum.get_title() == (
+        f"$I_a$ = {RECORD.arias:.3g} m/s, $D_{{5–95}}$ = {RECORD.d5_95:.3g} s (shaded)\nspectrum for ζ = 5 %"
+    )
+
+
+def test_motion_shades_the_significant_duration():
+    energy = cumulative_trapezoid(RECORD.acceleration**2, dx=RECORD.dt, initial=0.0)
+    expected = [np.interp(share * energy[-1], energy, RECORD.time) for share in (0.05, 0.95)]
+    for axes in plot_motion(RECORD).axes:
+        if axes.get_xlabel() == "$T$ [s]":
+            continue
+        (box,) = axes.patches
+        np.testing.assert_allclose([box.get_x(), box.get_x() + box.get_width()], expected, atol=2 * RECORD.dt)
+
+
+def test_motion_may_be_quiet_and_nameless():
+    figure = drawn(plot_motion(rf.GroundMotion(np.zeros(100), 0.01)))
+    assert figure.get_suptitle() == "ground motion"
+    assert figure.axes[0].get_ylim() == (-1.0, 1.0)
+    named = plot_motion(rf.GroundMotion(np.zeros(100), 0.01, name="$x"))
+    assert named.get_suptitle() == r"\$x"
+    named.savefig(io.BytesIO())
+
+
+def test_motion_refuses_what_is_none():
+    with pytest.raises(rf.InputError) as caught:
+        plot_motion(np.zeros(5))
+    assert str(caught.value) == (
+        "motion must be a GroundMotion, but ndarray was given. "
+        "Read one from a file, take one of a suite, or build it from its samples."
+    )
+
+
+# --- numbers -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("largest", "expected"),
+    [(2.5e9, (1e9, "GN m")), (1e6, (1e6, "MN m")), (-3e4, (1e3, "kN m")), (999.0, (1.0, "N m")), (0.0, (1.0, "N m"))],
+)
+def test_units_suit_the_largest_value(largest, expected):
+    assert readable(largest, "N m") == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(2345.6, "2350"), (-0.012345, "−0.0123"), (1.0, "1"), (0.0, "0"), (380123.0, "380000")]
+)
+def test_numbers_have_three_digits(value, text):
+    assert short(value) == text

@@ -1,0 +1,339 @@
+import io
+import math
+import subprocess
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from matplotlib import rc_context, rcParams
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
+
+import rockflex as rf
+from rockflex.plot import plot_history
+from rockflex.plot._curves import curves_of
+
+FRAME = rf.Frame(
+    n_stories=5,
+    story_height=3.0,
+    story_mass=40e3,
+    base_mass=40e3,
+    stiffness_ratio=math.inf,
+    period=1.0,
+    aspect_ratio=10.0,
+    damping_ratio=0.02,
+)
+MODELS = ("2DOF-S", "3DOF-S", "MDOF-S", "fixed")
+RECORD = rf.load_suite("el-centro-1940")[0]
+# Rotation at which the static resisting moment vanishes, from the masses by hand.
+HALF_WIDTH = FRAME.modal().effective_height[0] / 10.0
+BALANCE = 6 * 40e3 * HALF_WIDTH / (40e3 * 3.0 * (1 + 2 + 3 + 4 + 5))
+
+
+@pytest.fixture(scope="module")
+def four():
+    return [rf.simulate(FRAME, RECORD, model) for model in MODELS]
+
+
+@pytest.fixture(scope="module")
+def figure(four):
+    return plot_history(four)
+
+
+@pytest.fixture(scope="module")
+def fallen():
+    """Released beyond the amplitude from which it can return, after one return."""
+    quiet = rf.quiet_motion(20.0)
+    return rf.simulate(FRAME, quiet, "2DOF-S", initial=rf.InitialState(rotation=0.05, rotation_velocity=0.5))
+
+
+@pytest.fixture(scope="module")
+def returned():
+    return rf.simulate(FRAME, rf.quiet_motion(20.0), "3DOF-S", initial=rf.InitialState(rotation=0.05))
+
+
+def curve(axes, index):
+    """The line of a response, among those that carry a label of their own."""
+    return [line for line in axes.get_lines() if not line.get_label().startswith("_")][index]
+
+
+def spans(collection):
+    """Start and end of the bars of a collection."""
+    boxes = [path.get_extents() for path in collection.get_paths()]
+    return np.array([(box.x0, box.x1) for box in boxes])
+
+
+def uplift_intervals(response):
+    """Start and end of every stretch of the history with the base off the ground, found node by node."""
+    found, start = [], None
+    nodes = list(zip(response.time, response.side, strict=True))
+    for (t, s), (_, after) in pairwise(nodes):
+        if s == 0 and after != 0:
+            start = t
+        if s != 0 and after == 0:
+            found.append((start if start is not None else nodes[0][0], t))
+            start = None
+    if nodes[-1][1] != 0:
+        found.append((start if start is not None else nodes[0][0], nodes[-1][0]))
+    return np.array(found)
+
+
+def notes(axes):
+    return [text.get_text() for text in axes.texts]
+
+
+def test_four_panels_hold_a_line_for_every_response(figure, four):
+    assert [axes.get_ylabel() for axes in figure.axes] == [
+        "θ [rad]",
+        r"$u_{\mathrm{top}}$ [m]",
+        "$M_b$ [MN m]",
+        "$V_b$ [MN]",
+    ]
+    values = (
+        lambda r: r.rotation,
+        lambda r: r.top_displacement,
+        lambda r: r.base_moment / 1e6,
+        lambda r: r.base_shear / 1e6,
+    )
+    for axes, of in zip(figure.axes, values, strict=True):
+        for i, response in enumerate(four):
+            np.testing.assert_array_equal(curve(axes, i).get_xdata(), response.time)
+            np.testing.assert_allclose(curve(axes, i).get_ydata(), of(response), rtol=1e-14)
+    assert [notes(axes)[0] for axes in figure.axes] == ["A", "B", "C", "D"]
+
+
+def test_models_look_as_in_the_paper_and_the_legend_shows_those_looks(figure):
+    looks = [(to_hex(curve(figure.axes[0], i).get_color()), curve(figure.axes[0], i).get_linestyle()) for i in range(4)]
+    assert looks == [("#d55e00", "-."), ("#009e73", "--"), ("#000000", "-"), ("#8c8c8c", "-")]
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [*MODELS, "uplifted: MDOF-S"]
+    assert [(to_hex(line.get_color()), line.get_linestyle()) for line in legend.get_lines()] == looks
+    assert legend.get_title().get_text() == RECORD.name
+
+
+def test_dashed_curves_lie_over_the_continuous_ones(figure):
+    two, three, many, fixed = (curve(figure.axes[2], i).get_zorder() for i in range(4))
+    assert fixed < many < three < two
+
+
+def test_shading_is_the_uplift_of_the_most_detailed_model(figure, four):
+    expected = uplift_intervals(four[2])
+    assert len(expected) == four[2].n_uplifts > 10
+    for axes in figure.axes:
+        np.testing.assert_allclose(spans(axes.collections[0]), expected, rtol=1e-12)
+
+
+def test_bars_at_the_foot_are_the_uplifts_of_each_rocking_model(figure, four):
+    _, *bars = figure.axes[0].collections
+    assert len(bars) == 3
+    for bar, response in zip(bars, reversed(four[:3]), strict=True):
+        np.testing.assert_allclose(spans(bar), uplift_intervals(response), rtol=1e-12)
+        assert to_hex(bar.get_facecolor()[0]) == to_hex(curve(figure.axes[0], four.index(response)).get_color())
+    low, high = figure.axes[0].get_ylim()
+    foot = low + max(path.get_extents().y1 for bar in bars for path in bar.get_paths()) * (high - low)
+    assert foot < -max(np.abs(r.rotation).max() for r in four)
+    assert all(len(axes.collections) == 1 for axes in figure.axes[1:])
+
+
+def test_one_rocking_model_needs_no_bars(four):
+    panels = plot_history(four[2:]).axes
+    assert [len(axes.collections) for axes in panels] == [1, 1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("panel", "name", "factor"),
+    [(0, "rotation", 1.0), (1, "top_displacement", 1.0), (2, "base_moment", 1e6), (3, "base_shear", 1e6)],
+)
+def test_true_peaks_are_marked_written_and_within_the_axes(figure, four, panel, name, factor):
+    axes = figure.axes[panel]
+    low, high = axes.get_ylim()
+    marks = {
+        (float(line.get_xdata()[0]), float(line.get_ydata()[0]))
+        for line in axes.get_lines()
+        if line.get_marker() == "o"
+    }
+    assert len(marks) == (3 if name == "rotation" else 4)
+    for response in four:
+        peak, when = getattr(response, f"max_{name}") / factor, getattr(response, f"time_of_max_{name}")
+        if peak == 0.0:
+            continue
+        assert low < -peak < peak < high
+        (value,) = (y for t, y in marks if t == when and abs(y) == peak)
+        k = int(np.argmin(np.abs(response.time - when)))
+        assert value == pytest.approx(getattr(response, name)[k] / factor, rel=0.1)
+        assert any(text == f"{peak:.3g} at {when:.2f} s" for text in notes(axes))
+    assert figure.axes[3].get_xlim() == (0.0, four[0].end_time)
+
+
+def test_nothing_outside_the_panels_touches_them_or_leaves_the_figure(four):
+    labels = ["a name that is rather long", "another one, just as long as it", "third", "the structure on a fixed base"]
+    for figure in (plot_history(four), plot_history(four, labels), plot_history([*four, *four])):
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        outer = figure.bbox.padded(1.0)
+        boxes = [axes.get_window_extent() for axes in figure.axes]
+        legend = figure.legends[0].get_window_extent(renderer)
+        assert outer.x0 <= legend.x0 < legend.x1 <= outer.x1
+        assert outer.y0 <= legend.y0 < legend.y1 <= outer.y1
+        for axes in figure.axes:
+            texts = [text.get_window_extent(renderer) for text in axes.texts]
+            for box in (legend, *texts):
+                assert not any(box.overlaps(other) for other in boxes)
+                assert outer.x0 <= box.x0 < box.x1 <= outer.x1
+            for one, two in pairwise(texts[1:]):
+                assert one.y0 >= two.y1 - 1.5
+
+
+def test_a_run_without_uplift_says_so_and_keeps_an_open_axis():
+    weak = RECORD.scaled(0.1)
+    panels = plot_history([rf.simulate(FRAME, weak, model) for model in MODELS]).axes
+    assert "no uplift" in notes(panels[0])
+    assert panels[0].get_ylim() == (-1e-3, 1e-3)
+    assert all(len(axes.collections) == 0 for axes in panels)
+    assert panels[3].get_ylabel() == "$V_b$ [kN]"
+    assert "fixed base" in notes(plot_history(rf.simulate(FRAME, weak, "fixed")).axes[0])
+
+
+def test_overturning_squashes_no_other_curve(fallen, returned):
+    assert (fallen.status, returned.status) == ("overturned", "rocking")
+    figure = plot_history([fallen, returned])
+    rotation, displacement, moment, _ = figure.axes
+    high = rotation.get_ylim()[1]
+    assert high == pytest.approx(1.12 * returned.max_rotation)
+    (triangle,) = (line for line in rotation.get_lines() if line.get_marker() in "^v")
+    when = float(np.interp(high, np.abs(fallen.rotation), fallen.time))
+    assert float(triangle.get_xdata()[0]) == pytest.approx(when, rel=1e-9)
+    assert triangle.get_marker() == "^"
+    assert triangle.get_ydata()[0] == high
+    for axes in figure.axes:
+        (line,) = (line for line in axes.get_lines() if line.get_linestyle() == ":")
+        assert list(line.get_xdata()) == [fallen.end_time] * 2
+    assert f"overturned, {fallen.end_time:.2f} s" in notes(rotation)
+    before = fallen.time < np.min(fallen.time[np.abs(fallen.rotation) > BALANCE])
+    for axes, values, factor, name in (
+        (displacement, fallen.top_displacement, 1.0, "top_displacement"),
+        (moment, fallen.base_moment, 1e6, "base_moment"),
+    ):
+        largest = max(np.abs(values[before]).max(), getattr(returned, f"max_{name}")) / factor
+        assert axes.get_ylim()[1] == pytest.approx(1.12 * largest)
+    assert np.abs(fallen.base_moment).max() / 1e6 > moment.get_ylim()[1]
+
+
+def test_overturning_to_the_left_points_down():
+    initial = rf.InitialState(rotation=-0.05, rotation_velocity=-0.5)
+    left = rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=initial)
+    assert left.status == "overturned"
+    axes = plot_history(left).axes[0]
+    (triangle,) = (line for line in axes.get_lines() if line.get_marker() in "^v")
+    assert triangle.get_marker() == "v"
+    assert triangle.get_ydata()[0] == axes.get_ylim()[0]
+
+
+def test_where_all_overturn_the_axis_reaches_the_rotation_of_balance(fallen):
+    assert plot_history(fallen).axes[0].get_ylim()[1] == pytest.approx(1.12 * BALANCE)
+    fixed = rf.simulate(FRAME, rf.quiet_motion(20.0), "fixed")
+    assert plot_history([fallen, fixed]).axes[0].get_ylim()[1] == pytest.approx(1.12 * BALANCE)
+
+
+def test_a_fall_that_the_record_cuts_short_squashes_nothing_either(returned):
+    initial = rf.InitialState(rotation=0.05, rotation_velocity=0.5)
+    falling = rf.simulate(FRAME, rf.quiet_motion(1.0), "2DOF-S", initial=initial)
+    assert falling.status == "rocking"
+    assert falling.max_rotation > BALANCE
+    axes = plot_history([falling, returned]).axes[0]
+    assert axes.get_ylim()[1] == pytest.approx(1.12 * returned.max_rotation)
+    assert any(line.get_marker() == "^" for line in axes.get_lines())
+
+
+def test_a_run_beyond_balance_from_the_start_is_shown_whole():
+    start = rf.InitialState(rotation=1.2 * BALANCE)
+    response = rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=start)
+    assert response.status == "overturned"
+    panels = plot_history(response).axes
+    assert panels[0].get_ylim()[1] > 0.5 * math.pi
+    assert panels[1].get_ylim()[1] > response.max_top_displacement
+
+
+def test_phases_open_at_both_ends_are_shaded(returned):
+    initial = rf.InitialState(rotation=0.05)
+    short = rf.simulate(FRAME, rf.quiet_motion(0.5), "2DOF-S", initial=initial)
+    np.testing.assert_allclose(spans(plot_history(short).axes[1].collections[0]), [[0.0, 0.5]])
+    expected = uplift_intervals(returned)
+    assert expected[0, 0] == 0.0
+    np.testing.assert_allclose(spans(plot_history(returned).axes[1].collections[0]), expected, rtol=1e-12)
+
+
+def test_labels_and_titles(four):
+    other = rf.simulate(FRAME, rf.GroundMotion(RECORD.acceleration, RECORD.dt, name="a$b"), "2DOF-S")
+    legend = plot_history([four[0], other]).legends[0]
+    names = [text.get_text() for text in legend.get_texts()]
+    assert names[:2] == [f"2DOF-S, {RECORD.name}", r"2DOF-S, a\$b"]
+    assert legend.get_title().get_text() == ""
+    legend = plot_history(four[:2], ["_one", "two"], title="Mine").legends[0]
+    assert [text.get_text() for text in legend.get_texts()] == ["_one", "two", "uplifted: two"]
+    assert legend.get_title().get_text() == "Mine"
+    assert plot_history(other).legends[0].get_title().get_text() == r"a\$b"
+    plot_history([four[0], other]).savefig(io.BytesIO())
+
+
+def test_takes_one_response_any_iterable_and_the_column_of_a_table(four):
+    table = rf.simulate_many(FRAME, RECORD, ["2DOF-S", "fixed"], output="history")
+    assert len(plot_history(four[0]).axes) == 4
+    assert len(plot_history(iter(four)).legends[0].get_texts()) == 5
+    assert len(plot_history(table["response"]).legends[0].get_texts()) == 3
+
+
+def test_sixteen_responses_are_told_apart_and_no_more(four):
+    looks = [c.look for c in curves_of([*four, *[four[0]] * 12])]
+    assert len({(look.color, look.dashes) for look in looks}) == 16
+    with pytest.raises(rf.InputError, match=r"^17 responses are too many to be told apart in one figure\. Plot fewer"):
+        plot_history([*four, *[four[0]] * 13])
+
+
+def test_black_is_for_the_model_with_the_most_modes(four):
+    five = rf.simulate(FRAME, RECORD, "5DOF-S")
+    four_modes = rf.simulate(FRAME, RECORD, "4DOF-S")
+    assert [c.look.color for c in curves_of([four_modes, five])][1] == "#000000"
+    assert [c.look.color for c in curves_of([five, four[2]])][1] == "#000000"
+
+
+def test_what_cannot_be_drawn_is_named(four):
+    peaks = rf.simulate(FRAME, RECORD, "2DOF-S", output="peaks")
+    cases = [
+        (([],), 'There is no response to plot. Give at least one from simulate(..., output="history").'),
+        (
+            ([four[0], peaks],),
+            f"responses[1] (2DOF-S under '{RECORD.name}') keeps peaks only, but a plot needs the history. "
+            'Simulate it with output="history".',
+        ),
+        (
+            ([four[0], None],),
+            "responses[1] must be a Response, but NoneType was given. Give what simulate returned, or the column "
+            '"response" of simulate_many(..., output="history").',
+        ),
+        ((four, ["a"]), "labels must be a sequence of 4 strings, one a response, but 1 was given."),
+        ((four, "abcd"), "labels must be a sequence of 4 strings, one a response, but the string 'abcd' was given."),
+    ]
+    for arguments, message in cases:
+        with pytest.raises(rf.InputError) as caught:
+            plot_history(*arguments)
+        assert str(caught.value) == message
+
+
+def test_the_settings_of_the_caller_stay_as_they_are(four):
+    with rc_context({"font.size": 17.0, "axes.grid": False, "figure.facecolor": "red"}):
+        before = dict(rcParams)
+        figure = plot_history(four[0])
+        assert dict(rcParams) == before
+    assert figure.get_facecolor() == (1.0, 1.0, 1.0, 1.0)
+
+
+def test_matplotlib_is_imported_late_and_pyplot_never():
+    code = (
+        "import sys, rockflex\n"
+        "assert 'matplotlib' not in sys.modules\n"
+        "import rockflex.plot\n"
+        "assert 'matplotlib' in sys.modules and 'matplotlib.pyplot' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
