@@ -1,14 +1,13 @@
 """Figures on disk."""
 
 import io
-import os
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 from matplotlib.figure import Figure
 
 from rockflex._errors import InputError
+from rockflex._files import write_whole
 from rockflex.plot._style import styled
 
 __all__ = ["save_figure"]
@@ -51,12 +50,4 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     content = io.BytesIO()
     with styled():
         figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
-    target.parent.mkdir(parents=True, exist_ok=True)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}-{uuid4().hex}")
-    try:
-        temporary.write_bytes(content.getvalue())
-        temporary.replace(target)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-    return target
+    return write_whole(target, content.getvalue())

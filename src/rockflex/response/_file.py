@@ -1,8 +1,7 @@
 """Responses on disk: one .npz file, arrays as they are and everything else as JSON within it."""
 
+import io
 import json
-import os
-import tempfile
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._files import write_whole
 from rockflex.modal import FloorModes, RockingProperties
 from rockflex.models import LinearModel
 from rockflex.response._history import History
@@ -41,15 +41,9 @@ def save(response: Response, path: Path) -> Path:
         if model.properties.floors is not None:
             arrays |= {f"floor_modes.{name}": getattr(model.properties.floors, name) for name in FLOOR_MODES}
     arrays["response"] = np.array(json.dumps(scalars))
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".npz")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez_compressed(file, **arrays)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-    return path
+    content = io.BytesIO()
+    np.savez_compressed(content, **arrays)
+    return write_whole(path, content.getvalue())
 
 
 def load(path: Path) -> Response:
