@@ -1,0 +1,97 @@
+"""Energy: nothing appears or vanishes but by the laws of damping, input and impact."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rockflex import Frame, GroundMotion, InitialState, load_suite, quiet_motion, simulate, suite_names
+
+GRAVITY = 9.81
+settings_ = settings(max_examples=60, deadline=None)
+
+frames = st.fixed_dictionaries(
+    {
+        "n_stories": st.integers(1, 8),
+        "story_height": st.just(3.0),
+        "story_mass": st.just(40e3),
+        "base_mass": st.sampled_from([0.0, 40e3, 200e3]),
+        "stiffness_ratio": st.sampled_from([0.0, 0.125, 1.0, np.inf]),
+        "period": st.floats(0.2, 2.5),
+        "aspect_ratio": st.floats(3.0, 12.0),
+    }
+)
+
+
+@st.composite
+def motions(draw, samples=300):
+    suite = load_suite(draw(st.sampled_from(suite_names())))
+    record = suite[draw(st.integers(0, len(suite) - 1))]
+    first = draw(st.integers(0, record.acceleration.size - samples))
+    values = record.acceleration[first : first + samples]
+    peak = GRAVITY / 8.0 * draw(st.floats(0.3, 5.0))
+    return GroundMotion(values * (peak / np.abs(values).max()), record.dt)
+
+
+@settings_
+@given(frames, st.floats(0.02, 0.95), st.booleans(), st.data())
+def test_free_and_undamped(given_, fraction, left, data):
+    """Constant between impacts; each impact takes ½ θ'² (I_θ - Σ m* h*²) and none gives."""
+    structure = Frame(**given_, damping_ratio=0.0)
+    n = data.draw(st.integers(1, given_["n_stories"]))
+    p = structure.rocking(n)
+    start = (-1.0 if left else 1.0) * min(fraction * p.m_tot * p.half_width / p.l0r, 1.5)
+    run = simulate(structure, quiet_motion(5.0, dt=0.02), f"{n + 1}DOF-S", initial=InitialState(start))
+    lever = p.effective_mass * p.effective_height
+    spin, v, d = run.rotation_velocity, run.modal_velocity, run.modal_displacement
+    energy = 0.5 * p.i_theta * spin**2 + spin * (v @ lever) + 0.5 * v**2 @ p.effective_mass
+    energy += 0.5 * d**2 @ (p.effective_mass * p.omega**2)
+    energy += p.resisting_moment * np.abs(run.rotation) - 0.5 * p.l0r * GRAVITY * run.rotation**2
+    impact = (run.side[:-1] != 0.0) & (run.side[1:] == 0.0)
+    loss = 0.5 * spin[:-1] ** 2 * (p.i_theta - lever @ p.effective_height) * impact
+    np.testing.assert_allclose(energy[:-1] - energy[1:], loss, rtol=0.0, atol=1e-10 * energy[0])
+    assert np.all(energy[1:][impact] <= energy[:-1][impact] * (1.0 + 1e-12))
+    np.testing.assert_allclose(run.energy.impact_losses, loss[impact], rtol=1e-12)
+
+
+@settings_
+@given(frames, st.floats(0.01, 0.1), motions(), st.sampled_from(["MDOF-S", "2DOF-S", "fixed"]))
+def test_the_ledger_closes(given_, damping_ratio, motion, model):
+    run = simulate(Frame(**given_, damping_ratio=damping_ratio), motion, model, free_vibration=0.5)
+    assert run.energy.closing_error < 1e-9
+
+
+@settings_
+@given(frames, st.floats(0.01, 0.1), motions())
+def test_after_the_shaking_energy_only_falls(given_, damping_ratio, motion):
+    run = simulate(Frame(**given_, damping_ratio=damping_ratio), motion, free_vibration=2.0)
+    energy = run.energy
+    total = energy.kinetic + energy.strain + energy.gravity
+    free = total[run.time >= motion.duration - 1e-9][1:]
+    assert np.all(np.diff(free) <= 1e-10 * np.abs(total).max())
+
+
+@settings_
+@given(st.floats(0.02, 0.95), st.floats(3.0, 12.0))
+def test_rigid_rocking_decays_by_the_law_of_impact(fraction, aspect_ratio):
+    """Nearly rigid, peaks follow 1 - (1 - φ')² = r (1 - (1 - φ)²) with the kinetic energy kept by the impact, r."""
+    structure = Frame(
+        n_stories=1,
+        story_height=3.0,
+        story_mass=40e3,
+        base_mass=40e3,
+        stiffness_ratio=np.inf,
+        period=1e-4,
+        aspect_ratio=aspect_ratio,
+        damping_ratio=0.9,
+    )
+    p = structure.rocking()
+    alpha = p.m_tot * p.half_width / p.l0r
+    run = simulate(structure, quiet_motion(1.0, dt=0.01), initial=InitialState(fraction * alpha), output="history")
+    # The flexible mode takes all of the velocity over, and damps it out: nothing is left to rock with.
+    kept = (run.rotation_velocity[1:] ** 2)[(run.side[:-1] != 0.0) & (run.side[1:] == 0.0)]
+    assert not kept.any()
+    if run.n_impacts:
+        speed = np.abs(run.rotation_velocity[np.flatnonzero(np.diff(np.abs(run.side)) < 0.0)[0]])
+        rate2 = p.l0r * GRAVITY / p.i_theta
+        assert speed == pytest.approx(alpha * np.sqrt(rate2 * (1.0 - (1.0 - fraction) ** 2)), rel=1e-3)

@@ -1,0 +1,96 @@
+import threading
+import time
+from itertools import count, islice
+
+import pytest
+
+from rockflex import InputError
+from rockflex.parallel import map_threads
+
+WORKERS = pytest.mark.parametrize("workers", [1, 2, 7, None])
+
+
+@WORKERS
+def test_every_task_is_done_once(workers):
+    assert sorted(map_threads(lambda k: k * k, range(100), workers)) == [k * k for k in range(100)]
+    assert list(map_threads(str, [], workers)) == []
+
+
+def test_results_come_as_they_are_done():
+    gate = threading.Event()
+
+    def work(first):
+        if first:
+            assert gate.wait(10.0)
+        return first
+
+    results = map_threads(work, [True, False], 2)
+    assert next(results) is False
+    gate.set()
+    assert list(results) == [True]
+
+
+def test_one_worker_is_the_calling_thread_in_order():
+    names = list(map_threads(lambda k: (k, threading.current_thread()), range(5), 1))
+    assert names == [(k, threading.current_thread()) for k in range(5)]
+
+
+def test_several_workers_are_threads_that_run_at_once():
+    meeting = threading.Barrier(3, timeout=10.0)
+    assert len(list(map_threads(lambda _: meeting.wait(), range(3), 3))) == 3
+
+
+@WORKERS
+def test_tasks_are_read_as_they_are_needed(workers):
+    """An endless stream of tasks does, and it is not read far ahead."""
+    taken = []
+
+    def tasks():
+        for k in count():
+            taken.append(k)
+            yield k
+
+    assert len(list(islice(map_threads(abs, tasks(), workers), 50))) == 50
+    assert len(taken) < 50 + 100
+
+
+@WORKERS
+def test_an_exception_ends_the_map(workers):
+    done = []
+
+    def work(k):
+        if k == 20:
+            message = "the twentieth"
+            raise KeyError(message)
+        time.sleep(0.001)
+        done.append(k)
+        return k
+
+    with pytest.raises(KeyError, match="the twentieth"):
+        list(map_threads(work, range(10_000), workers))
+    assert len(done) < 1000
+
+
+@WORKERS
+def test_an_exception_of_the_tasks_ends_the_map(workers):
+    def tasks():
+        yield 1
+        message = "no more"
+        raise ValueError(message)
+
+    with pytest.raises(ValueError, match="no more"):
+        list(map_threads(abs, tasks(), workers))
+
+
+def test_a_map_that_is_given_up_leaves_no_thread():
+    before = threading.active_count()
+    results = map_threads(abs, count(), 3)
+    next(results)
+    results.close()
+    assert threading.active_count() == before
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5, "2"])
+def test_impossible_workers(workers):
+    with pytest.raises(InputError, match=f"workers must be a positive whole number, but {workers!r} was given."):
+        list(map_threads(abs, [1], workers))

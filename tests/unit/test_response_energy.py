@@ -1,0 +1,99 @@
+"""The energy ledger against quadrature of the history and against closed forms."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+
+from rockflex import Frame, GroundMotion, InitialState, load_suite, quiet_motion, simulate
+
+GRAVITY = 9.81
+
+
+def frame(**changes):
+    given = {
+        "n_stories": 3,
+        "story_height": 3.0,
+        "story_mass": 40e3,
+        "base_mass": 60e3,
+        "stiffness_ratio": 1.0,
+        "period": 0.5,
+        "aspect_ratio": 8.0,
+        "damping_ratio": 0.03,
+    }
+    return Frame(**{**given, **changes})
+
+
+@pytest.mark.parametrize("model", ["2DOF-S", "MDOF-S", "fixed"])
+@pytest.mark.parametrize("factor", [0.3, 2.0, 40.0])
+def test_the_ledger_closes(model, factor):
+    """Uplifted or not, overturned or not, on a fixed base too."""
+    motion = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:600] * factor, 0.02)
+    run = simulate(frame(), motion, model, free_vibration=1.0)
+    energy = run.energy
+    assert energy.closing_error < 1e-9
+    assert energy.closing_error == np.abs(energy.residual).max() / np.abs(energy.input).max()
+    for name in ("kinetic", "strain", "gravity", "damped", "input", "lost", "residual"):
+        assert getattr(energy, name).shape == run.time.shape
+    assert np.all(energy.kinetic >= 0.0)
+    assert np.all(energy.strain >= 0.0)
+    assert np.all(np.diff(energy.damped) >= 0.0)
+    assert np.all(np.diff(energy.lost) >= 0.0)
+    assert not energy.gravity[run.side == 0.0].any()
+    assert energy.impact_losses.size == run.n_impacts
+    assert energy.lost[-1] == pytest.approx(energy.impact_losses.sum())
+
+
+def test_input_and_damping_are_the_integrals_that_they_claim():
+    motion = GroundMotion(load_suite("el-centro-1940")[0].acceleration[50:250] * 2.0, 0.02).refined(200)
+    run = simulate(frame(), motion, "3DOF-S")
+    p, energy = run.history.model.properties, run.energy
+    power = -run.ground_acceleration * (p.l0r * run.rotation_velocity + run.modal_velocity @ p.effective_mass)
+    drag = run.modal_velocity**2 @ (2.0 * p.zeta * p.omega * p.effective_mass)
+    edges = np.concatenate(([0], np.flatnonzero(np.diff(run.time) == 0.0) + 1, [run.time.size]))
+    pieces = [slice(a, b) for a, b in pairwise(edges) if b - a > 2]
+    assert len(pieces) > 5
+    for rate, total in ((power, energy.input), (drag, energy.damped)):
+        size = np.abs(total).max()
+        for piece in pieces:
+            # The rule of Simpson straddles the corners of the record.
+            mine = total[piece][-1] - total[piece][0]
+            assert mine == pytest.approx(simpson(rate[piece], x=run.time[piece]), abs=3e-6 * size)
+
+
+@pytest.mark.parametrize("n_modes", [1, 3])
+def test_free_undamped_motion_keeps_its_energy_between_impacts(n_modes):
+    structure = frame(damping_ratio=0.0)
+    p = structure.rocking()
+    start = InitialState(rotation=0.4 * p.m_tot * p.half_width / p.l0r)
+    run = simulate(structure, quiet_motion(12.0, dt=0.02), f"{n_modes + 1}DOF-S", initial=start)
+    assert run.n_impacts >= 5
+    energy = run.energy
+    assert not energy.damped.any()
+    assert not energy.input.any()
+    total = energy.kinetic + energy.strain + energy.gravity
+    first = p.m_tot * GRAVITY * p.half_width * start.rotation - 0.5 * p.l0r * GRAVITY * start.rotation**2
+    assert total[0] == pytest.approx(first, rel=1e-14)
+    np.testing.assert_allclose(total + energy.lost, total[0], rtol=1e-11)
+    # Each loss by the law of impact, from the states on both sides; never a gain.
+    k = np.flatnonzero((run.side[:-1] != 0.0) & (run.side[1:] == 0.0))
+    kept = run.history.model.properties
+    inertia = kept.i_theta - float(kept.effective_mass @ kept.effective_height**2)
+    np.testing.assert_allclose(energy.impact_losses, 0.5 * run.rotation_velocity[k] ** 2 * inertia, rtol=1e-13)
+    np.testing.assert_allclose(total[k] - total[k + 1], energy.impact_losses, rtol=1e-8, atol=1e-12 * total[0])
+    assert np.all(energy.impact_losses > 0.0)
+
+
+def test_at_rest_there_is_nothing_to_account_for():
+    run = simulate(frame(), quiet_motion(1.0))
+    assert run.energy.closing_error == 0.0
+    assert not run.energy.residual.any()
+
+
+def test_where_steps_are_long_against_the_fastest_mode():
+    """A sample in which a damped mode decays many times over still has an exact ledger."""
+    motion = GroundMotion(2.0 * np.random.default_rng(2).standard_normal(40), 0.2)
+    run = simulate(frame(period=0.2, damping_ratio=0.3), motion, "3DOF-S")
+    assert run.n_impacts > 2
+    assert run.energy.closing_error < 1e-9

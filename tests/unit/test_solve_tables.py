@@ -1,0 +1,199 @@
+"""Propagators, forced solutions and bounds of the exact engine against scipy's exponential and dense sampling."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from rockflex import Frame
+from rockflex.models import Model
+from rockflex.response import floor_observables, global_observables
+from rockflex.solve import ExactEngine
+from rockflex.solve.exact import basis
+from rockflex.solve.exact.tables import propagate
+from twins.exact import Exact
+from twins.frame import frame_properties
+
+DT = 0.02
+CONTACT, ROCKING = 0, 1
+# Rocking modes are damped far more than ζ: at 0.3 some are overdamped, at 0.9 most.
+FRAMES = {
+    "one mode": (1, {"damping_ratio": 0.02}),
+    "undamped": (4, {"damping_ratio": 0.0}),
+    "usual": (4, {"damping_ratio": 0.03}),
+    "truncated": (2, {"damping_ratio": 0.05}),
+    "overdamped": (3, {"damping_ratio": 0.3}),
+    "all overdamped": (4, {"damping_ratio": 0.9}),
+    "stiff": (4, {"damping_ratio": 0.02, "period": 0.1}),
+}
+PHASES = pytest.mark.parametrize("phase", [CONTACT, ROCKING])
+
+
+def given(changes):
+    frame = {
+        "n_stories": 4,
+        "story_height": 3.0,
+        "story_mass": 40e3,
+        "base_mass": 60e3,
+        "stiffness_ratio": 0.125,
+        "period": 0.6,
+        "aspect_ratio": 9.0,
+    }
+    return {**frame, **changes}
+
+
+@cache
+def prepared(name, *, dense=False):
+    n, changes = FRAMES[name]
+    tied = Model(n).of(Frame(**given(changes)).rocking())
+    rows = global_observables(tied) + floor_observables(tied, tied.properties.floors)
+    with pytest.MonkeyPatch.context() as patch:
+        if dense:
+            patch.setattr(basis, "WORST_CONDITION", 0.0)
+        engine = ExactEngine(tied, rows.contact, rows.rocking)
+    twin = Exact(**frame_properties(**given(changes), n_modes=n).kwargs(), dt=DT, substeps=1)
+    return engine, engine.system(DT), twin
+
+
+def generator(twin, n, phase):
+    """The twin's matrix for the engine's state [D, D', θ, θ'] and the drive [a, a', s]."""
+    order = [*range(1, n + 1), *range(n + 2, 2 * n + 2), 0, n + 1, twin.a, twin.slope, twin.side]
+    return twin.generator[phase == ROCKING][np.ix_(order, order)]
+
+
+def draws(size, count=12):
+    return np.random.default_rng(size).standard_normal((count, size))
+
+
+def blocks_as_matrix(blocks):
+    k = blocks.shape[1]
+    return np.block([[np.diag(blocks[0]), np.diag(blocks[1])], [np.diag(blocks[2]), np.diag(blocks[3])]]), k
+
+
+@PHASES
+@pytest.mark.parametrize("name", FRAMES)
+def test_a_step_is_the_exponential(name, phase):
+    engine, system, twin = prepared(name)
+    n = engine.model.properties.n_modes
+    assert not system.dense.size
+    matrix = generator(twin, n, phase)
+    for level in range(system.blocks.shape[1]):
+        step = DT / 2**level
+        blocks, _ = blocks_as_matrix(system.blocks[phase, level])
+        mine = system.basis[phase].T @ blocks @ system.inverse[phase].T
+        expected = expm(matrix * step)[: 2 * n + 2, : 2 * n + 2]
+        if phase == CONTACT:  # the rotation has no place there
+            expected[-2:] = 0.0
+            expected[:, -2:] = 0.0
+        scale = np.abs(expected).max(axis=1, keepdims=True) + 1e-300
+        np.testing.assert_allclose(mine / scale, expected / scale, rtol=0.0, atol=1e-10)
+
+
+@PHASES
+@pytest.mark.parametrize("name", FRAMES)
+def test_levels_halve_until_no_mode_turns_by_more_than_a_radian(name, phase):
+    engine, system, _ = prepared(name)
+    finest = DT / 2 ** (system.sag.shape[1] - 1)
+    assert engine.fastest * finest <= 1.0
+    assert system.sag.shape[1] == 1 or engine.fastest * finest > 0.5
+    assert 1.0 / np.prod(np.arange(1.0, system.order + 1.0)) * (engine.fastest * finest) ** system.order <= 1e-17
+
+
+@PHASES
+@pytest.mark.parametrize("name", FRAMES)
+def test_forced_motion_under_a_linear_acceleration(name, phase):
+    """The forced solution satisfies the equations of motion: its rate is the matrix times itself plus the drive."""
+    engine, system, twin = prepared(name)
+    n = engine.model.properties.n_modes
+    matrix = generator(twin, n, phase)[: 2 * n + 2]
+    moved, drive = matrix[:, : 2 * n + 2], matrix[:, 2 * n + 2 :]
+    by_a, by_slope, by_side = system.forced[phase] @ system.basis[phase]
+    for steady, rate, push in ((by_a, 0.0, drive[:, 0]), (by_slope, by_a, drive[:, 1]), (by_side, 0.0, drive[:, 2])):
+        left = (moved @ steady + push - rate) @ system.inverse[phase]
+        size = (
+            engine.fastest * np.abs(steady @ system.inverse[phase]).max() + np.abs(push @ system.inverse[phase]).max()
+        )
+        assert np.abs(left).max() <= 1e-12 * size
+
+
+@pytest.mark.parametrize("dense", [False, True])
+@PHASES
+@pytest.mark.parametrize("name", FRAMES)
+def test_how_far_rows_leave_their_interpolants(name, phase, dense):
+    """The chord, the chord of the slope, and the cubic through both ends; and no bound is idle."""
+    engine, system, _ = prepared(name, dense=dense)
+    chosen = engine._rocking if phase == ROCKING else engine._contact
+    half = chosen.matrix.shape[0] // 2
+    inside = np.linspace(0.0, 1.0, 65)
+    chord = (1.0 - inside, inside)
+    cubic = ((1.0 + 2.0 * inside) * (1.0 - inside) ** 2, inside**2 * (3.0 - 2.0 * inside))
+    bulge = (inside * (1.0 - inside) ** 2, inside**2 * (inside - 1.0))
+    tightest = np.inf
+    for level, step in enumerate(system.steps):
+        states = np.concatenate((np.eye(2 * half), draws(2 * half)))
+        path = np.stack([propagate(chosen, states, np.full(len(states), step * u)) for u in inside])
+        if phase == CONTACT:
+            path[..., [half - 1, 2 * half - 1]] = 0.0
+        values, slopes = path @ system.rows[phase].T, path @ system.slope_rows[phase].T
+        norms = np.hypot(states[:, :half], states[:, half:])
+
+        def joined(weights, ends):
+            return np.multiply.outer(weights[0], ends[0]) + np.multiply.outer(weights[1], ends[-1])
+
+        for difference, bound, size in (
+            (values - joined(chord, values), system.sag, values),
+            (slopes - joined(chord, slopes), system.swing, slopes),
+            (values - joined(cubic, values) - step * joined(bulge, slopes), system.ripple, values),
+        ):
+            worst, allowed = np.abs(difference).max(axis=0), norms @ bound[phase, level].T
+            assert np.all(worst <= allowed * (1.0 + 1e-9) + 1e-12 * np.abs(size).max(axis=(0, 1)))
+            tightest = min(tightest, (allowed / np.maximum(worst, 1e-300)).min())
+    assert tightest < 50.0
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_what_contact_can_still_bring_is_bounded(name):
+    engine, system, _ = prepared(name)
+    states = draws(system.basis.shape[1])
+    half = states.shape[1] // 2
+    states[:, [half - 1, -1]] = 0.0
+    bound = np.hypot(states[:, :half], states[:, half:]) @ system.hold.T
+    for time in np.linspace(0.0, 5.0, 300):
+        moved = propagate(engine._contact, states, np.full(len(states), time))
+        assert np.all(np.abs(moved @ system.rows[CONTACT].T) <= bound * (1.0 + 1e-12))
+
+
+@pytest.mark.parametrize("dense", [False, True])
+@pytest.mark.parametrize("side", [0.0, 1.0, -1.0])
+@pytest.mark.parametrize("fraction", [0.0, 0.37, 1.0])
+def test_states_between_nodes(side, fraction, dense):
+    engine, _, twin = prepared("usual", dense=dense)
+    n = engine.model.properties.n_modes
+    nodes = np.zeros((2, 5 + 2 * n))
+    nodes[:, 0], nodes[:, 1], nodes[:, 2] = (1.0, 1.0 + DT), side, (0.7, -1.9)
+    nodes[0, 3:] = 0.02 * draws(2 * n + 2, 1)[0]
+    if side == 0.0:
+        nodes[:, -2:] = 0.0
+    slope = (nodes[1, 2] - nodes[0, 2]) / DT
+    start = np.concatenate((nodes[0, 3:], [nodes[0, 2], slope, side]))
+    expected = expm(generator(twin, n, int(side != 0.0)) * DT * fraction) @ start
+    found = engine.between(nodes, fraction)
+    assert found.shape == (1, 2 * n + 2)
+    np.testing.assert_allclose(found[0], expected[: 2 * n + 2], rtol=1e-9, atol=1e-12)
+
+
+def test_between_the_two_sides_of_an_event_nothing_moves():
+    engine, _, _ = prepared("usual")
+    n = engine.model.properties.n_modes
+    nodes = np.zeros((2, 5 + 2 * n))
+    nodes[:, 0], nodes[:, 2] = 3.0, (1.0, 0.0)  # a jump of the acceleration
+    nodes[:, 3:] = 0.01
+    nodes[:, -2:] = 0.0
+    np.testing.assert_allclose(engine.between(nodes, 0.5)[0], nodes[0, 3:], rtol=1e-12, atol=1e-15)
+
+
+def test_systems_are_made_once_a_step():
+    engine, system, _ = prepared("usual")
+    assert engine.system(DT) is system
+    assert engine.system(0.005) is not system

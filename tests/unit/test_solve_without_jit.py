@@ -1,0 +1,58 @@
+"""The kernels are plain functions on arrays: they run uncompiled too, and say the same."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockflex import Frame, GroundMotion, InitialState, load_suite, simulate
+
+SCRIPT = """
+import json, sys
+import numba
+from test_solve_without_jit import runs
+assert numba.config.DISABLE_JIT
+json.dump([run.peaks() for run in runs()], sys.stdout)
+"""
+
+
+def runs():
+    """Uplifts, impacts and a settled end; overturning; a fixed base; a dense start with jumps at both ends."""
+    record = load_suite("el-centro-1940")[0].acceleration[60:200]
+    frame = {
+        "n_stories": 3,
+        "story_height": 3.0,
+        "story_mass": 40e3,
+        "base_mass": 40e3,
+        "stiffness_ratio": np.inf,
+        "period": 0.5,
+        "aspect_ratio": 9.0,
+        "damping_ratio": 0.05,
+    }
+    motion = GroundMotion(2.0 * record, 0.02, name="El Centro")
+    yield simulate(Frame(**frame), motion, free_vibration="settle")
+    yield simulate(Frame(**frame), motion, "2DOF-S", initial=InitialState(0.8))
+    yield simulate(Frame(**frame), motion, "fixed", output="peaks")
+    yield simulate(Frame(**frame), motion, "3DOF-S", initial=InitialState(0.05, [0.01]), output="peaks")
+
+
+def test_uncompiled_kernels_say_the_same():
+    path = os.pathsep.join([str(Path(__file__).parent), *sys.path])
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": path}
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", SCRIPT], env=environment, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    compiled = [run.peaks() for run in runs()]
+    assert [run["status"] for run in compiled] == ["rocking", "overturned", "no_uplift", "rocking"]
+    for one, other in zip(json.loads(done.stdout), compiled, strict=True):
+        for name, value in other.items():
+            if name.startswith("max"):
+                value = pytest.approx(value, rel=1e-10, abs=0.0)
+            elif isinstance(value, float):  # a summit is flat: its time is known to half the digits
+                value = pytest.approx(value, abs=1e-7)
+            assert one[name] == value, name

@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+
+from rockflex import Frame, GroundMotion, InputError, LumpedStructure, Model, load_suite, quiet_motion, simulate
+
+MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:300] * 2.0, 0.02, name="El Centro")
+FRAME = Frame(
+    n_stories=3,
+    story_height=3.0,
+    story_mass=40e3,
+    base_mass=60e3,
+    stiffness_ratio=1.0,
+    period=0.5,
+    aspect_ratio=8.0,
+    damping_ratio=0.03,
+)
+
+
+def test_structures_and_their_properties_are_alike():
+    whole = simulate(FRAME, MOTION)
+    assert whole.status == "rocking"
+    for same in (FRAME.lumped, FRAME.rocking(), FRAME.lumped.rocking()):
+        assert simulate(same, MOTION).peaks() == whole.peaks()
+    assert simulate(FRAME.rocking(1), MOTION).peaks() == {
+        **simulate(FRAME, MOTION, "2DOF-S").peaks(),
+        "model": "MDOF-S",
+    }
+    assert isinstance(FRAME.lumped, LumpedStructure)
+
+
+def test_labels_and_models_are_alike():
+    for label, model in (("3DOF-S", Model(2)), ("MDOF-S", Model()), ("2DOF-fixed", Model(2, lifts=False))):
+        assert simulate(FRAME, MOTION, label).peaks() == simulate(FRAME, MOTION, model).peaks()
+    assert simulate(FRAME, MOTION).model == "MDOF-S"
+
+
+def test_a_label_of_all_modes_is_all_modes():
+    one, all_modes = simulate(FRAME, MOTION, "4DOF-S"), simulate(FRAME, MOTION, "MDOF-S")
+    assert one.peaks() == {**all_modes.peaks(), "model": "4DOF-S"}
+    assert np.array_equal(one.history.nodes, all_modes.history.nodes)
+
+
+def test_the_name_of_the_motion_is_kept():
+    assert simulate(FRAME, MOTION).motion == "El Centro"
+    assert simulate(FRAME, GroundMotion([0.0, 1.0, 0.0], 0.1)).motion == ""
+
+
+def test_what_a_run_leaves_untouched():
+    before = MOTION.acceleration.copy()
+    one, other = simulate(FRAME, MOTION), simulate(FRAME, MOTION)
+    assert one.peaks() == other.peaks()
+    assert np.array_equal(one.history.nodes, other.history.nodes)
+    assert np.array_equal(MOTION.acceleration, before)
+    assert not MOTION.acceleration.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("seconds", "end"), [(0.0, 5.98), (0, 5.98), (0.02, 6.0), (1.0, 6.98), (0.011, 6.0), (np.float32(0.5), 6.48)]
+)
+def test_free_vibration_is_rounded_up_to_samples(seconds, end):
+    run = simulate(FRAME, MOTION, free_vibration=seconds)
+    assert run.end_time == pytest.approx(end, abs=1e-9)
+    assert run.time[-1] == pytest.approx(end, abs=1e-9)
+    assert not run.settled
+
+
+def test_free_vibration_is_a_record_that_goes_on_with_zeros():
+    ended = GroundMotion(np.append(MOTION.acceleration, 0.0), 0.02)
+    longer = GroundMotion(np.append(MOTION.acceleration, np.zeros(101)), 0.02)
+    one, other = simulate(FRAME, ended, free_vibration=2.0), simulate(FRAME, longer)
+    for name, value in one.peaks().items():
+        assert getattr(other, name) == (pytest.approx(value, rel=1e-12) if isinstance(value, float) else value)
+
+
+def test_many_modes_of_few_floors():
+    with pytest.raises(InputError, match="Model 6DOF-S needs 5 modes, but the structure has 3"):
+        simulate(FRAME, MOTION, "6DOF-S")
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"structure": 3}, "structure must be a Frame, a LumpedStructure or RockingProperties, but int was given"),
+        ({"structure": None}, "structure must be .*, but NoneType was given"),
+        ({"motion": MOTION.acceleration}, "motion must be a GroundMotion, but ndarray was given. Read or build one"),
+        ({"motion": load_suite("el-centro-1940")}, "motion must be a GroundMotion, but Suite was given"),
+        ({"model": "nonsense"}, "Unknown model 'nonsense'. Expected "),
+        ({"output": "everything"}, 'output must be "history" or "peaks", but \'everything\' was given'),
+        ({"free_vibration": -1.0}, 'free_vibration must be zero or more seconds, or "settle", but -1.0 was given'),
+        ({"free_vibration": np.nan}, "free_vibration must be .*, but nan was given"),
+        ({"free_vibration": np.inf}, "free_vibration must be .*, but inf was given"),
+        ({"free_vibration": "rest"}, "free_vibration must be .*, but 'rest' was given"),
+    ],
+)
+def test_arguments_that_cannot_be_used(changes, text):
+    with pytest.raises(InputError, match=text):
+        simulate(**{"structure": FRAME, "motion": MOTION, **changes})
+
+
+def test_the_shortest_record():
+    run = simulate(FRAME, GroundMotion([0.0, 1.0, 0.0], 0.02))
+    assert run.time.tolist() == [0.0, 0.02, 0.04]
+    assert run.max_top_displacement > 0.0
+
+
+def test_nothing_but_zeros():
+    run = simulate(FRAME, quiet_motion(1.0, dt=0.01))
+    assert (run.status, run.n_uplifts, run.n_impacts, run.nominal_overturning) == ("no_uplift", 0, 0, False)
+    assert all(value == 0.0 for name, value in run.peaks().items() if name.startswith(("max", "time")))
