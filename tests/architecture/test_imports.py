@@ -24,7 +24,14 @@ ALLOWED = {
     "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel"},
     "plot": {"motion", "modal", "structure", "response", "study"},
 }
-FOUNDATION = {"_checks", "_constants", "_errors", "_files", "_kernel", "_matrices"}  # every layer may import these; they only each other
+FOUNDATION = {
+    "_checks",
+    "_constants",
+    "_errors",
+    "_files",
+    "_kernel",
+    "_matrices",
+}  # every layer may import these; they only each other
 FACES = {"cli", "__main__"}  # may import anything, and nothing below may import them or the package's front
 
 # The one place of each of these libraries.
