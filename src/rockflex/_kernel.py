@@ -37,10 +37,10 @@ def kernel(function: F) -> F:
 
 @cache
 def sources_digest() -> str:
-    """Digest of all sources that hold kernels, so that none compiled from others is ever used again."""
+    """Digest of all sources beside kernels, whose constants are compiled in, so that none is ever used out of date."""
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.rglob("*.py")):
-        source = path.read_bytes()
-        if b"_kernel import kernel" in source:
-            digest.update(source)
+    kernels = (path for path in Path(__file__).parent.rglob("*.py") if b"_kernel import kernel" in path.read_bytes())
+    for folder in sorted({path.parent for path in kernels}):
+        for path in sorted(folder.glob("*.py")):
+            digest.update(path.read_bytes())
     return digest.hexdigest()

@@ -154,7 +154,6 @@ def test_nodes_of_a_history(response):
     assert response.end_time == pytest.approx(time[-1], abs=1e-12)
 
 
-@pytest.mark.xfail(reason="a sample that was looked at closely is off its time and value by a rounding", strict=True)
 def test_samples_stand_at_their_times():
     for scale in (1.0, 1.7):
         run = simulate(FRAME, MOTION.scaled(scale), free_vibration=1.0)

@@ -51,9 +51,4 @@ def noise():
 
 def test_steep_noise():
     """Slopes of 10 000 m/s³ against rotations of a milliradian."""
-    assert errors(noise(), **NOISE) < 1e-8
-
-
-@pytest.mark.xfail(reason="the forced part of the slow rocking pair is far larger than the rotation", strict=True)
-def test_steep_noise_to_as_many_digits():
-    assert errors(noise(), **NOISE) < 1e-11
+    assert errors(noise(), **NOISE) < 1e-10

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rockflex import Frame
+from rockflex import Frame, GroundMotion, InputError, simulate
 from rockflex.models import Model
 from rockflex.response import floor_observables, global_observables
 from rockflex.solve import ExactEngine
@@ -197,3 +197,16 @@ def test_systems_are_made_once_a_step():
     engine, system, _ = prepared("usual")
     assert engine.system(DT) is system
     assert engine.system(0.005) is not system
+
+
+def test_a_step_in_which_rotations_overflow_is_refused():
+    frame = Frame(1, 3.0, 40e3, 40e3, np.inf, 0.5, 9.0, 0.05)
+    motion = GroundMotion([0.0, 1.0, 0.0], 1000.0)
+    fall = float(np.sqrt(frame.rocking().l0r * 9.81 / frame.rocking().i_theta))
+    with pytest.raises(InputError) as caught:
+        simulate(frame, motion)
+    text = str(caught.value)
+    assert text.startswith("The time step of 1000 s is too long: a rocking rotation of this structure grows e-fold in ")
+    longest = float(text.rpartition("at most ")[2].removesuffix(" s."))
+    assert longest == pytest.approx(300.0 / fall, rel=0.05)
+    simulate(frame, motion.resampled(125.0))

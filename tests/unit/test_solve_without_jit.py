@@ -40,19 +40,47 @@ def runs():
     yield simulate(Frame(**frame), motion, "3DOF-S", initial=InitialState(0.05, [0.01]), output="peaks")
 
 
-def test_uncompiled_kernels_say_the_same():
+def uncompiled(script):
+    """What a script prints where kernels are plain functions."""
     path = os.pathsep.join([str(Path(__file__).parent), *sys.path])
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": path}
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", SCRIPT], env=environment, capture_output=True, text=True, timeout=120
+        [sys.executable, "-W", "error", "-c", script], env=environment, capture_output=True, text=True, timeout=120
     )
     assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_uncompiled_kernels_say_the_same():
     compiled = [run.peaks() for run in runs()]
     assert [run["status"] for run in compiled] == ["rocking", "overturned", "no_uplift", "rocking"]
-    for one, other in zip(json.loads(done.stdout), compiled, strict=True):
+    for one, other in zip(uncompiled(SCRIPT), compiled, strict=True):
         for name, value in other.items():
             if name.startswith("max"):
                 value = pytest.approx(value, rel=1e-10, abs=0.0)
             elif isinstance(value, float):  # a summit is flat: its time is known to half the digits
                 value = pytest.approx(value, abs=1e-7)
             assert one[name] == value, name
+
+
+CHATTERING = """
+import json, sys
+import rockflex.solve.exact.unit as unit
+from rockflex import SolverError
+from test_solve_without_jit import runs
+unit.MOST_EVENTS = -1
+try:
+    next(runs())
+except SolverError as error:
+    json.dump(str(error), sys.stdout)
+"""
+
+
+def test_impacts_without_end_are_reported_where_they_are():
+    """With no event allowed at all, the message names the end of the sample of the first uplift."""
+    first = next(runs()).uplift_times[0]
+    end = 0.02 * np.ceil(first / 0.02)
+    message = uncompiled(CHATTERING)
+    assert message.startswith(
+        f"The impacts of MDOF-S accumulate without end in the sample before {end:.6g} s. The state [D, D', θ, θ'] there"
+    )

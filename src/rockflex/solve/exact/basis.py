@@ -2,9 +2,12 @@
 
 Contact is uncoupled as it stands (Eq. 15): each mode in its energy coordinates (D, D'/ω), whose norm never grows,
 at any damping ratio. Rocking (Eq. 23) is not classically damped: its complex eigenvectors, taken as real pairs,
-uncouple it; where they are (nearly) defective the phase stays dense.
+uncouple it; where they are (nearly) defective the phase stays dense. The pair of real roots p₁ > 0 > p₂, by which the
+base falls, is taken as a position and a speed: a sloping acceleration displaces its eigenvectors by a'/p³ each, in
+opposite directions, which would drown a small rotation.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,14 +66,15 @@ def contact_basis(physics: Physics, rows: Array) -> Basis:
     return _basis(rows, basis, inverse, pairs, roots, forced)
 
 
-def rocking_basis(physics: Physics, rows: Array) -> Basis:
-    """Uncoupled coordinates of rocking (Eq. 23); `rows` (F, 2N + 4) over state, a and s."""
+def rocking_basis(physics: Physics, accelerations: Array, rows: Array) -> Basis:
+    """Uncoupled coordinates of rocking; rows over state, a and s: `accelerations` D'' and θ'' (Eq. 23), `rows` any."""
     order = _positions_and_speeds(physics.omega2.size)
-    matrix, by_acceleration, by_side = _first_order(physics)
+    matrix, by_acceleration, by_side = _first_order(accelerations, order)
     scale = _energy_scale(physics)[order]
     scaled = matrix * (scale[:, None] / scale)
     values, vectors = np.linalg.eig(scaled)
     columns, pairs, roots = _real_pairs(values, vectors)
+    _to_position_and_speed(columns, pairs, roots)
     try:
         inverse = np.linalg.inv(columns)
         condition = float(np.abs(columns).sum(axis=0).max() * np.abs(inverse).sum(axis=0).max())
@@ -119,30 +123,15 @@ def _basis(
     )
 
 
-def _first_order(physics: Physics) -> tuple[Array, Array, Array]:
-    """Eq. 23 solved for the accelerations: y' = A y + f a + g s with y = [D, θ, D', θ']."""
-    n = physics.omega2.size
-    by_acceleration = np.zeros(2 * n + 2)
-    by_side = np.zeros(2 * n + 2)
-    matrix = np.zeros((2 * n + 2, 2 * n + 2))
-    matrix[: n + 1, n + 1 :] = np.eye(n + 1)
-    angular = np.empty(2 * n + 2)
-    arm = physics.mass * physics.height
-    angular[:n] = arm * physics.omega2
-    angular[n] = physics.gravity
-    angular[n + 1 : -1] = arm * physics.damping
-    angular[-1] = 0.0
-    angular /= physics.inertia
-    matrix[n + 1 : -1] = -physics.height[:, None] * angular
-    matrix[-1] = angular
-    diagonal = np.arange(n)
-    matrix[n + 1 + diagonal, diagonal] -= physics.omega2
-    matrix[n + 1 + diagonal, n + 1 + diagonal] -= physics.damping
-    by_acceleration[-1] = physics.drive_arm / physics.inertia
-    by_acceleration[n + 1 : -1] = -1.0 - physics.height * by_acceleration[-1]
-    by_side[-1] = -physics.resistance / physics.inertia
-    by_side[n + 1 : -1] = -physics.height * by_side[-1]
-    return matrix, by_acceleration, by_side
+def _first_order(accelerations: Array, order: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+    """Eq. 23 as y' = A y + f a + g s with y = [D, θ, D', θ'], from the rows of D'' and θ''."""
+    half = accelerations.shape[0]
+    matrix = np.zeros((2 * half, 2 * half))
+    matrix[:half, half:] = np.eye(half)
+    matrix[half:] = accelerations[:, order]
+    rest = np.zeros((2 * half, 2))
+    rest[half:] = accelerations[:, -2:]
+    return matrix, rest[:, 0], rest[:, 1]
 
 
 def _positions_and_speeds(n: int) -> NDArray[np.intp]:
@@ -178,6 +167,21 @@ def _real_pairs(values: Complex, vectors: Complex) -> tuple[Array, Array, Comple
         (np.stack((lam, lam.conj()), axis=1), np.stack((values[first], values[second]), axis=1)), axis=0
     )
     return columns, pairs, roots.astype(np.complex128)
+
+
+def _to_position_and_speed(columns: Array, pairs: Array, roots: Complex) -> None:
+    """Replace the eigenvectors of the roots p₁ > 0 > p₂ by q and y: q' = p y, y' = p q + (p₁ + p₂) y, p² = -p₁ p₂."""
+    pair = int(np.argmax(roots[:, 0].real))
+    one, two = roots[pair].real
+    if not one > 0.0 > two:
+        return
+    p = math.sqrt(-one * two)
+    count = pairs.shape[0]
+    half = columns.shape[0] // 2 - 1  # the place of θ
+    first, second = (columns[:, k] / columns[half, k] for k in (pair, count + pair))
+    columns[:, pair] = (one * second - two * first) / (one - two)
+    columns[:, count + pair] = p * (first - second) / (one - two)
+    pairs[pair] = [[0.0, p], [p, one + two]]
 
 
 def _block_diagonal(pairs: Array) -> Array:

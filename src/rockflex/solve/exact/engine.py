@@ -39,7 +39,10 @@ class ExactEngine:
         self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
         self._contact = contact_basis(self._physics, self._rows[0])
         # A base that cannot lift never rocks; its second phase only fills the place.
-        self._rocking = rocking_basis(self._physics, self._rows[1]) if model.lifts else self._contact
+        self._rocking = self._contact
+        if model.lifts:
+            accelerations = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
+            self._rocking = rocking_basis(self._physics, accelerations, self._rows[1])
         self._systems: dict[float, System] = {}
 
     def system(self, dt: float) -> System:

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.layout import Array
-from rockflex.solve.exact.probe import HALF_TURN
+from rockflex.solve.exact.probe import QUARTER_TURN
 from rockflex.solve.exact.series import first_descent
 
 __all__ = ["contact_exit", "overturning", "rocking_exit"]
@@ -57,7 +57,7 @@ def overturning(polys: Array, side: float, span: float) -> float:
     for k in range(polys.shape[1]):
         reach += abs(polys[0, k])
         polys[work, k] = -side * polys[0, k]
-    if reach < HALF_TURN:
+    if reach < QUARTER_TURN:
         return np.inf
-    polys[work, 0] += HALF_TURN
+    polys[work, 0] += QUARTER_TURN
     return first_descent(polys, work, 0.0, span)

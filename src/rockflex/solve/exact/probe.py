@@ -5,9 +5,9 @@ import math
 from rockflex._kernel import kernel
 from rockflex.solve.exact.layout import ROCKING, Log, Scratch, System
 
-__all__ = ["EVENT", "HALF_TURN", "NOTHING", "PEAK", "cubic_range", "examine", "probe", "set_limits"]
+__all__ = ["EVENT", "NOTHING", "PEAK", "QUARTER_TURN", "cubic_range", "examine", "probe", "set_limits"]
 
-HALF_TURN = 0.5 * math.pi
+QUARTER_TURN = 0.5 * math.pi
 NOTHING, PEAK, EVENT = 0, 1, 2  # what a step may hide; the first row hides events, and the peak of the rotation
 
 
@@ -101,7 +101,7 @@ def probe(system: System, phase: int, level: int, side: float, slope: float, roo
             if side == 0.0:
                 hidden = low < room.lower[0] or high > room.upper[0]
             else:
-                hidden = side * last <= 0.0 or side * first < 0.0 or abs(last) >= HALF_TURN
+                hidden = side * last <= 0.0 or side * first < 0.0 or abs(last) >= QUARTER_TURN
         room.doubt[f] = hidden
         if hidden:
             finding = max(finding, EVENT if f == 0 else PEAK)

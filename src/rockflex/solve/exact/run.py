@@ -43,7 +43,7 @@ def run(
     room: Scratch,
     nodes: Array,
 ) -> tuple[int, int, int]:
-    """Carry `state` through the record and at most `free` samples after it; return status, samples, count.
+    """Carry `room.state` through the record and at most `free` samples after it; return status, samples, count.
 
     With `settle` the run ends as soon as nothing more can happen, and it is an error if `free` samples pass first.
     """
@@ -55,10 +55,10 @@ def run(
         if piece[0] != last:  # the start, or a jump of the acceleration at the record's end
             count = append(nodes, count, offset * dt, side, piece[0], room.state)
             raise_to_state(system, side, piece[0], offset * dt, log, room)
-        status, side, count = cross_piece(system, piece, dt, offset, side, log, room, nodes, count)
+        status, reached, side, count = cross_piece(system, piece, dt, offset, side, log, room, nodes, count)
+        offset += reached
         if status != CROSSED:
             return status, offset, count
-        offset += piece.size - 1
         last = piece[piece.size - 1]
         remaining = free + record.size - 1 - offset
         if remaining == 0:
@@ -77,23 +77,23 @@ def cross_piece(
     room: Scratch,
     nodes: Array,
     count: int,
-) -> tuple[int, float, int]:
-    """Carry the motion through one stretch of acceleration; return status, side and the count of nodes."""
+) -> tuple[int, int, float, int]:
+    """Carry the motion through one stretch of acceleration; return status, samples, side and the count of nodes."""
     slope, fresh, i, last = 0.0, True, ZERO, piece.size - 1
     while True:
         before = i
         i, slope, finding, count = march(system, piece, dt, i, offset, side, slope, log, room, nodes, count)
         fresh = fresh and i == before
         if i < last:
-            time = (offset + i) * dt
+            time, until = (offset + i) * dt, (offset + i + 1) * dt
             status, side, fresh, count = cross_sample(
-                system, side, fresh, finding, piece[i], slope, dt, time, log, room, nodes, count
+                system, side, fresh, finding, piece[i], piece[i + 1], slope, time, until, log, room, nodes, count
             )
             i += 1
             if status != CROSSED:
-                return status, side, count
+                return status, i, side, count
         if i == last:
             break
     if not fresh:
         to_state(system, ROCKING if side != 0.0 else CONTACT, piece[last], slope, side, room)
-    return CROSSED, side, count
+    return CROSSED, last, side, count

@@ -20,15 +20,18 @@ def cross_sample(
     fresh: bool,
     finding: int,
     acceleration: float,
+    last: float,
     slope: float,
-    dt: float,
     time: float,
+    until: float,
     log: Log,
     room: Scratch,
     nodes: Array,
     count: int,
 ) -> tuple[int, float, bool, int]:
-    """Carry the motion over one sample; return status, side, whether the state is fresh and the count of nodes.
+    """Carry the motion over the sample from `time` to `until`, where the ground's acceleration becomes `last`.
+
+    Returns status, side, whether the state is fresh and the count of nodes.
 
     `room.w` holds the motion at the start and then at the end. A *fresh* state is as true as `w` or truer: it is
     kept across units, since a rotation that has just left zero is far below the rounding of a modal sum. The walk
@@ -59,7 +62,8 @@ def cross_sample(
         if finding == EVENT:
             if not fresh:
                 to_state(system, phase, here, slope, side, room)
-            status, side, count = cross_unit(system, side, here, slope, unit, now, log, room, nodes, count)
+            ending = until if place + 1 == grid else time + unit * (place + 1)
+            status, side, count = cross_unit(system, side, here, slope, unit, now, ending, log, room, nodes, count)
             if status != CROSSED:
                 return status, side, True, count
             fresh, tuned = True, False
@@ -73,11 +77,10 @@ def cross_sample(
         place += stride
         level = largest_step(place, levels)
     phase = ROCKING if side != 0.0 else CONTACT
-    there = acceleration + slope * dt
     if not tuned:
-        to_coordinates(system, phase, there, slope, side, room)
+        to_coordinates(system, phase, last, slope, side, room)
     if nodes.shape[0] > 0:
         if not fresh:
-            to_state(system, phase, there, slope, side, room)
-        count = append(nodes, count, time + dt, side, there, room.state)
+            to_state(system, phase, last, slope, side, room)
+        count = append(nodes, count, until, side, last, room.state)
     return CROSSED, side, fresh, count

@@ -11,16 +11,31 @@ import math
 import numpy as np
 from scipy.linalg import expm
 
+from rockflex._errors import InputError
 from rockflex.solve.exact.basis import Basis
 from rockflex.solve.exact.layout import Array, Physics, System
 
 __all__ = ["propagate", "tabulate"]
 
+LONGEST_FALL = 300.0  # e-folds of the rotation within a time step: beyond it numbers overflow
 NONE = np.empty((0, 0, 0))
 
 
 def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis, dt: float) -> System:
-    """A system for one time step; `plain_rows` (2, F, 2K + 2)."""
+    """A system for one time step; `plain_rows` (2, F, 2K + 2).
+
+    Raises
+    ------
+    InputError
+        If the time step is so long that a rotation grows beyond all numbers within it.
+    """
+    fall = float(rocking.roots.real.max())
+    if fall * dt > LONGEST_FALL:
+        message = (
+            f"The time step of {dt:g} s is too long: a rocking rotation of this structure grows e-fold in "
+            f"{1.0 / fall:.3g} s. Give the motion at a step of at most {LONGEST_FALL / fall:.3g} s."
+        )
+        raise InputError(message)
     fastest = max(contact.fastest, rocking.fastest)
     halvings = max(0, math.ceil(math.log2(fastest * dt)))  # then no mode turns by more than one radian
     steps: Array = dt * 0.5 ** np.arange(halvings + 1, dtype=np.float64)

@@ -11,7 +11,7 @@ from rockflex.solve.exact.exits import contact_exit, overturning, rocking_exit
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.peaks import raise_peak, raise_to
-from rockflex.solve.exact.probe import HALF_TURN
+from rockflex.solve.exact.probe import QUARTER_TURN
 from rockflex.solve.exact.series import advance, evaluate, expand, row_series
 
 __all__ = ["CHATTER", "CROSSED", "EVENTS", "IMPACTS", "OVERTURNED", "UPLIFTS", "cross_unit"]
@@ -33,12 +33,16 @@ def cross_unit(
     slope: float,
     step: float,
     time: float,
+    until: float,
     log: Log,
     room: Scratch,
     nodes: Array,
     count: int,
 ) -> tuple[int, float, int]:
-    """Carry `room.state` over `step` through all events; return status, side and the count of nodes."""
+    """Carry `room.state` over `step`, from `time` to `until`, through all events.
+
+    Returns status, side and the count of nodes.
+    """
     n = system.physics.omega2.size
     resistance, inertia = system.physics.resistance, system.physics.inertia
     u, resume, lift, onset = 0.0, 0.0, np.nan, False
@@ -47,7 +51,7 @@ def cross_unit(
         phase = ROCKING if side != 0.0 else CONTACT
         span = 1.0 - u
         here = acceleration + slope * step * u
-        now = time + step * u
+        now = min(time + step * u, until)  # rounding must not put an event behind the sample
         expand(system.physics, side != 0.0, room.state, here, slope, side, lift, step, room.series)
         row_series(system.plain_rows, phase, GUARD, room.series, here, slope, side, step, room.polys)
         tips, next_side = np.inf, 0.0
@@ -90,11 +94,11 @@ def cross_unit(
             return CROSSED, side, count
         u += stop
         here = acceleration + slope * step * u
-        now = time + step * u
+        now = min(time + step * u, until)
         if tipped:
-            log.peaks[0] = HALF_TURN
+            log.peaks[0] = QUARTER_TURN
             log.times[0] = now
-            room.state[2 * n] = side * HALF_TURN
+            room.state[2 * n] = side * QUARTER_TURN
             count = append(nodes, count, now, side, here, room.state)
             return OVERTURNED, side, count
         room.state[2 * n] = 0.0
