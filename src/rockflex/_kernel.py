@@ -1,14 +1,21 @@
 """The one decorator of every compiled kernel."""
 
+import ctypes
 import hashlib
+import importlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from numba import njit
+from numba import njit, types
 
-__all__ = ["kernel"]
+__all__ = ["Callback", "kernel"]
+
+importlib.import_module("numba.experimental.function_type")  # lets numba's typeof know first-class functions
+
+CALLBACK = types.int64(types.uintp, types.int64)
+_C_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_size_t, ctypes.c_int64)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -33,6 +40,25 @@ def kernel(function: F) -> F:
     if file is not None:
         file._source_stamp = (file._source_stamp, sources_digest())
     return cast("F", compiled)
+
+
+class Callback(types.WrapperAddressProtocol):
+    """A Python function of an address and a count, as a value that kernels can be given and call.
+
+    A call takes the interpreter lock and some microseconds. The function must not raise: nobody would hear it.
+    """
+
+    def __init__(self, function: Callable[[int, int], int]) -> None:
+        self._function = _C_CALLBACK(function)
+
+    def __call__(self, address: int, count: int) -> int:
+        return int(self._function(address, count))
+
+    def __wrapper_address__(self) -> int:
+        return int(ctypes.cast(self._function, ctypes.c_void_p).value or 0)
+
+    def signature(self) -> Any:
+        return CALLBACK
 
 
 @cache

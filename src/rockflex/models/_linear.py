@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
+from rockflex.models._impact import ImpactLaw, VVELSimplified
 
 __all__ = ["LinearModel"]
 
@@ -28,11 +29,14 @@ class LinearModel:
         The structure's parameters, with the modes of this model alone.
     lifts
         Whether the base can lift; if not, this is the structure on a fixed base.
+    law
+        What happens at an impact.
     """
 
     label: str
     properties: RockingProperties
     lifts: bool = True
+    law: ImpactLaw = field(default_factory=VVELSimplified)
     free_inertia: float = field(init=False)
     """I_θ - Σ m* h*², the inertia that is left to the rotation while the modes move freely (kg m²)."""
 
@@ -68,11 +72,3 @@ class LinearModel:
         rows[:, n : 2 * n] = -np.diag(2.0 * p.zeta * p.omega)
         rows[:, -2] = -1.0
         return rows - np.outer(p.effective_height, self.angular_acceleration()) if rocking else rows
-
-    def after_impact(self, state: Array) -> Array:
-        """State [D.., D'.., θ, θ'] after an impact (Eq. 25): D' takes up h* θ', and the rotation ends."""
-        n = self.properties.n_modes
-        after = state.copy()
-        after[n : 2 * n] += self.properties.effective_height * state[-1]
-        after[-2:] = 0.0
-        return after

@@ -142,9 +142,10 @@ def _positions_and_speeds(n: int) -> NDArray[np.intp]:
 def _energy_scale(physics: Physics) -> Array:
     """Factors that turn the state into square roots of energies, in which the eigenvectors are nearly orthogonal."""
     speed = np.sqrt(physics.mass)
-    spin = np.sqrt(physics.inertia)
+    spin = math.sqrt(physics.inertia)
     omega = np.sqrt(physics.omega2)
-    return np.concatenate((speed * omega, speed, [spin * omega[0], spin]))
+    slowest = omega[0] if omega.size else math.sqrt(physics.gravity / physics.inertia)
+    return np.concatenate((speed * omega, speed, [spin * slowest, spin]))
 
 
 def _real_pairs(values: Complex, vectors: Complex) -> tuple[Array, Array, Complex]:

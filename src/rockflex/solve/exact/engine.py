@@ -5,15 +5,15 @@ import math
 import numpy as np
 
 from rockflex._constants import GRAVITY
-from rockflex._errors import SolverError
-from rockflex.models import LinearModel
+from rockflex._errors import InputError, SolverError
+from rockflex.models import Impact, LinearModel, impact_of
 from rockflex.solve._solution import Solution
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log, Physics, System, scratch
 from rockflex.solve.exact.run import SETTLED, UNSETTLED, run
 from rockflex.solve.exact.tables import propagate, tabulate
-from rockflex.solve.exact.unit import CHATTER, IMPACTS, OVERTURNED, UPLIFTS
+from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURNED, UPLIFTS
 
 __all__ = ["ExactEngine"]
 
@@ -33,7 +33,8 @@ class ExactEngine:
 
     def __init__(self, model: LinearModel, contact_rows: Array, rocking_rows: Array) -> None:
         self.model = model
-        self._physics = _physics(model)
+        impact, self._failures = impact_of(model.law, model.properties)
+        self._physics = _physics(model, impact)
         rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
         self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
@@ -85,7 +86,11 @@ class ExactEngine:
             if not history or count <= room_for:
                 break
             room_for = count
-        if status in (CHATTER, UNSETTLED) or not np.all(np.isfinite(room.state)):
+        if status == BROKEN and self._failures:
+            failure = self._failures.pop()
+            message = f"The impact law {self.model.law!r} failed: {failure}"
+            raise InputError(message) from failure
+        if status in (CHATTER, UNSETTLED, GAINED) or not np.all(np.isfinite(room.state)):
             raise SolverError(self._complaint(status, samples * dt, room.state))
         end = samples * dt if status != OVERTURNED else float(log.times[0])
         return Solution(
@@ -125,7 +130,8 @@ class ExactEngine:
     def _patience(self) -> float:
         """Longest free vibration that is waited for, s."""
         p = self.model.properties
-        return 2000.0 * 2.0 * math.pi / float(p.omega.min()) + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
+        slowest = float(p.omega.min(initial=math.inf))
+        return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
     def _complaint(self, status: int, time: float, state: Array) -> str:
         values = ", ".join(f"{value:.6g}" for value in state)
@@ -135,6 +141,11 @@ class ExactEngine:
                 f"The free vibration of {self.model.label} has not settled {time:.6g} s after the start. {where} "
                 "Give free_vibration in seconds, or more damping."
             )
+        if status == GAINED:
+            return (
+                f"The impact law {self.model.law!r} returns energy in the sample before {time:.6g} s. {where} "
+                "A law can only lose energy: mend its `after`, or lower its restitution."
+            )
         if status != CHATTER:
             return f"The motion of {self.model.label} is not finite at {time:.6g} s. {where} Check the parameters."
         return (
@@ -143,7 +154,7 @@ class ExactEngine:
         )
 
 
-def _physics(model: LinearModel) -> Physics:
+def _physics(model: LinearModel, impact: Impact) -> Physics:
     p = model.properties
     return Physics(
         omega2=p.omega**2,
@@ -154,4 +165,5 @@ def _physics(model: LinearModel) -> Physics:
         gravity=p.l0r * GRAVITY,
         resistance=model.resistance,
         drive_arm=float(np.sum(p.effective_mass * p.effective_height)) - p.l0r,
+        impact=impact,
     )

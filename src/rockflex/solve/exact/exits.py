@@ -35,15 +35,12 @@ def contact_exit(polys: Array, resistance: float, start: float, span: float) -> 
 
 
 @kernel
-def rocking_exit(polys: Array, side: float, lift: float, onset: bool, span: float) -> float:
-    """Where the rotation returns to zero; -1 where it never left. At an onset its zeros at 0 are divided out."""
+def rocking_exit(polys: Array, side: float, zeros: int, span: float) -> float:
+    """Where the rotation returns to zero; -1 where it never left. The `zeros` that it has at 0 are divided out."""
     work, terms = polys.shape[0] - 1, polys.shape[1]
-    zeros = 0
-    if onset:
-        zeros = 2 if lift != 0.0 else 3
     for k in range(terms):
         polys[work, k] = side * polys[0, k + zeros] if k + zeros < terms else 0.0
-    if onset and polys[work, 0] <= 0.0:
+    if zeros > 0 and polys[work, 0] <= 0.0:
         return -1.0
     if polys[work, 0] < 0.0:
         polys[work, 0] = 0.0

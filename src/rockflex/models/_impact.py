@@ -1,0 +1,141 @@
+"""Impact laws: what remains of the velocities when the base comes back to the ground.
+
+At an impact the displacements stay, θ = 0, and a law names the velocities after it. A rotation velocity of zero means
+full contact; any other carries the rocking on, to the side of its sign.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite, positive
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+
+__all__ = ["ImpactLaw", "Restitution", "VVELComplete", "VVELSimplified", "housner"]
+
+Array = NDArray[np.float64]
+
+
+@runtime_checkable
+class ImpactLaw(Protocol):
+    """An impact law; any object with these three can be passed as one.
+
+    Attributes
+    ----------
+    keeps, loses : str
+        What the law conserves and what it gives up, in words.
+    """
+
+    keeps: ClassVar[str]
+    loses: ClassVar[str]
+
+    def after(
+        self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
+    ) -> tuple[ArrayLike, float]:
+        """Velocities after an impact: D' in m/s, shape (N,), and θ' in rad/s, from those before it."""
+        ...
+
+
+@dataclass(frozen=True)
+class VVELSimplified:
+    """Vertical velocity energy loss, mass by mass (Silva & Stojadinović 2024, Eqs. 25 and 32)."""
+
+    keeps: ClassVar[str] = "the horizontal velocity of every mass, as far as the modes can follow"
+    loses: ClassVar[str] = "the rotation: its vertical velocities, and what the modes cannot follow"
+
+    def after(
+        self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
+    ) -> tuple[Array, float]:
+        """D'_n + h*_n θ', and no rotation."""
+        return modal_velocity + properties.effective_height * rotation_velocity, 0.0
+
+
+@dataclass(frozen=True)
+class VVELComplete:
+    """Vertical velocity energy loss in total (Silva & Stojadinović 2024, Eqs. 19 and 29).
+
+    Eq. 19 is one equation for all modes. Their velocities by Eq. 25 are scaled by one factor to meet it; for one mode
+    that is Eq. 29 with the sign that Eq. 25 names, and where all modes are kept the factor is one.
+    """
+
+    keeps: ClassVar[str] = "the horizontal kinetic energy of all masses together"
+    loses: ClassVar[str] = "the rotation and its vertical velocities"
+
+    def after(
+        self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
+    ) -> tuple[Array, float]:
+        """Eq. 25's velocities, scaled to meet Eq. 19; zero stays zero."""
+        p = properties
+        velocity = modal_velocity + p.effective_height * rotation_velocity
+        lever = p.effective_mass * p.effective_height
+        moving = float(p.effective_mass @ velocity**2)
+        unseen = (p.translational_inertia - float(lever @ p.effective_height)) * rotation_velocity**2
+        return velocity * math.sqrt(1.0 + unseen / moving) if moving > 0.0 else velocity, 0.0
+
+
+@dataclass(frozen=True)
+class Restitution:
+    """The rotation passes to the other side with a share e of its velocity.
+
+    Every mass keeps its horizontal velocity, D'_after = D'_before + h* (1 - e) θ'_before; e = 0 is `VVELSimplified`.
+    Impacts may accumulate; contact begins, as with e = 0, once the next excursion would be shorter than
+    `shortest_excursion`, judged from the accelerations right after the impact.
+
+    Parameters
+    ----------
+    e
+        θ'_after / θ'_before, from 0 to 1.
+    shortest_excursion
+        In s, positive.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    e: float
+    shortest_excursion: float = 1e-4
+
+    keeps: ClassVar[str] = "the horizontal velocity of every mass, and a share of the rotation"
+    loses: ClassVar[str] = "the rest of the rotation's energy"
+
+    def __post_init__(self) -> None:
+        e = finite("e", self.e, "")
+        if not 0.0 <= e <= 1.0:
+            message = (
+                f"The restitution e must lie from 0 to 1, but {self.e!r} was given. It is the rotation velocity after "
+                "an impact over that before it; more than 1 would gain energy."
+            )
+            raise InputError(message)
+        object.__setattr__(self, "e", e)
+        object.__setattr__(self, "shortest_excursion", positive("shortest_excursion", self.shortest_excursion, "s"))
+
+    def after(
+        self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
+    ) -> tuple[Array, float]:
+        """D'_n + h*_n (1 - e) θ', and e θ'."""
+        passed = self.e * rotation_velocity
+        return modal_velocity + properties.effective_height * (rotation_velocity - passed), passed
+
+
+def housner(properties: RockingProperties) -> Restitution:
+    """Housner's impact of a rigid block, η = 1 - 2 m_tot B²/I_θ: angular momentum about the new pivot is kept.
+
+    Raises
+    ------
+    InputError
+        If the block is so squat that η would be negative.
+    """
+    eta = 1.0 - 2.0 * properties.m_tot * properties.half_width**2 / properties.i_theta
+    if eta < 0.0:
+        message = (
+            f"Housner's coefficient 1 - 2 m_tot B²/I_θ is {eta:.4g}: a block this squat stops at its first impact. "
+            "Give impact=VVELSimplified()."
+        )
+        raise InputError(message)
+    return Restitution(eta)

@@ -1,0 +1,121 @@
+"""Impact laws as kernels apply them (Silva & Stojadinović 2024, Section 2.1.1)."""
+
+import ctypes
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import finite, finite_vector
+from rockflex._errors import InputError
+from rockflex._kernel import Callback, kernel
+from rockflex.modal import RockingProperties
+from rockflex.models._impact import ImpactLaw, Restitution, VVELComplete, VVELSimplified
+
+__all__ = ["Impact", "OwnLaw", "impact_of", "kinetic_energy", "stick", "strike"]
+
+Array = NDArray[np.float64]
+
+SHARED, SCALED, CALLED = 0, 1, 2  # kinds of law: Eq. 25 or a restitution; scaled to Eq. 19; the user's own
+
+
+SHORTEST = 1e-4  # s: as `Restitution` has it unless told otherwise
+
+
+class Impact(NamedTuple):
+    """An impact law for one model."""
+
+    kind: int
+    restitution: float
+    shortest: float  # excursion that is worth another rotation, s
+    mass: Array  # m*
+    height: Array  # h*
+    unseen: float  # Σ m_i h_i² - Σ m* h*²
+    callback: Callback
+
+
+NO_CALLBACK = Callback(lambda _address, _count: 1)
+
+
+def impact_of(law: ImpactLaw, properties: RockingProperties) -> tuple[Impact, list[Exception]]:
+    """A law made ready for kernels, and the list in which what it raises will stand."""
+    own = None
+    if not isinstance(law, VVELSimplified | VVELComplete | Restitution):
+        own = OwnLaw(law, properties)
+    mass, height = properties.effective_mass.copy(), properties.effective_height.copy()
+    impact = Impact(
+        kind=CALLED if own else SCALED if isinstance(law, VVELComplete) else SHARED,
+        restitution=law.e if isinstance(law, Restitution) else 0.0,
+        shortest=law.shortest_excursion if isinstance(law, Restitution) else SHORTEST,
+        mass=mass,
+        height=height,
+        unseen=properties.translational_inertia - float(mass @ height**2),
+        callback=own.callback if own else NO_CALLBACK,
+    )
+    return impact, own.failures if own else []
+
+
+@kernel
+def strike(impact: Impact, state: Array) -> bool:
+    """Put the velocities after an impact in place of those before it; False if the user's law failed."""
+    n = impact.mass.size
+    if impact.kind == CALLED:
+        return impact.callback(state.ctypes.data, n) == 0
+    spin = state[2 * n + 1]
+    passed = impact.restitution * spin
+    moving = 0.0
+    for i in range(n):
+        state[n + i] += impact.height[i] * (spin - passed)
+        moving += impact.mass[i] * state[n + i] * state[n + i]
+    if impact.kind == SCALED and moving > 0.0:
+        scale = np.sqrt(1.0 + impact.unseen * spin * spin / moving)
+        for i in range(n):
+            state[n + i] *= scale
+    state[2 * n + 1] = passed
+    return True
+
+
+@kernel
+def stick(impact: Impact, state: Array) -> None:
+    """End the rotation: the modes take up what is left of it (Eq. 25)."""
+    n = impact.mass.size
+    for i in range(n):
+        state[n + i] += impact.height[i] * state[2 * n + 1]
+    state[2 * n + 1] = 0.0
+
+
+@kernel
+def kinetic_energy(impact: Impact, free_inertia: float, state: Array) -> float:
+    """Energy of motion at θ = 0, without what D adds to the inertia: ½ I_f θ'² + ½ Σ m* (D' + h* θ')²."""
+    n = impact.mass.size
+    spin = state[2 * n + 1]
+    energy = 0.5 * free_inertia * spin * spin
+    for i in range(n):
+        velocity = state[n + i] + impact.height[i] * spin
+        energy += 0.5 * impact.mass[i] * velocity * velocity
+    return energy
+
+
+class OwnLaw:
+    """A user's law as kernels can call it; what it raises is kept, for nobody hears it there."""
+
+    def __init__(self, law: ImpactLaw, properties: RockingProperties) -> None:
+        self._law = law
+        self._properties = properties
+        self.failures: list[Exception] = []
+        self.callback = Callback(self._after)
+
+    def _after(self, address: int, n: int) -> int:
+        state = np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_double)), (2 * n + 2,))
+        try:
+            velocity, spin = self._law.after(self._properties, state[n : 2 * n].copy(), float(state[-1]))
+            checked = finite_vector("the modal velocity after an impact", velocity, "m/s")
+            if checked.size != n:
+                message = f"The modal velocity after an impact must have {n} values, but {checked.size} were returned."
+                raise InputError(message)
+            state[n : 2 * n] = checked
+            state[-1] = finite("the rotation velocity after an impact", spin, "rad/s")
+        except Exception as error:
+            self.failures.append(error)
+            return 1
+        return 0
