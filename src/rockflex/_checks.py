@@ -2,6 +2,7 @@
 
 import math
 import operator
+from numbers import Real
 from typing import SupportsIndex
 
 import numpy as np
@@ -14,11 +15,14 @@ __all__ = [
     "dimensions",
     "finite",
     "finite_matrix",
+    "finite_rows",
     "finite_vector",
     "in_range",
     "mode_count",
     "positive",
+    "real_or_nan",
     "whole_number",
+    "within",
 ]
 
 Float = NDArray[np.float64]
@@ -76,6 +80,25 @@ def finite(name: str, value: float, unit: str) -> float:
         number = math.nan
     if not math.isfinite(number):
         message = f"{name} must be a finite number{unit and f' in {unit}'}, but {value!r} was given."
+        raise InputError(message)
+    return number
+
+
+def real_or_nan(value: object) -> float:
+    """Return a real number as a float, and NaN for all else: booleans, strings, arrays, numbers too large for one."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return math.nan
+    try:
+        return float(value)
+    except OverflowError:
+        return math.nan
+
+
+def within(name: str, value: float, limit: float, unit: str) -> float:
+    """Return `value` as a float of a magnitude below `limit`; booleans, strings and arrays are refused."""
+    number = real_or_nan(value)
+    if not abs(number) < limit:
+        message = f"{name} must be a number between {-limit:g} and {limit:g} {unit}, but {value!r} was given."
         raise InputError(message)
     return number
 
@@ -140,6 +163,14 @@ def finite_matrix(name: str, values: ArrayLike, unit: str, shape: tuple[int, int
         row, column = (int(i) for i in np.argwhere(~np.isfinite(array))[0])
         message = f"{name} must be finite, but its entry [{row}, {column}] is {array[row, column]}."
         raise InputError(message)
+    return array
+
+
+def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Float:
+    """Return a read-only float64 copy of `values`: one row or more, of `columns` finite numbers each."""
+    rows = np.shape(values)[0] if dimensions(values) == 2 else 1
+    array = finite_matrix(name, values, unit, (max(rows, 1), columns))
+    array.setflags(write=False)
     return array
 
 

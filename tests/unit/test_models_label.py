@@ -39,7 +39,8 @@ def test_labels(label, n_modes, lifts):
     "label",
     [
         "", "S", "DOF-S", "1DOF-S", "0DOF-S", "0DOF-fixed", "-2DOF-S", "2.5DOF-S", "2dof-s", "2DOF-s", "2DOF",
-        "2DOF-X", " 2DOF-S", "2DOF-S ", "2DOF-S\n", "MDOF", "MDOF-fixed", "Fixed", "fixed base", None, 2, b"2DOF-S",
+        "2DOF-X", "02DOF-S", "²DOF-S", "٣DOF-S", "9999999DOF-S", " 2DOF-S", "2DOF-S ", "2DOF-S\n", "MDOF",
+        "MDOF-fixed", "Fixed", "fixed base", None, 2, b"2DOF-S",
     ],
 )  # fmt: skip
 def test_other_words_are_refused(label):
@@ -67,10 +68,30 @@ def test_a_model_takes_as_many_modes_as_it_names():
     [
         (Model(4), "Model 5DOF-S needs 4 modes, but the structure has 3. Give more modes, or use MDOF-S for all"),
         (Model(4, lifts=False), "Model 4DOF-fixed needs 4 modes, but the structure has 3.*use fixed for all"),
-        (Model(0), "n_modes must be a whole number from 1 to 3, but 0 was given"),
-        (Model(-1), "n_modes must be a whole number from 1 to 3, but -1 was given"),
     ],
 )
 def test_modes_that_a_structure_does_not_have(model, text):
     with pytest.raises(InputError, match=text):
         model.of(FRAME.rocking())
+
+
+@pytest.mark.parametrize("n_modes", [0, -1, "a", "2DOF-S", 2.5, 2.0, True, [2], np.array([1, 2])])
+def test_modes_are_counted_in_whole_numbers(n_modes):
+    with pytest.raises(InputError) as caught:
+        Model(n_modes)
+    assert str(caught.value) == f"n_modes must be a whole number of at least 1, but {n_modes!r} was given."
+
+
+@pytest.mark.parametrize("lifts", ["no", 0, 1, None, np.array([True])])
+def test_a_base_lifts_or_does_not(lifts):
+    with pytest.raises(InputError) as caught:
+        Model(lifts=lifts)
+    assert (
+        str(caught.value) == f"lifts must be True (the base can lift) or False (it is fixed), but {lifts!r} was given."
+    )
+
+
+def test_numbers_of_numpy_do():
+    model = Model(np.int64(2), np.bool_(False))
+    assert model == Model(2, lifts=False)
+    assert (type(model.n_modes), type(model.lifts)) == (int, bool)

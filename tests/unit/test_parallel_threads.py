@@ -2,6 +2,7 @@ import threading
 import time
 from itertools import count, islice
 
+import numpy as np
 import pytest
 
 from rockflex import InputError
@@ -90,7 +91,13 @@ def test_a_map_that_is_given_up_leaves_no_thread():
     assert threading.active_count() == before
 
 
-@pytest.mark.parametrize("workers", [0, -1, 1.5, "2"])
+@pytest.mark.parametrize("workers", [0, -1, 1.5, 2.0, "2", True, False, [2]])
 def test_impossible_workers(workers):
-    with pytest.raises(InputError, match=f"workers must be a positive whole number, but {workers!r} was given."):
+    with pytest.raises(InputError) as caught:
         list(map_threads(abs, [1], workers))
+    assert str(caught.value) == f"workers must be a whole number of at least 1, but {workers!r} was given."
+
+
+@pytest.mark.parametrize("workers", [np.int64(2), np.uint8(1)])
+def test_whole_numbers_of_numpy_do(workers):
+    assert sorted(map_threads(abs, range(10), workers)) == list(range(10))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
-from rockflex import Frame, GroundMotion, InitialState, load_suite, quiet_motion, simulate
+from rockflex import Frame, GroundMotion, InitialState, InputError, load_suite, quiet_motion, simulate
 
 GRAVITY = 9.81
 
@@ -97,3 +97,39 @@ def test_where_steps_are_long_against_the_fastest_mode():
     run = simulate(frame(period=0.2, damping_ratio=0.3), motion, "3DOF-S")
     assert run.n_impacts > 2
     assert run.energy.closing_error < 1e-9
+
+
+def test_undisturbed_runs_close_to_rounding():
+    """Without events nothing but the rounding of the states and of the quadrature is left."""
+    for label in ("fixed", "1DOF-fixed"):
+        run = simulate(frame(), GroundMotion(load_suite("el-centro-1940")[0].acceleration, 0.02), label)
+        assert run.energy.closing_error < 1e-12
+
+
+@pytest.mark.parametrize("damping_ratio", [0.01, 0.9])
+def test_the_quadrature_follows_any_speed(damping_ratio):
+    """Stiff or overdamped, the integrals of a single mode are those of its closed form."""
+    structure = frame(period=2e-4, damping_ratio=damping_ratio)
+    start = InitialState(modal_displacement=[1e-9])
+    run = simulate(structure, quiet_motion(0.1, dt=0.02), "1DOF-fixed", initial=start)
+    p, energy = run.history.model.properties, run.energy
+    assert p.omega[0] * 0.02 > 600.0
+    stored = 0.5 * p.effective_mass[0] * (p.omega[0] * 1e-9) ** 2
+    if damping_ratio == 0.9:
+        assert energy.damped[1] == pytest.approx(stored, rel=1e-12)
+    assert energy.closing_error < 1e-11
+    assert energy.damped[-1] == pytest.approx(stored - energy.kinetic[-1] - energy.strain[-1], rel=1e-10)
+
+
+def test_a_model_too_fast_for_its_record():
+    """A quadrature of hours is refused; the rest of the response is there."""
+    run = simulate(frame(period=1e-6), quiet_motion(0.1, dt=0.05), "1DOF-fixed")
+    text = (
+        r"The energy ledger of 1DOF-fixed needs \d{5} quadratures a step, above the limit of 10000: the model turns or "
+        r"decays at up to 6\.\d+e\+06 rad/s, and steps last up to 0\.05 s\. Keep fewer modes, damp them less, or "
+        r"refine the record\."
+    )
+    with pytest.raises(InputError, match=text):
+        _ = run.energy
+    assert run.status == "no_uplift"
+    assert not run.top_displacement.any()

@@ -1,13 +1,23 @@
-"""Quantities of a history: mechanics that ties them to one another, nodes, and what a response without one says."""
+"""Quantities of a history: mechanics that ties them to one another, and nodes."""
 
 import copy
-import json
 import pickle
 
 import numpy as np
 import pytest
 
-from rockflex import Frame, GroundMotion, InputError, LumpedStructure, Response, RockingProperties, load_suite, simulate
+from rockflex import (
+    Frame,
+    GroundMotion,
+    History,
+    InitialState,
+    InputError,
+    LumpedStructure,
+    RockingProperties,
+    load_suite,
+    quiet_motion,
+    simulate,
+)
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
 FRAME = Frame(
@@ -165,62 +175,14 @@ def test_samples_stand_at_their_times():
         assert np.array_equal(run.ground_acceleration[place], values)
 
 
-def test_response_and_history_share_their_quantities(response):
-    for name in ("time", "side", "rotation", "base_moment", "energy", "floor_acceleration"):
-        assert getattr(response, name) is getattr(response.history, name) or np.array_equal(
-            getattr(response, name), getattr(response.history, name)
-        )
-    assert response.energy is response.energy
-    assert repr(response).startswith("Response(MDOF-S under 'El Centro': rocking, θ_max=")
-    for name in ("nothing", "_private", "nodes", "__array__"):
-        with pytest.raises(AttributeError, match=f"'Response' object has no attribute '{name}'"):
-            getattr(response, name)
-    for twin in (copy.copy(response), copy.deepcopy(response), pickle.loads(pickle.dumps(response))):
-        assert twin.peaks() == response.peaks()
-        assert np.array_equal(twin.history.nodes, response.history.nodes)
-    with pytest.raises(AttributeError):
-        response.max_rotation = 0.0
-
-
-def test_peaks_are_a_row_of_a_table(response):
-    row = response.peaks()
-    assert json.loads(json.dumps(row)) == row
-    assert set(row) >= {"model", "motion", "status", "max_rotation", "n_impacts", "end_time", "settled"}
-    assert all(getattr(response, name) == value for name, value in row.items())
-
-
-def test_nominal_overturning_is_a_flag_of_its_own():
-    for factor in (1.0, 8.0):
-        run = simulate(FRAME, MOTION.scaled(factor), output="peaks")
-        limit = 0.7 * np.arctan(1.0 / 8.0)
-        assert run.nominal_overturning == (run.max_rotation > limit)
-    assert run.nominal_overturning
-
-
-QUANTITIES = (
-    "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
-    "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
-    "floor_acceleration", "energy",
-)  # fmt: skip
-
-
-def test_peaks_alone_have_no_history():
-    run = simulate(FRAME, MOTION, output="peaks")
-    assert run.history is None
-    assert run.floors is None
-    for name in QUANTITIES:
-        text = f'This response keeps peaks only, so it has no {name}. Simulate with output="history".'
-        with pytest.raises(InputError) as caught:
-            getattr(run, name)
-        assert str(caught.value) == text
-
-
 def test_no_floors_no_story_drifts():
     run = simulate(bare(FRAME), MOTION)
     assert run.floors is None
     for name in ("story_drift", "story_shear", "floor_acceleration"):
-        with pytest.raises(InputError, match=r"name no floors, so there are no story drifts.*Simulate a Frame or"):
-            getattr(run, name)
+        for source in (run, run.history):
+            with pytest.raises(InputError, match=r"name no floors, so there are no story drifts.*Simulate a Frame or"):
+                getattr(source, name)
+            assert not hasattr(source, name)
     assert run.base_shear.shape == run.time.shape
 
 
@@ -241,5 +203,51 @@ def test_what_is_observed_does_not_change_the_motion(response):
         assert run.max_rotation == response.max_rotation
 
 
-def test_is_a_response(response):
-    assert isinstance(response, Response)
+ARRAYS = (
+    "nodes", "time", "side", "ground_acceleration", "modal_displacement", "modal_velocity", "rotation",
+    "rotation_velocity", "top_displacement", "base_moment", "base_shear", "story_drift", "story_shear",
+    "floor_acceleration",
+)  # fmt: skip
+
+
+def test_histories_are_read_only(response):
+    """Copies too; and nobody else holds the array."""
+    history = response.history
+    for each in (history, copy.copy(history), copy.deepcopy(history), pickle.loads(pickle.dumps(history))):
+        for name in ARRAYS:
+            with pytest.raises(ValueError, match="read-only"):
+                getattr(each, name)[-1] = 0.0
+        for values in vars(each.energy).values():
+            with pytest.raises(ValueError, match="read-only"):
+                values[0] = 0.0
+        assert np.array_equal(each.nodes, history.nodes)
+    mine = history.nodes.copy()
+    kept = History(history.model, mine)
+    mine[:] = 0.0
+    assert np.array_equal(kept.nodes, history.nodes)
+
+
+def test_a_history_in_short(response):
+    text = f"History(MDOF-S, {len(response.time)} nodes over 8.98 s, {response.n_uplifts} uplifts)"
+    assert repr(response.history) == text
+    start = InitialState(rotation=0.01)
+    run = simulate(FRAME, quiet_motion(0.05, dt=0.01), "2DOF-S", initial=start)
+    assert repr(run.history) == "History(2DOF-S, 6 nodes over 0.05 s, 0 uplifts)"
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (
+            lambda nodes: nodes[:, 1:],
+            r"nodes must have the shape \(\d+, 13\), but an array of shape \(\d+, 12\) was given",
+        ),
+        (lambda nodes: nodes[:0], r"nodes must have the shape \(1, 13\), but an array of shape \(0, 13\)"),
+        (lambda nodes: 3.0, r"nodes must have the shape \(1, 13\), but an array of shape \(\)"),
+        (lambda nodes: nodes + np.inf, r"nodes must be finite, but its entry \[0, 0\] is inf"),
+        (lambda nodes: "none", "nodes must be a matrix of numbers in SI units, but str was given"),
+    ],
+)
+def test_nodes_that_are_none(response, change, text):
+    with pytest.raises(InputError, match=text):
+        History(response.history.model, change(response.history.nodes))

@@ -1,7 +1,18 @@
 import numpy as np
 import pytest
 
-from rockflex import Frame, GroundMotion, InputError, LumpedStructure, Model, load_suite, quiet_motion, simulate
+from rockflex import (
+    Frame,
+    GroundMotion,
+    InitialState,
+    InputError,
+    LumpedStructure,
+    Model,
+    RockingProperties,
+    load_suite,
+    quiet_motion,
+    simulate,
+)
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:300] * 2.0, 0.02, name="El Centro")
 FRAME = Frame(
@@ -80,21 +91,56 @@ def test_many_modes_of_few_floors():
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"structure": 3}, "structure must be a Frame, a LumpedStructure or RockingProperties, but int was given"),
+        ({"structure": 3}, "structure must be a Frame, a LumpedStructure or RockingProperties, but int was given."),
         ({"structure": None}, "structure must be .*, but NoneType was given"),
+        ({"structure": Frame}, "structure must be .*, but the class Frame was given"),
+        ({"structure": RockingProperties}, "structure must be .*, but the class RockingProperties was given"),
         ({"motion": MOTION.acceleration}, "motion must be a GroundMotion, but ndarray was given. Read or build one"),
         ({"motion": load_suite("el-centro-1940")}, "motion must be a GroundMotion, but Suite was given"),
+        ({"motion": GroundMotion}, "motion must be a GroundMotion, but the class GroundMotion was given"),
         ({"model": "nonsense"}, "Unknown model 'nonsense'. Expected "),
+        ({"model": None}, "Unknown model None. Expected "),
         ({"output": "everything"}, 'output must be "history" or "peaks", but \'everything\' was given'),
-        ({"free_vibration": -1.0}, 'free_vibration must be zero or more seconds, or "settle", but -1.0 was given'),
-        ({"free_vibration": np.nan}, "free_vibration must be .*, but nan was given"),
-        ({"free_vibration": np.inf}, "free_vibration must be .*, but inf was given"),
-        ({"free_vibration": "rest"}, "free_vibration must be .*, but 'rest' was given"),
+        ({"output": None}, 'output must be "history" or "peaks", but None was given'),
+        (
+            {"initial": 0.1},
+            r"initial must be an InitialState or None, but 0\.1 was given. Write InitialState\(rotation=",
+        ),
+        ({"initial": (0.1,)}, r"initial must be an InitialState or None, but \(0\.1,\) was given"),
+        ({"initial": InitialState}, "initial must be an InitialState or None, but <class .*InitialState'> was given"),
     ],
 )
 def test_arguments_that_cannot_be_used(changes, text):
     with pytest.raises(InputError, match=text):
         simulate(**{"structure": FRAME, "motion": MOTION, **changes})
+
+
+@pytest.mark.parametrize(
+    "given", [-1.0, np.nan, np.inf, 1.1e9, 10**400, None, True, "x", "rest", [1.0], np.array([1.0, 2.0]), 1j]
+)
+@pytest.mark.parametrize("output", ["history", "peaks"])
+def test_free_vibration_is_seconds_or_a_word(given, output):
+    with pytest.raises(InputError) as caught:
+        simulate(FRAME, MOTION, output=output, free_vibration=given)
+    text = f'free_vibration must be zero or more seconds (at most 1e+09), or "settle", but {given!r} was given.'
+    assert str(caught.value) == text
+
+
+def test_where_the_ground_comes_to_rest():
+    """The last sample acts to the end; the jump to zero after it belongs to the free vibration."""
+    assert MOTION.acceleration[-1] != 0.0
+    alone = simulate(FRAME, MOTION)
+    assert alone.ground_acceleration[-1] == MOTION.acceleration[-1]
+    assert alone.end_time == pytest.approx(MOTION.duration)
+    for seconds in (1.0, "settle"):
+        run = simulate(FRAME, MOTION, free_vibration=seconds)
+        last = np.flatnonzero(np.abs(run.time - MOTION.duration) < 1e-9)
+        assert run.ground_acceleration[last].tolist() == [MOTION.acceleration[-1], 0.0]
+        assert not run.ground_acceleration[last[1] :].any()
+        assert np.array_equal(run.history.nodes[: last[1]], alone.history.nodes)
+    ended = GroundMotion(np.append(MOTION.acceleration, 0.0), 0.02)
+    run = simulate(FRAME, ended, free_vibration=1.0)
+    assert np.count_nonzero(np.abs(run.time - ended.duration) < 1e-9) == 1
 
 
 def test_the_shortest_record():

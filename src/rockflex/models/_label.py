@@ -3,13 +3,16 @@
 import re
 from dataclasses import dataclass
 
+import numpy as np
+
+from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models._linear import LinearModel
 
 __all__ = ["Model", "parse_model"]
 
-_PATTERN = re.compile(r"(?:(?P<count>\d+)|(?P<all>M))DOF-(?P<kind>S|fixed)")
+_PATTERN = re.compile(r"(?:(?P<count>[1-9][0-9]{0,5})|(?P<all>M))DOF-(?P<kind>S|fixed)")
 _EXPECTED = '"2DOF-S", "3DOF-S", ..., "MDOF-S" (all modes), "fixed" (all modes) or "5DOF-fixed"'
 
 
@@ -23,10 +26,23 @@ class Model:
         Number of modes kept; None for all of them.
     lifts
         Whether the base can lift (Eqs. 23-25) or is fixed (Eq. 15).
+
+    Raises
+    ------
+    InputError
+        If `n_modes` is neither None nor a whole number of at least 1, or `lifts` is not a boolean.
     """
 
     n_modes: int | None = None
     lifts: bool = True
+
+    def __post_init__(self) -> None:
+        if self.n_modes is not None:
+            object.__setattr__(self, "n_modes", whole_number("n_modes", self.n_modes, 1))
+        if not isinstance(self.lifts, bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = f"lifts must be True (the base can lift) or False (it is fixed), but {self.lifts!r} was given."
+            raise InputError(message)
+        object.__setattr__(self, "lifts", bool(self.lifts))
 
     @property
     def label(self) -> str:

@@ -3,9 +3,9 @@
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from typing import TypeVar
+from typing import SupportsIndex, TypeVar
 
-from rockflex._errors import InputError
+from rockflex._checks import whole_number
 
 __all__ = ["map_threads"]
 
@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 
 
 def map_threads(
-    function: Callable[[Task], Result], tasks: Iterable[Task], workers: int | None = None
+    function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
 ) -> Iterator[Result]:
     """Yield `function(task)` of every task, in order of completion; few tasks wait at a time.
 
@@ -30,14 +30,11 @@ def map_threads(
     Raises
     ------
     InputError
-        If `workers` is not a positive whole number.
+        If `workers` is neither None nor a whole number of at least 1.
     """
     count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
     if workers is not None:
-        if not isinstance(workers, int) or workers < 1:  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"workers must be a positive whole number, but {workers!r} was given."
-            raise InputError(message)
-        count = workers
+        count = whole_number("workers", workers, 1)
     if count == 1:
         yield from map(function, tasks)
         return

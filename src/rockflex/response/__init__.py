@@ -1,9 +1,10 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
 from rockflex.response._energy import EnergyLedger
+from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
 from rockflex.response._observables import Observables, floor_observables, global_observables
-from rockflex.response._response import PEAKS, FloorPeaks, Response, respond
+from rockflex.response._response import PEAKS, Response, respond
 
 __all__ = [
     "PEAKS",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
 from rockflex.models import LinearModel
 from rockflex.solve import ExactEngine
 
@@ -19,10 +20,13 @@ __all__ = ["EnergyLedger", "energy_ledger"]
 
 Array = NDArray[np.float64]
 
+REACH = 8.0  # radians of the fastest mode that one Gauss rule spans; its points then number 20 at most
+MOST_PIECES = 10_000  # of an interval: a minute of quadrature for a record of a thousand samples
+
 
 @dataclass(frozen=True, eq=False)
 class EnergyLedger:
-    """Energies in J at every node of a history, shape (n_nodes,) each, relative to the moving ground.
+    """Energies in J at every node of a history, shape (n_nodes,) each, relative to the moving ground; read-only.
 
     ``kinetic + strain + gravity + damped + lost - input`` keeps its first value; `residual` is what it strays.
 
@@ -61,7 +65,13 @@ class EnergyLedger:
 
 
 def energy_ledger(model: LinearModel, nodes: Array) -> EnergyLedger:
-    """Ledger of a history; `nodes` as in `History`."""
+    """Ledger of a history; `nodes` as in `History`.
+
+    Raises
+    ------
+    InputError
+        If the model is so fast against the sampling that the quadratures would be too many.
+    """
     p = model.properties
     n = p.n_modes
     side, d, v = nodes[:, 1], nodes[:, 3 : 3 + n], nodes[:, 3 + n : 3 + 2 * n]
@@ -73,7 +83,7 @@ def energy_ledger(model: LinearModel, nodes: Array) -> EnergyLedger:
     lost = np.zeros(nodes.shape[0])
     np.add.at(lost, impact + 1, losses)
     damped, work = _work(model, nodes)
-    return EnergyLedger(
+    ledger = EnergyLedger(
         kinetic=kinetic,
         strain=0.5 * d**2 @ (p.effective_mass * p.omega**2),
         gravity=side * p.resisting_moment * rotation - 0.5 * p.l0r * GRAVITY * rotation**2,
@@ -82,6 +92,9 @@ def energy_ledger(model: LinearModel, nodes: Array) -> EnergyLedger:
         lost=np.cumsum(lost),
         impact_losses=losses,
     )
+    for values in vars(ledger).values():
+        values.setflags(write=False)
+    return ledger
 
 
 def _work(model: LinearModel, nodes: Array) -> tuple[Array, Array]:
@@ -91,14 +104,28 @@ def _work(model: LinearModel, nodes: Array) -> tuple[Array, Array]:
     empty = np.zeros((0, 2 * n + 4))
     engine = ExactEngine(model, empty, empty)
     span = np.diff(nodes[:, 0])
-    points = 8 + math.ceil(1.5 * engine.fastest * float(span.max(initial=0.0)))
-    places, weights = np.polynomial.legendre.leggauss(points)
+    places, weights = _rule(model.label, engine.fastest, float(span.max(initial=0.0)))
     drag = 2.0 * p.zeta * p.omega * p.effective_mass
     damped, work = np.zeros(span.size), np.zeros(span.size)
-    for place, weight in zip(0.5 + 0.5 * places, 0.5 * weights, strict=True):
+    for place, weight in zip(places, weights, strict=True):
         states = engine.between(nodes, float(place))
         v = states[:, n : 2 * n]
         acceleration = nodes[:-1, 2] + place * np.diff(nodes[:, 2])
         damped += weight * span * (v**2 @ drag)
         work -= weight * span * acceleration * (p.l0r * states[:, -1] + v @ p.effective_mass)
     return damped, work
+
+
+def _rule(label: str, fastest: float, longest: float) -> tuple[Array, Array]:
+    """Places in [0, 1] and weights of a composite Gauss rule for states that turn or decay at `fastest` (rad/s)."""
+    pieces = max(math.ceil(fastest * longest / REACH), 1)
+    if pieces > MOST_PIECES:
+        message = (
+            f"The energy ledger of {label} needs {pieces} quadratures a step, above the limit of {MOST_PIECES}: the "
+            f"model turns or decays at up to {fastest:.3g} rad/s, and steps last up to {longest:.3g} s. Keep fewer "
+            "modes, damp them less, or refine the record."
+        )
+        raise InputError(message)
+    places, weights = np.polynomial.legendre.leggauss(8 + math.ceil(1.5 * fastest * longest / pieces))
+    starts = np.arange(pieces)[:, None]
+    return ((starts + 0.5 + 0.5 * places) / pieces).ravel(), np.tile(0.5 * weights / pieces, pieces)

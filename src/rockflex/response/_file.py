@@ -12,8 +12,9 @@ from rockflex._errors import InputError
 from rockflex._files import write_whole
 from rockflex.modal import FloorModes, RockingProperties
 from rockflex.models import LinearModel
+from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
-from rockflex.response._response import PEAKS, FloorPeaks, Response
+from rockflex.response._response import PEAKS, Response
 
 __all__ = ["load", "save"]
 
@@ -52,22 +53,44 @@ def load(path: Path) -> Response:
         message = f"No saved response at {path}. Give the path that Response.save returned."
         raise InputError(message)
     try:
-        with np.load(path) as file:
-            arrays = {name: file[name] for name in file.files}
+        with zipfile.ZipFile(path) as archive:  # whole members, so that their checksums are compared
+            content = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
+        arrays = {name: np.load(io.BytesIO(part)) for name, part in content.items()}
         scalars = json.loads(str(arrays["response"]))
-        known = scalars.get("format") == FORMAT
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        message = f"{path} is not a saved response ({error}). Give a file that Response.save wrote."
+        known = scalars["format"] == FORMAT
+        response = _response(scalars, arrays) if known else None
+    except Exception as error:  # zipfile, zlib, NumPy and json meet damage with nearly any exception
+        reason = f"{type(error).__name__}: {error}"
+        message = f"{path} is not a saved response ({reason}). Give a file that Response.save wrote."
         raise InputError(message) from error
-    if not known:
-        message = f"{path} has the format {scalars.get('format')!r}, but {FORMAT!r} is expected."
+    if response is None:
+        message = f"{path} has the format {scalars['format']!r}, but {FORMAT!r} is expected."
         raise InputError(message)
+    return response
+
+
+def _response(scalars: dict[str, Any], arrays: dict[str, Any]) -> Response:
+    for name, values in arrays.items():
+        if name != "response" and values.dtype != np.float64:
+            message = f"{name} must be of type float64, but is of type {values.dtype}."
+            raise InputError(message)
+    peaks = {name: _typed(scalars, name, Response.__annotations__[name]) for name in PEAKS}
     floors = history = None
-    if "floors.story_drift" in arrays:
-        floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
     if "nodes" in arrays:
         history = History(_model(scalars, arrays), arrays["nodes"])
-    return Response(**{name: scalars[name] for name in PEAKS}, floors=floors, history=history)
+    if "floors.story_drift" in arrays:
+        floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
+        if floors.story_drift.shape != arrays["floor_modes.heights"].shape:
+            message = f"There are peaks of {floors.story_drift.size} floors and not as many heights."
+            raise InputError(message)
+    return Response(**peaks, floors=floors, history=history)
+
+
+def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
+    if type(scalars[name]) is not kind:
+        message = f"{name} must be of type {kind.__name__}, but is {scalars[name]!r}."
+        raise InputError(message)
+    return scalars[name]
 
 
 def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> LinearModel:
@@ -76,4 +99,4 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> LinearModel:
     floors = None
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
-    return LinearModel(scalars["model"], RockingProperties(**values, floors=floors), scalars["lifts"])
+    return LinearModel(scalars["model"], RockingProperties(**values, floors=floors), _typed(scalars, "lifts", bool))

@@ -1,14 +1,17 @@
 """The time history of one run."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._errors import InputError
+from rockflex._checks import finite_rows
 from rockflex.models import LinearModel
 from rockflex.response._energy import EnergyLedger, energy_ledger
+from rockflex.response._missing import MissingQuantityError
 from rockflex.response._observables import floor_observables, global_observables
 
 __all__ = ["History"]
@@ -16,9 +19,9 @@ __all__ = ["History"]
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class History:
-    """States at the record's samples and at both sides of every event.
+    """States at the record's samples and at both sides of every event; all its arrays are read-only.
 
     Parameters
     ----------
@@ -26,11 +29,30 @@ class History:
         The model that ran.
     nodes
         Shape (n_nodes, 2N + 5); a row is time (s), side of rocking, ground acceleration (m/s²), D (m), D' (m/s),
-        θ (rad), θ' (rad/s). An event is two rows at the same time.
+        θ (rad), θ' (rad/s). An event is two rows at the same time. Kept as a copy.
+
+    Raises
+    ------
+    InputError
+        If `nodes` has another shape, or a value that is not finite.
     """
 
     model: LinearModel
     nodes: Array
+
+    def __post_init__(self) -> None:
+        columns = 2 * self.model.properties.n_modes + 5
+        object.__setattr__(self, "nodes", finite_rows("nodes", self.nodes, "SI units", columns))
+
+    def __reduce__(self) -> tuple[Callable[..., "History"], tuple[Any, ...]]:
+        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
+        return History, (self.model, self.nodes)
+
+    def __repr__(self) -> str:
+        duration = self.time[-1] - self.time[0]
+        return (
+            f"History({self.model.label}, {self.time.size} nodes over {duration:g} s, {self.uplift_times.size} uplifts)"
+        )
 
     @property
     def time(self) -> Array:
@@ -110,12 +132,20 @@ class History:
 
     @cached_property
     def energy(self) -> EnergyLedger:
-        """Where the energy is, where it came from and where it went."""
+        """Where the energy is, where it came from and where it went.
+
+        Raises
+        ------
+        InputError
+            If the model is too fast for the sampling: the ledger's quadratures would be too many.
+        """
         return energy_ledger(self.model, self.nodes)
 
     @cached_property
     def _global(self) -> Array:
-        return global_observables(self.model).evaluate(self.nodes)
+        values = global_observables(self.model).evaluate(self.nodes)
+        values.setflags(write=False)
+        return values
 
     @cached_property
     def _floors(self) -> list[Array]:
@@ -125,5 +155,7 @@ class History:
                 "The structure's properties name no floors, so there are no story drifts, story shears or floor "
                 "accelerations. Simulate a Frame or a LumpedStructure, or give RockingProperties its floors."
             )
-            raise InputError(message)
-        return np.split(floor_observables(self.model, floors).evaluate(self.nodes), 3, axis=1)
+            raise MissingQuantityError(message)
+        values = floor_observables(self.model, floors).evaluate(self.nodes)
+        values.setflags(write=False)
+        return np.split(values, 3, axis=1)

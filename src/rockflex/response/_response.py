@@ -2,39 +2,54 @@
 
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, Self, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._errors import InputError
 from rockflex.models import LinearModel
+from rockflex.response._energy import EnergyLedger
+from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
+from rockflex.response._missing import MissingQuantityError
 from rockflex.response._observables import GLOBAL
 from rockflex.solve import Solution
 
-__all__ = ["PEAKS", "FloorPeaks", "Response", "respond"]
+__all__ = ["PEAKS", "Response", "respond"]
 
 Array = NDArray[np.float64]
+Quantity = TypeVar("Quantity")
 
 
-@dataclass(frozen=True, eq=False)
-class FloorPeaks:
-    """Largest magnitudes over the run, peaks between samples included, shape (N_floors,) each."""
+class _OfHistory(Generic[Quantity]):
+    """A quantity of the history that is the response's own, by the same name."""
 
-    story_drift: Array
-    """Displacement of each floor less that of the one below, relative to the rotated base, in m."""
-    story_shear: Array
-    """Sum of the elastic forces from each floor up, in N."""
-    floor_acceleration: Array
-    """Total horizontal acceleration of each floor, in m/s²."""
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+        self.__doc__ = getattr(History, name).__doc__
+
+    @overload
+    def __get__(self, response: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, response: "Response", owner: type) -> Quantity: ...
+    def __get__(self, response: "Response | None", owner: type) -> Self | Quantity:
+        if response is None:
+            return self
+        if response.history is None:
+            message = f'This response keeps peaks only, so it has no {self.name}. Simulate with output="history".'
+            raise MissingQuantityError(message)
+        return getattr(response.history, self.name)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Response:
     """The response of one structure to one motion.
 
-    All peaks are the largest magnitudes of the continuous motion, between samples too.
+    All peaks are the largest magnitudes of the continuous motion, between samples too. A response that keeps its
+    history has the history's quantities as its own: `time`, `side`, `ground_acceleration`, `modal_displacement`,
+    `modal_velocity`, `rotation`, `rotation_velocity`, `top_displacement`, `base_moment`, `base_shear`, `uplift_times`,
+    `impact_times`, `story_drift`, `story_shear`, `floor_acceleration` and `energy`; see `History`. One that keeps peaks
+    only has none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
 
     Parameters
     ----------
@@ -43,8 +58,8 @@ class Response:
     motion
         Name of the ground motion.
     status
-        ``"no_uplift"``, ``"rocking"`` (the base lifted at least once) or ``"overturned"`` (|θ| reached π/2, where
-        the run stopped).
+        ``"no_uplift"``, ``"rocking"`` (the base was off the ground) or ``"overturned"`` (|θ| reached π/2, where the
+        run stopped). A run that starts uplifted is rocking from the start.
     max_rotation, time_of_max_rotation
         Largest |θ| in rad, and when, in s.
     max_top_displacement, time_of_max_top_displacement
@@ -54,7 +69,8 @@ class Response:
     max_base_shear, time_of_max_base_shear
         Largest |V_b| of the elastic forces in N, and when.
     n_uplifts, n_impacts
-        How often the base left the ground, and how often it came back.
+        How often the base left the ground, and how often it came back, during the run. A start off the ground is no
+        uplift, so there may then be one impact more than there are uplifts.
     nominal_overturning
         Whether |θ| passed 0.7 atan(B/h*_1) (Section 3.3).
     end_time
@@ -86,21 +102,28 @@ class Response:
     floors: FloorPeaks | None = None
     history: History | None = None
 
+    time = _OfHistory[Array]()
+    side = _OfHistory[Array]()
+    ground_acceleration = _OfHistory[Array]()
+    modal_displacement = _OfHistory[Array]()
+    modal_velocity = _OfHistory[Array]()
+    rotation = _OfHistory[Array]()
+    rotation_velocity = _OfHistory[Array]()
+    top_displacement = _OfHistory[Array]()
+    base_moment = _OfHistory[Array]()
+    base_shear = _OfHistory[Array]()
+    uplift_times = _OfHistory[Array]()
+    impact_times = _OfHistory[Array]()
+    story_drift = _OfHistory[Array]()
+    story_shear = _OfHistory[Array]()
+    floor_acceleration = _OfHistory[Array]()
+    energy = _OfHistory[EnergyLedger]()
+
     def __repr__(self) -> str:
         return (
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
             f"u_top,max={self.max_top_displacement:.4g} m, {self.n_impacts} impacts)"
         )
-
-    def __getattr__(self, name: str) -> Any:
-        # The history's quantities are the response's own: response.rotation, response.energy, ...
-        if name.startswith("_") or not hasattr(History, name):
-            message = f"{type(self).__name__!r} object has no attribute {name!r}"
-            raise AttributeError(message)
-        if self.history is None:
-            message = f'This response keeps peaks only, so it has no {name}. Simulate with output="history".'
-            raise InputError(message)
-        return getattr(self.history, name)
 
     def peaks(self) -> dict[str, Any]:
         """Every scalar by its name, as a row of a table or a JSON object."""
@@ -132,12 +155,15 @@ PEAKS = tuple(f.name for f in fields(Response) if f.name not in ("floors", "hist
 def respond(model: LinearModel, motion: str, solution: Solution) -> Response:
     """Name what a solver returned; its rows are those of `global_observables`, then of `floor_observables`."""
     rotation = float(solution.peaks[0])
+    globals_end = 1 + len(GLOBAL)
     floors = None
-    if solution.peaks.size > 1 + len(GLOBAL):
-        floors = FloorPeaks(*np.split(solution.peaks[1 + len(GLOBAL) :], 3))
-    status = "rocking" if solution.n_uplifts > 0 or rotation > 0.0 else "no_uplift"
-    peaks = {f"max_{name}": float(value) for name, value in zip(GLOBAL, solution.peaks[1:], strict=False)}
-    times = {f"time_of_max_{name}": float(t) for name, t in zip(GLOBAL, solution.peak_times[1:], strict=False)}
+    if solution.peaks.size > globals_end:
+        floors = FloorPeaks(*np.split(solution.peaks[globals_end:], 3))
+    left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0 or rotation > 0.0
+    status = "rocking" if left_ground else "no_uplift"
+    tracked = slice(1, globals_end)
+    peaks = {f"max_{name}": float(value) for name, value in zip(GLOBAL, solution.peaks[tracked], strict=True)}
+    times = {f"time_of_max_{name}": float(t) for name, t in zip(GLOBAL, solution.peak_times[tracked], strict=True)}
     return Response(
         model=model.label,
         motion=motion,

@@ -1,65 +1,91 @@
 """Where a free motion starts from."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import finite_vector
+from rockflex._checks import finite_vector, within
 from rockflex._errors import InputError
 from rockflex.models import LinearModel
 
 __all__ = ["InitialState"]
 
+Array = NDArray[np.float64]
 
-@dataclass(frozen=True, eq=False)
+LARGEST = 1e9  # m, m/s or rad/s: beyond any structure, and far from where numbers overflow
+
+
+@dataclass(frozen=True, eq=False, init=False)
 class InitialState:
     """The state at t = 0, in place of rest.
+
+    The base starts uplifted where `rotation` is not zero, on the side of its sign. With `rotation` zero and
+    `rotation_velocity` not, it starts uplifted too, and the sign of the velocity picks the side.
 
     Parameters
     ----------
     rotation
-        θ in rad; the base starts uplifted where it is not zero.
+        θ in rad, below π/2 in magnitude.
     modal_displacement, modal_velocity
-        D_n in m and D'_n in m/s of the model's modes, shape (N,) or fewer (the rest is zero); None for zero.
+        D_n in m and D'_n in m/s of the model's modes, shape (N,) or fewer (the rest is zero); None for zero. Kept as
+        read-only copies.
     rotation_velocity
         θ' in rad/s; outward (the sign of θ) or, with θ ≠ 0, inward.
+
+    Raises
+    ------
+    InputError
+        If a value is not a finite number, |θ| is not below π/2, or another value is not below 1e9 in magnitude.
     """
 
-    rotation: float = 0.0
-    modal_displacement: ArrayLike | None = None
-    modal_velocity: ArrayLike | None = None
-    rotation_velocity: float = 0.0
+    rotation: float
+    modal_displacement: Array | None
+    modal_velocity: Array | None
+    rotation_velocity: float
 
-    def state(self, model: LinearModel) -> NDArray[np.float64]:
+    def __init__(
+        self,
+        rotation: float = 0.0,
+        modal_displacement: ArrayLike | None = None,
+        modal_velocity: ArrayLike | None = None,
+        rotation_velocity: float = 0.0,
+    ) -> None:
+        vars(self).update(
+            rotation=within("rotation", rotation, 0.5 * math.pi, "rad"),
+            modal_displacement=_modal("modal_displacement", modal_displacement, "m"),
+            modal_velocity=_modal("modal_velocity", modal_velocity, "m/s"),
+            rotation_velocity=within("rotation_velocity", rotation_velocity, LARGEST, "rad/s"),
+        )
+
+    def __reduce__(self) -> tuple[Callable[..., "InitialState"], tuple[Any, ...]]:
+        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
+        return InitialState, (self.rotation, self.modal_displacement, self.modal_velocity, self.rotation_velocity)
+
+    def state(self, model: LinearModel) -> Array:
         """State [D.., D'.., θ, θ'] for a model.
 
         Raises
         ------
         InputError
-            If there are more values than modes, |θ| is not below π/2, or a fixed base would rotate.
+            If there are more values than modes, or a fixed base would rotate.
         """
         n = model.properties.n_modes
         state = np.zeros(2 * n + 2)
-        for name, values, start in (
+        for name, values, first in (
             ("modal_displacement", self.modal_displacement, 0),
             ("modal_velocity", self.modal_velocity, n),
         ):
             if values is None:
                 continue
-            vector = finite_vector(name, values, "m" if start == 0 else "m/s")
-            if vector.size > n:
-                message = f"{name} has {vector.size} values, but {model.label} has {n} modes. Give at most {n}."
+            if values.size > n:
+                message = f"{name} has {values.size} values, but {model.label} has {n} modes. Give at most {n}."
                 raise InputError(message)
-            state[start : start + vector.size] = vector
+            state[first : first + values.size] = values
         state[-2:] = self.rotation, self.rotation_velocity
-        if not (abs(self.rotation) < 0.5 * math.pi and math.isfinite(self.rotation_velocity)):
-            message = (
-                f"The initial rotation must lie below π/2 = 1.5708 rad in magnitude and its velocity be finite, but "
-                f"rotation={self.rotation!r} and rotation_velocity={self.rotation_velocity!r} were given."
-            )
-            raise InputError(message)
         if not model.lifts and np.any(state[-2:] != 0.0):
             message = (
                 f"{model.label} has a base that cannot lift, but rotation={self.rotation!r} and "
@@ -67,3 +93,12 @@ class InitialState:
             )
             raise InputError(message)
         return state
+
+
+def _modal(name: str, values: ArrayLike | None, unit: str) -> Array | None:
+    if values is None:
+        return None
+    vector = finite_vector(name, values, unit)
+    for place, value in enumerate(vector.tolist()):
+        within(f"{name}[{place}]", value, LARGEST, unit)
+    return vector

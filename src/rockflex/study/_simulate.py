@@ -1,7 +1,6 @@
 """One structure, one motion, one model."""
 
-import math
-from typing import Literal, Protocol, get_args
+from typing import Literal
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
@@ -9,27 +8,18 @@ from rockflex.models import LinearModel, Model, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import Response, floor_observables, global_observables, respond
 from rockflex.solve import ExactEngine
+from rockflex.study._arguments import (
+    Output,
+    Structure,
+    check_initial,
+    check_output,
+    described,
+    free_vibration_time,
+    properties_of,
+)
 from rockflex.study._initial import InitialState
 
-__all__ = [
-    "Output",
-    "Structure",
-    "check_output",
-    "free_vibration_time",
-    "make_engine",
-    "properties_of",
-    "simulate",
-]
-
-Output = Literal["history", "peaks"]
-
-
-class Structure(Protocol):
-    """Anything that knows its rocking properties, such as a `Frame` or a `LumpedStructure`."""
-
-    def rocking(self, n_modes: int | None = None) -> RockingProperties:
-        """Properties of the first `n_modes` modes, or of all."""
-        ...
+__all__ = ["make_engine", "simulate"]
 
 
 def simulate(
@@ -50,14 +40,16 @@ def simulate(
     structure
         A structure, or its `RockingProperties`.
     motion
-        The ground motion; linear between samples, zero after the last one.
+        The ground motion; linear between samples, and zero in the free vibration after the last one.
     model
         ``"2DOF-S"``, ``"3DOF-S"``, ... ``"MDOF-S"`` (all modes), ``"fixed"`` or ``"5DOF-fixed"``, or a `Model`.
     output
         ``"history"`` keeps the state at every sample and event, ``"peaks"`` only the peaks.
     free_vibration
         Seconds of free vibration after the record (rounded up to whole samples), or ``"settle"``: until overturned,
-        or until the base can never lift again nor any peak grow.
+        or until the base can never lift again nor any peak grow. With zero the run ends at the last sample, where the
+        record's last acceleration still acts. Only free vibration takes the ground to rest: if the record ends with an
+        acceleration that is not zero, it jumps to zero there, and the history has both sides of the jump.
     initial
         The state at t = 0; at rest if None.
 
@@ -69,15 +61,16 @@ def simulate(
     Raises
     ------
     InputError
-        If the model's label is unknown, or a value is out of range.
+        If the model's label is unknown, a value is out of range, or an argument is of the wrong kind.
     SolverError
         If the run cannot be solved; the message names the time and the state.
     """
     check_output(output)
     tied = parse_model(model).of(properties_of(structure))
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = f"motion must be a GroundMotion, but {type(motion).__name__} was given. Read or build one first."
+        message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
         raise InputError(message)
+    check_initial(initial)
     engine = make_engine(tied, output)
     solution = engine.run(
         motion.acceleration,
@@ -95,45 +88,3 @@ def make_engine(model: LinearModel, output: Output) -> ExactEngine:
     if output == "history" and model.properties.floors is not None:
         rows = rows + floor_observables(model, model.properties.floors)
     return ExactEngine(model, rows.contact, rows.rocking)
-
-
-def properties_of(structure: Structure | RockingProperties) -> RockingProperties:
-    """The properties of a structure, or those given.
-
-    Raises
-    ------
-    InputError
-        If the object is neither.
-    """
-    if isinstance(structure, RockingProperties):
-        return structure
-    if not hasattr(structure, "rocking"):
-        message = (
-            f"structure must be a Frame, a LumpedStructure or RockingProperties, but {type(structure).__name__} "
-            "was given."
-        )
-        raise InputError(message)
-    return structure.rocking()
-
-
-def free_vibration_time(value: float | Literal["settle"]) -> float | None:
-    """Seconds of free vibration; None until settled.
-
-    Raises
-    ------
-    InputError
-        If the value is negative, not finite, or another word.
-    """
-    if value == "settle":
-        return None
-    if isinstance(value, str) or not (value >= 0.0 and math.isfinite(value)):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = f'free_vibration must be zero or more seconds, or "settle", but {value!r} was given.'
-        raise InputError(message)
-    return float(value)
-
-
-def check_output(output: str) -> None:
-    """Raise an InputError unless `output` is known."""
-    if output not in get_args(Output):
-        message = f'output must be "history" or "peaks", but {output!r} was given.'
-        raise InputError(message)

@@ -1,35 +1,38 @@
 """The cross product of structures, motions, scales and models, one row a run."""
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
 from rockflex.models import LinearModel, Model, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.parallel import map_threads
-from rockflex.response import PEAKS, Response, respond
+from rockflex.response import respond
 from rockflex.solve import ExactEngine
-from rockflex.study._initial import InitialState
-from rockflex.study._simulate import (
+from rockflex.study._arguments import (
     Output,
     Structure,
+    check_initial,
     check_output,
+    factors_of,
     free_vibration_time,
-    make_engine,
+    is_structure,
     properties_of,
+    sequence_of,
 )
+from rockflex.study._initial import InitialState
+from rockflex.study._simulate import make_engine
+from rockflex.study._table import Table
 
 if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["simulate_many"]
 
+Prepared = tuple[LinearModel, ExactEngine]
+
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
-STATUSES = ("no_uplift", "rocking", "overturned")
 
 
 def simulate_many(
@@ -37,10 +40,10 @@ def simulate_many(
     motions: GroundMotion | Sequence[GroundMotion],
     models: str | Model | Sequence[str | Model] = "MDOF-S",
     output: Output = "peaks",
-    scales: Sequence[float] = (1.0,),
+    scales: float | Sequence[float] = 1.0,
     free_vibration: float | Literal["settle"] = 0.0,
     initial: InitialState | None = None,
-    workers: int | None = None,
+    workers: SupportsIndex | None = None,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
@@ -54,9 +57,10 @@ def simulate_many(
     output
         ``"peaks"``, or ``"history"`` for a further column `response` with every run's `Response`.
     scales
-        Factors on the acceleration.
+        Factor on the acceleration, or a sequence of factors.
     free_vibration, initial
-        As in `simulate`.
+        As in `simulate`. The same initial state serves all models; for a model with fewer modes than it has values,
+        or with a fixed base where it rotates, the run is one that cannot be solved.
     workers
         Number of threads; None for one a core.
 
@@ -65,43 +69,50 @@ def simulate_many(
     pandas.DataFrame
         One row a run, structures outermost, then motions, models and scales. Columns: `structure` (index in
         `structures`), `motion` (name), `scale`, `model`, `status`, `error`, then every scalar of `Response` by its
-        name, in SI units. A run that cannot be solved leaves its message in `error` and no status.
+        name, in SI units. A run that cannot be solved, or a model with more modes than its structure, has its message
+        in `error` and every other result missing: NaN, or NA in the columns of counts (Int64) and of flags (boolean).
 
     Raises
     ------
     InputError
-        If a label is unknown, a sequence is empty, or an argument is out of range.
+        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, or a scaled
+        motion would overflow.
     """
     check_output(output)
-    everything = _sequence("structures", structures, (RockingProperties,), "rocking")
-    records = _sequence("motions", motions, (GroundMotion,), None)
-    chosen = [parse_model(model) for model in _sequence("models", models, (str, Model), None)]
-    factors = _factors(scales)
+    check_initial(initial)
+    everything = sequence_of("structures", structures, is_structure, "a Frame, a LumpedStructure or RockingProperties")
+    records = sequence_of("motions", motions, lambda given: isinstance(given, GroundMotion), "a GroundMotion")
+    labels = sequence_of(
+        "models", models, lambda given: isinstance(given, str | Model), 'a label such as "2DOF-S", or a Model'
+    )
+    chosen = [parse_model(model) for model in labels]
+    factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
     free = free_vibration_time(free_vibration)
     shape = (len(everything), len(records), len(chosen), len(factors))
     inner = len(chosen) * len(factors)  # runs of one structure under one motion
     each = len(records) * inner
-    table = _Table(len(everything) * each, keep=output == "history")
+    table = Table(len(everything) * each, keep=output == "history")
 
-    def tasks() -> Iterator[tuple[int, int, int, list[ExactEngine | str | None]]]:
+    def tasks() -> Iterator[tuple[int, int, int, list[Prepared | str | None]]]:
         for index in range(len(everything)):
-            engines: list[ExactEngine | str | None] = [None] * len(chosen)
+            engines: list[Prepared | str | None] = [None] * len(chosen)
             for first in range(0, each, CHUNK):
                 yield index, first, min(first + CHUNK, each), engines
 
-    def work(task: tuple[int, int, int, list[ExactEngine | str | None]]) -> None:
+    def work(task: tuple[int, int, int, list[Prepared | str | None]]) -> None:
         index, first, last, engines = task
         for place in range(first, last):
             row = index * each + place
             motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
-            engine = engines[which]
-            if engine is None:
-                engine = engines[which] = _engine(everything[index], chosen[which], output)
-            if isinstance(engine, str):
-                table.errors[row] = engine
+            prepared = engines[which]
+            if prepared is None:
+                prepared = engines[which] = _prepare(everything[index], chosen[which], output)
+            if isinstance(prepared, str):
+                table.errors[row] = prepared
                 continue
+            model, engine = prepared
             try:
-                state = None if initial is None else initial.state(engine.model)
+                state = None if initial is None else initial.state(model)
                 solution = engine.run(
                     motion.acceleration * factors[factor],
                     motion.dt,
@@ -112,102 +123,17 @@ def simulate_many(
             except (SolverError, InputError) as error:
                 table.errors[row] = str(error)
                 continue
-            table.enter(row, respond(engine.model, motion.name, solution))
+            table.enter(row, respond(model, motion.name, solution))
 
     for _ in map_threads(work, tasks(), workers):
         pass
     return table.frame(shape, [motion.name for motion in records], factors, [model.label for model in chosen])
 
 
-class _Table:
-    """Columns of fixed length, filled row by row from any thread."""
-
-    def __init__(self, rows: int, *, keep: bool) -> None:
-        self.status = np.full(rows, -1, dtype=np.int8)
-        self.columns: dict[str, NDArray[Any]] = {}
-        for name in PEAKS:
-            kind = Response.__annotations__[name]
-            if kind in (float, int, bool):
-                self.columns[name] = np.full(rows, np.nan) if kind is float else np.zeros(rows, dtype=kind)
-        self.errors: dict[int, str] = {}
-        self.responses: NDArray[np.object_] | None = np.full(rows, None, dtype=object) if keep else None
-
-    def enter(self, row: int, response: Response) -> None:
-        self.status[row] = STATUSES.index(response.status)
-        for name, column in self.columns.items():
-            column[row] = getattr(response, name)
-        if self.responses is not None:
-            self.responses[row] = response
-
-    def frame(
-        self, shape: tuple[int, ...], motions: list[str], scales: list[float], models: list[str]
-    ) -> "pd.DataFrame":
-        import pandas as pd
-
-        structure, motion, model, scale = (axis.ravel() for axis in np.indices(shape, dtype=np.int32))
-        error = pd.array(np.full(structure.size, None, dtype=object), dtype="string")
-        for row, message in self.errors.items():
-            error[row] = message
-        table = pd.DataFrame(
-            {
-                "structure": structure,
-                "motion": _named(motion, motions),
-                "scale": np.asarray(scales)[scale],
-                "model": _named(model, models),
-                "status": pd.Categorical.from_codes(self.status, dtype=pd.CategoricalDtype(list(STATUSES))),
-                "error": error,
-                **self.columns,
-            }
-        )
-        if self.responses is not None:
-            table["response"] = self.responses
-        return table
-
-
-def _named(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
-    """A categorical column; names that occur twice share a category."""
-    import pandas as pd
-
-    categories = list(dict.fromkeys(names))
-    places = np.array([categories.index(name) for name in names], dtype=np.int32)
-    return pd.Categorical.from_codes(places[codes], dtype=pd.CategoricalDtype(categories))
-
-
-def _engine(structure: Structure | RockingProperties, model: Model, output: Output) -> ExactEngine | str:
-    """An engine, or why there is none."""
+def _prepare(structure: Structure | RockingProperties, model: Model, output: Output) -> Prepared | str:
+    """A model tied to a structure and its engine, or why there is none."""
     try:
-        tied: LinearModel = model.of(properties_of(structure))
-        return make_engine(tied, output)
+        tied = model.of(properties_of(structure))
+        return tied, make_engine(tied, output)
     except InputError as error:
         return str(error)
-
-
-def _sequence(name: str, given: Any, kinds: tuple[type, ...], marker: str | None) -> list[Any]:
-    """One object or a sequence of them, as a list that is not empty."""
-    if isinstance(given, kinds) or (marker is not None and hasattr(given, marker)):
-        return [given]
-    items = list(given)
-    if not items:
-        message = f"{name} is empty. Give at least one."
-        raise InputError(message)
-    for place, item in enumerate(items):
-        if not isinstance(item, kinds) and not (marker is not None and hasattr(item, marker)):
-            message = f"{name}[{place}] is a {type(item).__name__}. Expected {_wanted(name)}."
-            raise InputError(message)
-    return items
-
-
-def _wanted(name: str) -> str:
-    return {
-        "structures": "a Frame, a LumpedStructure or RockingProperties",
-        "motions": "a GroundMotion",
-        "models": 'a label such as "2DOF-S", or a Model',
-    }[name]
-
-
-def _factors(scales: Sequence[float]) -> list[float]:
-    factors = [float(scale) for scale in scales]
-    if not factors or not np.all(np.isfinite(factors)):
-        message = f"scales must be one or more finite factors, but {list(scales)!r} was given."
-        raise InputError(message)
-    return factors

@@ -5,22 +5,18 @@ import math
 import numpy as np
 
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError, SolverError
 from rockflex.models import Impact, LinearModel, impact_of
-from rockflex.solve._solution import Solution
+from rockflex.solve._engine import QUIET, Engine
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log, Physics, System, scratch
-from rockflex.solve.exact.run import SETTLED, UNSETTLED, run
+from rockflex.solve.exact.run import run
 from rockflex.solve.exact.tables import propagate, tabulate
-from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURNED, UPLIFTS
 
-__all__ = ["ExactEngine"]
-
-QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
+__all__ = ["ExactEngine", "physics_of"]
 
 
-class ExactEngine:
+class ExactEngine(Engine):
     """A piecewise linear model, uncoupled, with its propagators for every time step met so far.
 
     Parameters
@@ -32,9 +28,9 @@ class ExactEngine:
     """
 
     def __init__(self, model: LinearModel, contact_rows: Array, rocking_rows: Array) -> None:
-        self.model = model
-        impact, self._failures = impact_of(model.law, model.properties)
-        self._physics = _physics(model, impact)
+        impact, failures = impact_of(model.law, model.properties)
+        super().__init__(model, 1 + contact_rows.shape[0], failures)
+        self._physics = physics_of(model, impact)
         rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
         self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
@@ -54,55 +50,15 @@ class ExactEngine:
             self._systems[dt] = found
         return found
 
-    def run(
-        self,
-        acceleration: Array,
-        dt: float,
-        *,
-        free_vibration: float | None = 0.0,
-        state: Array | None = None,
-        history: bool = False,
-    ) -> Solution:
-        """Run one record, then `free_vibration` seconds (None: until settled), from a state [D.., D'.., θ, θ'].
+    def _motion(self, start: Array) -> Array:
+        return start.copy()
 
-        Raises
-        ------
-        SolverError
-            If impacts accumulate without end, or the motion does not settle.
-        """
-        start = np.zeros(2 * self.model.properties.n_modes + 2) if state is None else state
-        side = float(np.sign(start[-2]) or np.sign(start[-1]))
-        settle = free_vibration is None
-        free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
-        record = np.require(acceleration, dtype=np.float64, requirements=("C", "W"))  # the type compiled for
+    def _carry(
+        self, motion: Array, record: Array, dt: float, free: int, settle: bool, side: float, log: Log, nodes: Array
+    ) -> tuple[int, int, int]:
         system = self.system(dt)
-        rows = self._rows.shape[1]
-        room_for = record.size + 64 + (0 if settle else free) if history else 0
-        while True:
-            log = Log(np.zeros(rows), np.zeros(rows), np.zeros(3, dtype=np.int64))
-            nodes = np.empty((room_for, HEADER + start.size))
-            room = scratch(start.copy(), rows, system.order)
-            status, samples, count = run(system, record, QUIET, dt, free, settle, side, log, room, nodes)
-            if not history or count <= room_for:
-                break
-            room_for = count
-        if status == BROKEN and self._failures:
-            failure = self._failures.pop()
-            message = f"The impact law {self.model.law!r} failed: {failure}"
-            raise InputError(message) from failure
-        if status in (CHATTER, UNSETTLED, GAINED) or not np.all(np.isfinite(room.state)):
-            raise SolverError(self._complaint(status, samples * dt, room.state))
-        end = samples * dt if status != OVERTURNED else float(log.times[0])
-        return Solution(
-            overturned=status == OVERTURNED,
-            settled=status == SETTLED,
-            end_time=end,
-            peaks=log.peaks,
-            peak_times=log.times,
-            n_uplifts=int(log.tally[UPLIFTS]),
-            n_impacts=int(log.tally[IMPACTS]),
-            nodes=nodes[:count] if history else None,
-        )
+        room = scratch(motion, self._n_rows, system.order)
+        return run(system, record, QUIET, dt, free, settle, side, log, room, nodes)
 
     @property
     def fastest(self) -> float:
@@ -127,34 +83,9 @@ class ExactEngine:
                 states[chosen] = moved @ basis.basis.T
         return states
 
-    def _patience(self) -> float:
-        """Longest free vibration that is waited for, s."""
-        p = self.model.properties
-        slowest = float(p.omega.min(initial=math.inf))
-        return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
-    def _complaint(self, status: int, time: float, state: Array) -> str:
-        values = ", ".join(f"{value:.6g}" for value in state)
-        where = f"The state [D, D', θ, θ'] there is [{values}]."
-        if status == UNSETTLED:
-            return (
-                f"The free vibration of {self.model.label} has not settled {time:.6g} s after the start. {where} "
-                "Give free_vibration in seconds, or more damping."
-            )
-        if status == GAINED:
-            return (
-                f"The impact law {self.model.law!r} returns energy in the sample before {time:.6g} s. {where} "
-                "A law can only lose energy: mend its `after`, or lower its restitution."
-            )
-        if status != CHATTER:
-            return f"The motion of {self.model.label} is not finite at {time:.6g} s. {where} Check the parameters."
-        return (
-            f"The impacts of {self.model.label} accumulate without end in the sample before {time:.6g} s. {where} "
-            "Check the model's parameters, and refine the record."
-        )
-
-
-def _physics(model: LinearModel, impact: Impact) -> Physics:
+def physics_of(model: LinearModel, impact: Impact) -> Physics:
+    """The model's coefficients as kernels take them."""
     p = model.properties
     return Physics(
         omega2=p.omega**2,

@@ -37,7 +37,7 @@ def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis
         )
         raise InputError(message)
     fastest = max(contact.fastest, rocking.fastest)
-    halvings = max(0, math.ceil(math.log2(fastest * dt)))  # then no mode turns by more than one radian
+    halvings = max(0, math.ceil(math.log2(max(fastest * dt, 1.0))))  # then no mode turns by more than one radian
     steps: Array = dt * 0.5 ** np.arange(halvings + 1, dtype=np.float64)
     sag, swing, ripple = zip(*(_bounds(basis, steps) for basis in (contact, rocking)), strict=True)
     return System(

@@ -1,0 +1,66 @@
+"""The Bouc-Wen hysteresis of a one-mode superstructure (Silva & Stojadinović 2024, Eqs. 37-38)."""
+
+from dataclasses import dataclass
+
+from rockflex._checks import finite, positive
+from rockflex._errors import InputError
+
+__all__ = ["BoucWen"]
+
+
+@dataclass(frozen=True)
+class BoucWen:
+    """A superstructure that yields: ω² [α D + D_y (1 - α) z] takes the place of ω² D.
+
+    z' = (D' - γ |D'| z |z|^(n-1) - β D' |z|^n) / D_y, in contact and while rocking alike.
+
+    Parameters
+    ----------
+    yield_displacement
+        D_y of the first mode's D_1 in m, positive; at the top it is Γ_1 φ_top,1 D_y.
+    post_yield_ratio
+        α, stiffness after yielding over that before, in [0, 1).
+    gamma, beta
+        Shape of the hysteresis, -γ < β ≤ γ: |z| stays below (γ + β)^(-1/n), and no loop makes energy.
+    exponent
+        n, at least 1; the larger, the sharper the yielding.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    yield_displacement: float
+    post_yield_ratio: float = 0.01
+    gamma: float = 0.5
+    beta: float = 0.5
+    exponent: float = 8.0
+
+    def __post_init__(self) -> None:
+        values = {
+            "yield_displacement": positive("yield_displacement", self.yield_displacement, "m"),
+            "post_yield_ratio": finite("post_yield_ratio", self.post_yield_ratio, ""),
+            "gamma": finite("gamma", self.gamma, ""),
+            "beta": finite("beta", self.beta, ""),
+            "exponent": finite("exponent", self.exponent, ""),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if not 0.0 <= self.post_yield_ratio < 1.0:
+            message = (
+                f"post_yield_ratio must lie in [0, 1), but {self.post_yield_ratio!r} was given. "
+                "Give the stiffness after yielding over the elastic one; for an elastic structure leave bouc_wen out."
+            )
+            raise InputError(message)
+        if self.exponent < 1.0:
+            message = (
+                f"exponent must be at least 1, but {self.exponent!r} was given. 8 is a sharp yield, 1 a round one."
+            )
+            raise InputError(message)
+        if not (self.gamma > 0.0 and abs(self.beta) <= self.gamma and self.gamma + self.beta > 0.0):
+            message = (
+                f"gamma must be positive and -gamma < beta <= gamma, but gamma={self.gamma!r} and beta={self.beta!r} "
+                "were given: the spring would give back more energy than it takes. The paper has 0.5 for both."
+            )
+            raise InputError(message)

@@ -1,0 +1,122 @@
+"""The vector field of the nonlinear models (Silva & Stojadinović 2024, Eqs. 13-15, 23 and 37-38).
+
+The motion is ``[D_1..D_N, D'_1..D'_N, θ, θ', z, E_damped, E_input, E_hysteretic]``: the last three count the energies
+that are damped, put in by the ground and taken up by the hysteretic spring, so that they are known as well as the rest.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._kernel import kernel
+
+__all__ = ["EXTRA", "Field", "field_rates", "inertia_left"]
+
+Array = NDArray[np.float64]
+
+EXTRA = 4  # components after those of the simplified models
+
+
+class Field(NamedTuple):
+    """Coefficients of one nonlinear model, N modes."""
+
+    complete: bool  # Eqs. 13 and 14; else Eq. 23
+    hysteretic: bool
+    omega2: Array  # ω²
+    damping: Array  # 2ζω
+    height: Array  # h*
+    mass: Array  # m*
+    inertia: float  # I_θ
+    weight_arm: float  # L_0^r
+    total_mass: float
+    half_width: float
+    gravity: float  # g
+    yield_displacement: float
+    post_yield_ratio: float
+    gamma: float
+    beta: float
+    exponent: float
+    whole: int  # the exponent, where it is a whole number, whose power is quickly had; else 0
+
+
+@kernel
+def inertia_left(field: Field, side: float, motion: Array) -> float:
+    """Factor of θ'' once D'' is eliminated: I_θ - Σ m* h*², and in the complete models what D adds."""
+    n = field.omega2.size
+    inertia = field.inertia
+    for i in range(n):
+        inertia -= field.mass[i] * field.height[i] * field.height[i]
+        if field.complete:
+            inertia += field.mass[i] * motion[i] * (motion[i] - 2.0 * side * field.half_width)
+    return inertia
+
+
+@kernel
+def field_rates(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> None:
+    """Rates of the motion on one side (0: in contact) under one ground acceleration."""
+    n = field.omega2.size
+    theta, spin = motion[2 * n], motion[2 * n + 1]
+    sine, cosine = 0.0, 1.0
+    if side != 0.0 and field.complete:
+        sine, cosine = math.sin(theta), math.cos(theta)
+    offset = side * field.half_width
+    rates[2 * n + 2] = 0.0
+    rates[2 * n + 5] = 0.0
+    damped = drive = moment = displaced = carried = 0.0
+    for i in range(n):
+        d, v = motion[i], motion[n + i]
+        drag = field.damping[i] * v
+        restoring = field.omega2[i] * d
+        if field.hysteretic:
+            restoring *= field.post_yield_ratio
+            slip = field.omega2[i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
+            restoring += slip
+            rates[2 * n + 5] = field.mass[i] * slip * v
+            rates[2 * n + 2] = hysteresis(field, v, motion[2 * n + 2])
+        rest = -restoring - drag - acceleration * cosine
+        if side != 0.0 and field.complete:
+            rest += field.gravity * sine - spin * spin * (offset - d)
+            moment += 2.0 * spin * v * field.mass[i] * (d - offset)
+        rates[i] = v
+        rates[n + i] = rest
+        moment += field.mass[i] * field.height[i] * rest
+        damped += field.mass[i] * drag * v
+        displaced += field.mass[i] * d
+        carried += field.mass[i] * v
+    angular = 0.0
+    if side != 0.0:
+        weight = field.total_mass * offset
+        if field.complete:
+            arm = weight * sine + field.weight_arm * cosine - displaced * sine
+            moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
+        else:
+            arm = field.weight_arm
+            moment += field.gravity * (weight - field.weight_arm * theta)
+        moment += acceleration * arm
+        angular = -moment / inertia_left(field, side, motion)
+        drive = arm * spin
+        for i in range(n):
+            rates[n + i] -= field.height[i] * angular
+    rates[2 * n] = spin
+    rates[2 * n + 1] = angular
+    rates[2 * n + 3] = damped
+    rates[2 * n + 4] = -acceleration * (drive + cosine * carried)
+
+
+@kernel
+def hysteresis(field: Field, velocity: float, z: float) -> float:
+    """Z' of Eq. 38."""
+    if field.whole > 0:
+        power, factor, left = 1.0, abs(z), field.whole
+        while left > 0:
+            if left & 1:
+                power *= factor
+            factor *= factor
+            left >>= 1
+    else:
+        power = math.pow(abs(z), field.exponent)
+    # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z.
+    turn = power * abs(velocity) if z >= 0.0 else -power * abs(velocity)
+    return (velocity - field.gamma * turn - field.beta * velocity * power) / field.yield_displacement

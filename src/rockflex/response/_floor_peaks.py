@@ -1,0 +1,57 @@
+"""The peaks above the base of one run."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector
+from rockflex._errors import InputError
+
+__all__ = ["FloorPeaks"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class FloorPeaks:
+    """Largest magnitudes over the run, peaks between samples included; read-only arrays.
+
+    Attributes
+    ----------
+    story_drift : ndarray, shape (N_floors,)
+        Displacement of each floor less that of the one below, relative to the rotated base, in m.
+    story_shear : ndarray, shape (N_floors,)
+        Sum of the elastic forces from each floor up, in N.
+    floor_acceleration : ndarray, shape (N_floors,)
+        Total horizontal acceleration of each floor, in m/s².
+
+    Raises
+    ------
+    InputError
+        If the lengths differ, or a value is not finite.
+    """
+
+    story_drift: Array
+    story_shear: Array
+    floor_acceleration: Array
+
+    def __init__(self, story_drift: ArrayLike, story_shear: ArrayLike, floor_acceleration: ArrayLike) -> None:
+        peaks = {
+            "story_drift": finite_vector("story_drift", story_drift, "m"),
+            "story_shear": finite_vector("story_shear", story_shear, "N"),
+            "floor_acceleration": finite_vector("floor_acceleration", floor_acceleration, "m/s²"),
+        }
+        sizes = [values.size for values in peaks.values()]
+        if len(set(sizes)) > 1:
+            message = (
+                f"The peaks of the floors must be one a floor each, but {', '.join(peaks)} have the sizes {sizes}."
+            )
+            raise InputError(message)
+        vars(self).update(peaks)
+
+    def __reduce__(self) -> tuple[Callable[..., "FloorPeaks"], tuple[Any, ...]]:
+        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
+        return FloorPeaks, (self.story_drift, self.story_shear, self.floor_acceleration)

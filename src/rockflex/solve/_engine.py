@@ -1,0 +1,138 @@
+"""What the engines share: how a run is set up, how its history finds room, and how it ends."""
+
+import math
+from abc import ABC, abstractmethod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError, SolverError
+from rockflex.models import LinearModel, NonlinearModel
+from rockflex.solve._solution import Solution
+from rockflex.solve.exact.history import HEADER
+from rockflex.solve.exact.layout import Array, Log
+from rockflex.solve.exact.run import SETTLED, UNSETTLED
+from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURNED, UPLIFTS
+
+__all__ = ["QUIET", "Engine"]
+
+QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
+STALLED = -5  # of the adaptive engine, whose error control found no step short enough
+
+
+class Engine(ABC):
+    """A model made ready for records.
+
+    Parameters
+    ----------
+    model
+        The model's parameters.
+    n_rows
+        Number of responses whose peaks are wanted, the rotation included.
+    failures
+        Where exceptions of the user's impact law gather.
+    """
+
+    def __init__(self, model: LinearModel | NonlinearModel, n_rows: int, failures: list[Exception]) -> None:
+        self.model = model
+        self._n_rows = n_rows
+        self._failures = failures
+
+    @abstractmethod
+    def _motion(self, start: Array) -> Array:
+        """What the kernels carry, from the state [D.., D'.., θ, θ']."""
+
+    @abstractmethod
+    def _carry(
+        self,
+        motion: Array,
+        record: Array,
+        dt: float,
+        free: int,
+        settle: bool,
+        side: float,
+        log: Log,
+        nodes: Array,
+    ) -> tuple[int, int, int]:
+        """Run the kernels on `motion`, in place; return status, samples and the count of nodes."""
+
+    def run(
+        self,
+        acceleration: NDArray[np.float64],
+        dt: float,
+        *,
+        free_vibration: float | None = 0.0,
+        state: Array | None = None,
+        history: bool = False,
+    ) -> Solution:
+        """Run one record, then `free_vibration` seconds (None: until settled), from a state [D.., D'.., θ, θ'].
+
+        Raises
+        ------
+        InputError
+            If the time step is absurd, or the user's impact law fails.
+        SolverError
+            If impacts accumulate without end, the motion does not settle, or an impact would gain energy.
+        """
+        start = np.zeros(2 * self.model.properties.n_modes + 2) if state is None else state
+        side = float(np.sign(start[-2]) or np.sign(start[-1]))
+        settle = free_vibration is None
+        free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
+        record = np.require(acceleration, dtype=np.float64, requirements=("C", "W"))  # the type compiled for
+        room_for = record.size + 64 + (0 if settle else free) if history else 0
+        while True:
+            log = Log(np.zeros(self._n_rows), np.zeros(self._n_rows), np.zeros(3, dtype=np.int64))
+            motion = self._motion(start)
+            nodes = np.zeros((room_for, HEADER + motion.size))
+            status, samples, count = self._carry(motion, record, dt, free, settle, side, log, nodes)
+            if not history or count <= room_for:
+                break
+            room_for = count
+        self._complain(status, samples * dt, motion[: start.size])
+        end = samples * dt if status != OVERTURNED else float(log.times[0])
+        return Solution(
+            overturned=status == OVERTURNED,
+            settled=status == SETTLED,
+            end_time=end,
+            peaks=log.peaks,
+            peak_times=log.times,
+            n_uplifts=int(log.tally[UPLIFTS]),
+            n_impacts=int(log.tally[IMPACTS]),
+            nodes=nodes[:count] if history else None,
+        )
+
+    def _patience(self) -> float:
+        """Longest free vibration that is waited for, s."""
+        p = self.model.properties
+        slowest = float(p.omega.min(initial=math.inf))
+        return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
+
+    def _complain(self, status: int, time: float, state: Array) -> None:
+        """Raise if the run could not be solved."""
+        if status == BROKEN:
+            failure = self._failures.pop()
+            message = f"The impact law {self.model.law!r} failed: {failure}"
+            raise InputError(message) from failure
+        label = self.model.label
+        if status == CHATTER:
+            what = f"The impacts of {label} accumulate without end in the sample before {time:.6g} s."
+            mend = "Check the model's parameters, and refine the record."
+        elif status == GAINED:
+            what = f"The impact law {self.model.law!r} returns energy in the sample before {time:.6g} s."
+            mend = "A law can only lose energy: mend its `after`, or lower its restitution."
+        elif status == STALLED:
+            what = (
+                f"The motion of {label} cannot be followed in the sample before {time:.6g} s: no step is short enough."
+            )
+            mend = "Check the parameters."
+        elif status == UNSETTLED:
+            what = f"The free vibration of {label} has not settled {time:.6g} s after the start."
+            mend = "Give free_vibration in seconds, or more damping."
+        elif not np.all(np.isfinite(state)):
+            what, mend = f"The motion of {label} is not finite at {time:.6g} s.", "Check the parameters."
+        else:
+            return
+        values = ", ".join(f"{value:.6g}" for value in state)
+        message = f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}"
+        raise SolverError(message)

@@ -1,0 +1,1 @@
+"""The adaptive engine: Runge-Kutta steps with dense output, restarted at every sample and event."""

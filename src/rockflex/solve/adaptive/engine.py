@@ -1,0 +1,79 @@
+"""The adaptive engine's door: the complete and the yielding models."""
+
+import numpy as np
+
+from rockflex.models import EXTRA, NonlinearModel, impact_of
+from rockflex.solve._engine import QUIET, Engine
+from rockflex.solve.adaptive.layout import Flow, stages
+from rockflex.solve.adaptive.run import run
+from rockflex.solve.exact.basis import contact_basis
+from rockflex.solve.exact.engine import physics_of
+from rockflex.solve.exact.layout import Array, Log, System, scratch
+from rockflex.solve.exact.tables import tabulate
+
+__all__ = ["AdaptiveEngine"]
+
+TOLERANCE = 1e-10  # relative, of a step
+
+
+class AdaptiveEngine(Engine):
+    """A nonlinear model with its propagators of linear contact for every time step met so far.
+
+    Parameters
+    ----------
+    model
+        The model's parameters.
+    rows
+        Responses whose peaks are wanted, as functionals over [D.., D'.., θ, θ', z, a, s], (F, 2N + 5).
+    tolerance
+        Relative error allowed in a step.
+    """
+
+    def __init__(self, model: NonlinearModel, rows: Array, tolerance: float = TOLERANCE) -> None:
+        impact, failures = impact_of(model.law, model.properties)
+        super().__init__(model, 1 + rows.shape[0], failures)
+        linear = model.linear
+        guards = model.guards()
+        both = np.stack((np.vstack((guards[0], rows)), np.vstack((guards[1], rows))))
+        self._flow = Flow(
+            field=model.field(),
+            impact=impact,
+            resistance=linear.resistance,
+            free_inertia=linear.free_inertia,
+            rows=both,
+            scale=_scale(model),
+            tolerance=tolerance,
+        )
+        self._physics = physics_of(linear, impact)
+        n = model.properties.n_modes
+        self._plain_rows = np.delete(both, 2 * n + 2, axis=2)
+        self._contact = contact_basis(self._physics, self._plain_rows[0])
+        self._systems: dict[float, System] = {}
+
+    def system(self, dt: float) -> System:
+        """Propagators and bounds of contact for one time step; computed once."""
+        found = self._systems.get(dt)
+        if found is None:
+            found = tabulate(self._physics, self._plain_rows, self._contact, self._contact, dt)
+            self._systems[dt] = found
+        return found
+
+    def _motion(self, start: Array) -> Array:
+        return np.concatenate((start, np.zeros(EXTRA)))
+
+    def _carry(
+        self, motion: Array, record: Array, dt: float, free: int, settle: bool, side: float, log: Log, nodes: Array
+    ) -> tuple[int, int, int]:
+        system = self.system(dt)
+        room = scratch(motion[:-EXTRA], self._n_rows, system.order)
+        work = stages(motion, self._n_rows)
+        return run(system, self._flow, record, QUIET, dt, free, settle, side, log, room, work, nodes)
+
+
+def _scale(model: NonlinearModel) -> Array:
+    """Sizes of D, D', θ, θ' and z that a weak tremor of 0.01 m/s² reaches; smaller errors do not matter."""
+    p = model.properties
+    tremor = 0.01
+    rotation = 0.01 * p.m_tot * p.half_width / p.l0r * 0.01
+    fall = np.sqrt(p.l0r * 9.81 / p.i_theta)
+    return np.concatenate((tremor / p.omega**2, tremor / p.omega, [rotation, rotation * fall, 1e-3]))

@@ -1,0 +1,57 @@
+"""The arrays that the adaptive engine's kernels pass around, beside those of the exact engine.
+
+The motion is that of `Field`: [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic]. A row is a linear functional
+[D.., D'.., θ, θ', z, a, s] of it, one set a phase; row 0 is the phase's guard, as in the exact engine.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rockflex.models import EXTRA, Field, Impact
+from rockflex.solve.adaptive.tableau import STAGES
+from rockflex.solve.exact.layout import Array
+
+__all__ = ["TERMS", "Flow", "Stages", "stages"]
+
+TERMS = 8  # of the polynomial across a step
+
+
+class Flow(NamedTuple):
+    """A nonlinear model made ready."""
+
+    field: Field
+    impact: Impact
+    resistance: float  # m_tot g B; infinite on a base that cannot lift
+    free_inertia: float  # I_θ - Σ m* h*²
+    rows: Array  # (2, F, 2N + 5)
+    scale: Array  # (2N + 3,): sizes below which a component's error does not matter
+    tolerance: float  # relative, for each step
+
+
+class Stages(NamedTuple):
+    """Room for one step."""
+
+    motion: Array  # (2N + 6,), at the start of the step; the exact engine's `state` is the front of it
+    trial: Array  # (2N + 6,)
+    rates: Array  # (16, 2N + 6)
+    bends: Array  # (7, 2N + 6): the continuous extension
+    polys: Array  # (F + 1, 8)
+    ends: Array  # (F,): the rows at the end of the step
+    step: Array  # (1,): length that the error control proposes
+    size: Array  # (2N + 3,): largest magnitude of each component so far
+
+
+def stages(motion: Array, rows: int) -> Stages:
+    """Room for one run that starts from `motion`."""
+    n = motion.size
+    return Stages(
+        motion,
+        np.zeros(n),
+        np.zeros((STAGES, n)),
+        np.zeros((TERMS - 1, n)),
+        np.zeros((rows + 1, TERMS)),
+        np.zeros(rows),
+        np.full(1, np.inf),
+        np.zeros(n - EXTRA + 1),
+    )

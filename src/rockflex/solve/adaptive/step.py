@@ -1,0 +1,158 @@
+"""One step of the Runge-Kutta pair, and the polynomial across it."""
+
+import numpy as np
+
+from rockflex._kernel import kernel
+from rockflex.models import field_rates
+from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
+from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, A, C
+from rockflex.solve.exact.layout import Array
+
+__all__ = ["FAILED", "expand_nested", "extend", "row_poly", "settle_on", "step_over", "take_step"]
+
+SHORTEST = 1e-13  # s: a step this short means that the motion cannot be followed
+FAILED = -1.0
+SAFETY, LEAST, MOST = 0.9, 0.2, 8.0  # of the error control
+
+
+@kernel
+def take_step(flow: Flow, side: float, acceleration: float, slope: float, longest: float, room: Stages) -> float:
+    """Try steps of at most `longest` until one is accurate; return its length, or `FAILED`.
+
+    `room.trial` holds the end of the step, `room.rates` the stages up to it.
+    """
+    n = room.motion.size
+    step = min(room.step[0], longest)
+    field_rates(flow.field, side, acceleration, room.motion, room.rates[0])
+    while True:
+        for stage in range(1, LAST + 1):
+            for i in range(n):
+                room.trial[i] = 0.0
+            for k in range(stage):
+                weight = A[stage, k]
+                if weight != 0.0:
+                    for i in range(n):
+                        room.trial[i] += weight * room.rates[k, i]
+            for i in range(n):
+                room.trial[i] = room.motion[i] + step * room.trial[i]
+            field_rates(flow.field, side, acceleration + slope * step * C[stage], room.trial, room.rates[stage])
+        error = error_of(flow, step, room)
+        if error <= 1.0:
+            grown = step * min(MOST, SAFETY * error**-0.125 if error > 0.0 else MOST)
+            # A step cut short by a sample or an event says little about the next one.
+            room.step[0] = grown if step < longest else max(grown, room.step[0])
+            return step
+        shrunk = max(LEAST, SAFETY * error**-0.125) if error < np.inf else LEAST
+        step *= shrunk
+        room.step[0] = step
+        if not step > SHORTEST:
+            return FAILED
+
+
+@kernel
+def error_of(flow: Flow, step: float, room: Stages) -> float:
+    """Norm of the step's error over what is tolerated; infinite where the step left all numbers."""
+    fifth = third = 0.0
+    for i in range(flow.scale.size):
+        coarse = fine = 0.0
+        for k in range(LAST + 1):
+            coarse += ERROR_3[k] * room.rates[k, i]
+            fine += ERROR_5[k] * room.rates[k, i]
+        size = max(room.size[i], abs(room.motion[i]), abs(room.trial[i]), flow.scale[i])
+        fifth += (fine / size) ** 2
+        third += (coarse / size) ** 2
+    if fifth == 0.0:
+        return 0.0
+    error = abs(step) * fifth / np.sqrt((fifth + 0.01 * third) * flow.scale.size) / flow.tolerance
+    return error if np.isfinite(error) else np.inf
+
+
+@kernel
+def extend(flow: Flow, side: float, acceleration: float, slope: float, step: float, room: Stages) -> None:
+    """Fill `room.bends`, the continuous extension of the step just taken."""
+    n = room.motion.size
+    for stage in range(LAST + 1, STAGES):
+        for i in range(n):
+            room.bends[0, i] = 0.0
+        for k in range(stage):
+            weight = A[stage, k]
+            if weight != 0.0:
+                for i in range(n):
+                    room.bends[0, i] += weight * room.rates[k, i]
+        for i in range(n):
+            room.bends[0, i] = room.motion[i] + step * room.bends[0, i]
+        field_rates(flow.field, side, acceleration + slope * step * C[stage], room.bends[0], room.rates[stage])
+    for i in range(n):
+        rise = room.trial[i] - room.motion[i]
+        room.bends[0, i] = rise
+        room.bends[1, i] = step * room.rates[0, i] - rise
+        room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
+    for j in range(4):
+        for i in range(n):
+            room.bends[3 + j, i] = 0.0
+        for k in range(STAGES):
+            weight = DENSE[j, k]
+            if weight != 0.0:
+                for i in range(n):
+                    room.bends[3 + j, i] += step * weight * room.rates[k, i]
+
+
+@kernel
+def step_over(room: Stages) -> None:
+    """Put the motion at the end of the step in place of that at its start."""
+    for i in range(room.motion.size):
+        room.motion[i] = room.trial[i]
+    for i in range(room.size.size):
+        room.size[i] = max(room.size[i], abs(room.motion[i]))
+
+
+@kernel
+def settle_on(u: float, room: Stages) -> None:
+    """Put the motion at the fraction `u` of the step in place of that at its start."""
+    v = 1.0 - u
+    for i in range(room.motion.size):
+        value = room.bends[5, i] + u * room.bends[6, i]
+        value = room.bends[3, i] + u * (room.bends[4, i] + v * value)
+        room.motion[i] += u * (room.bends[0, i] + v * (room.bends[1, i] + u * (room.bends[2, i] + v * value)))
+
+
+@kernel
+def row_poly(
+    row: int, weights: Array, acceleration: float, slope: float, side: float, step: float, room: Stages
+) -> None:
+    """Coefficients, in `room.polys[row]`, of one row over the step, time in units of it."""
+    n = weights.size - 2
+    start = weights[n] * acceleration + weights[n + 1] * side
+    polys = room.polys
+    for k in range(TERMS):
+        polys[row, k] = 0.0
+    for i in range(n):
+        weight = weights[i]
+        if weight != 0.0:
+            start += weight * room.motion[i]
+            for j in range(TERMS - 1):
+                polys[row, j] += weight * room.bends[j, i]
+    expand_nested(polys, row)
+    polys[row, 0] = start
+    polys[row, 1] += weights[n] * slope * step
+
+
+@kernel
+def expand_nested(polys: Array, row: int) -> None:
+    """U (F_0 + v (F_1 + u (F_2 + v (F_3 + u (F_4 + v (F_5 + u F_6)))))), v = 1 - u, as powers of u, in place of F."""
+    f0, f1, f2, f3 = polys[row, 0], polys[row, 1], polys[row, 2], polys[row, 3]
+    f4, f5, f6 = polys[row, 4], polys[row, 5], polys[row, 6]
+    # From within: a + v (b + u c + ...) one after the other.
+    a0, a1, a2 = f5, f6, 0.0
+    b0, b1, b2 = f4 + a0, a1 - a0, a2 - a1  # F_4 + v (F_5 + u F_6)
+    c0, c1, c2, c3 = f3, b0, b1, b2  # F_3 + u (...)
+    d0, d1, d2, d3, d4 = f2 + c0, c1 - c0, c2 - c1, c3 - c2, -c3  # F_2 + v (...)
+    e0, e1, e2, e3, e4, e5 = f1, d0, d1, d2, d3, d4  # F_1 + u (...)
+    polys[row, 0] = 0.0
+    polys[row, 1] = f0 + e0
+    polys[row, 2] = e1 - e0
+    polys[row, 3] = e2 - e1
+    polys[row, 4] = e3 - e2
+    polys[row, 5] = e4 - e3
+    polys[row, 6] = e5 - e4
+    polys[row, 7] = -e5

@@ -1,0 +1,146 @@
+"""Checks of the arguments of studies."""
+
+import math
+from collections.abc import Callable, Sequence
+from numbers import Real
+from typing import Any, Literal, Protocol, get_args
+
+from rockflex._checks import real_or_nan
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.motion import GroundMotion
+from rockflex.study._initial import InitialState
+
+__all__ = [
+    "Output",
+    "Structure",
+    "check_initial",
+    "check_output",
+    "described",
+    "factors_of",
+    "free_vibration_time",
+    "is_structure",
+    "properties_of",
+    "sequence_of",
+]
+
+Output = Literal["history", "peaks"]
+
+LONGEST = 1e9  # s of free vibration
+
+
+class Structure(Protocol):
+    """Anything that knows its rocking properties, such as a `Frame` or a `LumpedStructure`."""
+
+    def rocking(self, n_modes: int | None = None) -> RockingProperties:
+        """Properties of the first `n_modes` modes, or of all."""
+        ...
+
+
+def check_output(output: str) -> None:
+    """Raise an InputError unless `output` is known."""
+    if output not in get_args(Output):
+        message = f'output must be "history" or "peaks", but {output!r} was given.'
+        raise InputError(message)
+
+
+def properties_of(structure: Structure | RockingProperties) -> RockingProperties:
+    """The properties of a structure, or those given.
+
+    Raises
+    ------
+    InputError
+        If the object is neither.
+    """
+    if isinstance(structure, RockingProperties):
+        return structure
+    if not is_structure(structure):
+        message = (
+            f"structure must be a Frame, a LumpedStructure or RockingProperties, but {described(structure)} was given."
+        )
+        raise InputError(message)
+    return structure.rocking()
+
+
+def is_structure(given: object) -> bool:
+    """Tell whether `given` is a structure or its properties; a class of them is not."""
+    return isinstance(given, RockingProperties) or (hasattr(given, "rocking") and not isinstance(given, type))
+
+
+def described(given: Any) -> str:
+    """What kind of object was given, for a message."""
+    return f"the class {given.__name__}" if isinstance(given, type) else type(given).__name__
+
+
+def free_vibration_time(value: float | Literal["settle"]) -> float | None:
+    """Seconds of free vibration; None until settled.
+
+    Raises
+    ------
+    InputError
+        If the value is negative, above 1e9 s, not finite, another word, or no number.
+    """
+    if isinstance(value, str) and value == "settle":
+        return None
+    seconds = real_or_nan(value)
+    if not 0.0 <= seconds <= LONGEST:
+        message = (
+            f'free_vibration must be zero or more seconds (at most {LONGEST:g}), or "settle", but {value!r} was given.'
+        )
+        raise InputError(message)
+    return seconds
+
+
+def check_initial(initial: InitialState | None) -> None:
+    """Raise an InputError unless `initial` is a state or None."""
+    if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]
+        message = (
+            f"initial must be an InitialState or None, but {initial!r} was given. Write InitialState(rotation=...)."
+        )
+        raise InputError(message)
+
+
+def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: str) -> list[Any]:
+    """One object or a sequence of them, as a list that is not empty."""
+    if accepts(given):
+        return [given]
+    items = _items(given)
+    if items is None:
+        message = f"{name} must be {wanted}, or a sequence of them, but {described(given)} was given."
+        raise InputError(message)
+    if not items:
+        message = f"{name} is empty. Give at least one."
+        raise InputError(message)
+    for place, item in enumerate(items):
+        if not accepts(item):
+            message = f"{name}[{place}] is {described(item)}. Expected {wanted}."
+            raise InputError(message)
+    return items
+
+
+def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list[float]:
+    """One factor or a sequence of them, as a list; all are finite, and keep the strongest motion so."""
+    given = [scales] if isinstance(scales, Real) else _items(scales)
+    factors = [real_or_nan(factor) for factor in given or ()]
+    if not factors or not all(map(math.isfinite, factors)):
+        message = f"scales must be one or more finite factors, but {scales!r} was given."
+        raise InputError(message)
+    largest = max(factors, key=abs)
+    if not math.isfinite(largest * strongest.pga):
+        message = (
+            f"scales must keep the accelerations finite, but the factor {largest:g} was given for {strongest.name!r} "
+            f"with {strongest.pga:.3g} m/s². Give a smaller factor."
+        )
+        raise InputError(message)
+    return factors
+
+
+def _items(given: Any) -> list[Any] | None:
+    """What a sequence holds; None where `given` is none."""
+    if isinstance(given, str):
+        return None
+    try:
+        items = iter(given)
+    except TypeError:
+        return None
+    return list(items)

@@ -1,0 +1,80 @@
+"""The table of a study."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex.response import PEAKS, Response
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Table"]
+
+STATUSES = ("no_uplift", "rocking", "overturned")
+KINDS = {float: "f8", int: "i8", bool: "?"}
+
+
+class Table:
+    """Columns of fixed length, filled row by row from any thread."""
+
+    def __init__(self, rows: int, *, keep: bool) -> None:
+        self.status = np.full(rows, -1, dtype=np.int8)
+        self.columns: dict[str, NDArray[Any]] = {}
+        for name in PEAKS:
+            kind = Response.__annotations__[name]
+            if kind in KINDS:
+                self.columns[name] = np.full(rows, np.nan if kind is float else 0, dtype=KINDS[kind])
+        self.errors: dict[int, str] = {}
+        self.responses: NDArray[np.object_] | None = np.full(rows, None, dtype=object) if keep else None
+
+    def enter(self, row: int, response: Response) -> None:
+        self.status[row] = STATUSES.index(response.status)
+        for name, column in self.columns.items():
+            column[row] = getattr(response, name)
+        if self.responses is not None:
+            self.responses[row] = response
+
+    def frame(
+        self, shape: tuple[int, ...], motions: list[str], scales: list[float], models: list[str]
+    ) -> "pd.DataFrame":
+        import pandas as pd
+
+        structure, motion, model, scale = (axis.ravel() for axis in np.indices(shape, dtype=np.int32))
+        error = pd.array(np.full(structure.size, None, dtype=object), dtype="string")
+        for row, message in self.errors.items():
+            error[row] = message
+        table = pd.DataFrame(
+            {
+                "structure": structure,
+                "motion": _named(motion, motions),
+                "scale": np.asarray(scales)[scale],
+                "model": _named(model, models),
+                "status": pd.Categorical.from_codes(self.status, dtype=pd.CategoricalDtype(list(STATUSES))),
+                "error": error,
+                **{name: _with_gaps(values, self.status < 0) for name, values in self.columns.items()},
+            }
+        )
+        if self.responses is not None:
+            table["response"] = self.responses
+        return table
+
+
+def _named(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
+    """A categorical column; names that occur twice share a category."""
+    import pandas as pd
+
+    categories = list(dict.fromkeys(names))
+    places = np.array([categories.index(name) for name in names], dtype=np.int32)
+    return pd.Categorical.from_codes(places[codes], dtype=pd.CategoricalDtype(categories))
+
+
+def _with_gaps(values: NDArray[Any], missing: NDArray[np.bool_]) -> Any:
+    """A column in which rows are missing: NaN among floats already, else a type of pandas that knows NA."""
+    import pandas as pd
+
+    if values.dtype.kind == "f":
+        return values
+    nullable = pd.arrays.IntegerArray if values.dtype.kind == "i" else pd.arrays.BooleanArray
+    return nullable(values, missing.copy())

@@ -1,0 +1,207 @@
+"""The complete and the simplified rocking models as one vector field, guard and set of responses.
+
+Source: Silva & Stojadinović 2024, Eqs. 13-16, 21-24, 37 and 38. State ``[θ, θ', D_1..D_N, D'_1..D'_N]``, and
+at its end Bouc-Wen's z where there is one. N = 0 is the rigid block. A state may hold one column an instant.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from twins.result import Vector
+
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class BoucWen:
+    """Hysteresis of the one mode (Eqs. 37-38); the defaults are those of Section 4.2."""
+
+    yield_displacement: float
+    post_yield_ratio: float = 0.01
+    gamma: float = 0.5
+    beta: float = 0.5
+    exponent: float = 8.0
+
+    def force(self, stiffness: float, d: Vector, z: Vector) -> Vector:
+        """Eq. 37, for one unit of mass; linear in (D, z), so of (D', z') it is the rate."""
+        elastic = self.post_yield_ratio
+        return stiffness * (elastic * d + (1.0 - elastic) * self.yield_displacement * z)
+
+    def rate(self, v: Vector, z: Vector) -> Vector:
+        """Eq. 38."""
+        size = abs(z) ** self.exponent
+        return (v - self.gamma * abs(v) * np.sign(z) * size - self.beta * v * size) / self.yield_displacement
+
+
+@dataclass(frozen=True)
+class Structure:
+    """N modes on a base of half width B, by the names of the equations."""
+
+    omega: Vector
+    effective_mass: Vector
+    effective_height: Vector
+    top_ordinate: Vector
+    i_theta: float
+    l0r: float
+    m_tot: float
+    half_width: float
+    zeta: Vector
+    translational_inertia: float
+
+    @classmethod
+    def of(
+        cls,
+        omega: ArrayLike,
+        effective_mass: ArrayLike,
+        effective_height: ArrayLike,
+        top_ordinate: ArrayLike,
+        i_theta: float,
+        l0r: float,
+        m_tot: float,
+        half_width: float,
+        zeta: ArrayLike,
+        translational_inertia: float,
+    ) -> "Structure":
+        w = np.asarray(omega, float)
+        modal = (np.asarray(values, float) for values in (effective_mass, effective_height, top_ordinate))
+        damping = np.broadcast_to(np.asarray(zeta, float), w.shape) if w.size else np.zeros(0)
+        return cls(w, *modal, i_theta, l0r, m_tot, half_width, damping, translational_inertia)
+
+
+class CompleteModel:
+    """Full trigonometry with ``complete`` (Eqs. 13, 14, 16), else small rotations (Eqs. 23, 24)."""
+
+    def __init__(self, structure: Structure, *, complete: bool, bouc_wen: BoucWen | None = None) -> None:
+        if bouc_wen is not None and structure.omega.size != 1:
+            msg = "Bouc-Wen needs a model of one mode"
+            raise ValueError(msg)
+        self.structure, self.complete, self.bouc_wen = structure, complete, bouc_wen
+        self.n = structure.omega.size
+        self.size = 2 + 2 * self.n + (bouc_wen is not None)
+        self.resisting = structure.m_tot * GRAVITY * structure.half_width
+        self.arm = structure.effective_mass * structure.effective_height
+
+    def modal(self, y: Vector) -> tuple[Vector, Vector]:
+        """D and D'."""
+        return y[2 : 2 + self.n], y[2 + self.n : 2 + 2 * self.n]
+
+    def restoring(self, d: Vector, y: Vector) -> Vector:
+        """ω_n² D_n of every mode, or what Eq. 37 puts in its place."""
+        stiffness = self.structure.omega**2
+        if self.bouc_wen is None:
+            return (stiffness * d.T).T
+        return self.bouc_wen.force(stiffness[0], d, y[-1:])
+
+    def free(self, y: Vector, a: Vector | float) -> Vector:
+        """D'' of Eq. 15, as if the base did not rotate."""
+        d, v = self.modal(y)
+        damping = 2.0 * self.structure.zeta * self.structure.omega
+        return -a - (damping * v.T).T - self.restoring(d, y)
+
+    def overturning(self, y: Vector, a: Vector | float) -> Vector:
+        """The moment that lifts the base once it leaves ±m_tot g B, in contact (Eqs. 16 and 24).
+
+        Eq. 16 has D on both sides of the inequality; here both stand on the left.
+        """
+        moment = self.arm @ self.free(y, a) + self.structure.l0r * a
+        if self.complete:
+            moment = moment - GRAVITY * self.structure.effective_mass @ self.modal(y)[0]
+        return moment
+
+    def side_wanted(self, y: Vector, a: float) -> int:
+        """Side on which the base lifts at once, else 0."""
+        moment = self.overturning(y, a)
+        return 0 if abs(moment) <= self.resisting else -int(np.sign(moment))
+
+    def inertia(self, d: Vector, side: int) -> float:
+        """Factor of θ'' in its own equation: I_θ, with the masses where they are in the complete model."""
+        p = self.structure
+        if not self.complete:
+            return p.i_theta
+        return p.i_theta + float(p.effective_mass @ (d * d - 2.0 * side * p.half_width * d))
+
+    def accelerations(self, y: Vector, a: float, side: int) -> tuple[float, Vector]:
+        """(θ'', D'') under Eqs. 13 and 14, or 23; in contact (side 0) those of Eq. 15."""
+        p, g = self.structure, GRAVITY
+        d, v = self.modal(y)
+        turn, spin = y[0], y[1]
+        if side == 0:
+            return 0.0, self.free(y, a)
+        if not self.complete:
+            moment = p.l0r * (g * turn - a) - side * self.resisting
+            modes = self.free(y, a)
+        else:
+            m, reach = p.effective_mass, side * p.half_width
+            sin, cos = np.sin(turn), np.cos(turn)
+            # Weight and inertia force act at the centre of mass, which the flexure moves.
+            along, across = p.l0r, side * p.m_tot * p.half_width - m @ d
+            moment = g * (along * sin - across * cos) - a * (along * cos + across * sin)
+            moment -= 2.0 * spin * (v @ (m * (d - reach)))
+            modes = self.free(y, a * cos) + g * sin - spin**2 * (reach - d)
+        # The modal rows say D'' = modes - h* θ''; put into the row of θ:
+        left = self.inertia(d, side) - self.arm @ p.effective_height
+        rotation = (moment - self.arm @ modes) / left
+        return rotation, modes - p.effective_height * rotation
+
+    def field(self, y: Vector, a: float, side: int) -> Vector:
+        """y'."""
+        rotation, modes = self.accelerations(y, a, side)
+        v = self.modal(y)[1]
+        rates = np.empty(self.size)
+        rates[0], rates[1] = (y[1], rotation) if side else (0.0, 0.0)
+        rates[2 : 2 + self.n], rates[2 + self.n : 2 + 2 * self.n] = v, modes
+        if self.bouc_wen is not None:
+            rates[-1] = self.bouc_wen.rate(v[0], y[-1])
+        return rates
+
+    def responses(self, y: Vector) -> Vector:
+        """θ, u_top, base moment and base shear, shape (4,) or (4, instants)."""
+        d = self.modal(y)[0]
+        return self._combined(y[0], d, self.restoring(d, y))
+
+    def response_rates(self, y: Vector) -> Vector:
+        """Their derivatives in time; no acceleration enters them."""
+        v = self.modal(y)[1]
+        stiffness = self.structure.omega**2
+        if self.bouc_wen is None:
+            force = (stiffness * v.T).T
+        else:
+            force = self.bouc_wen.force(stiffness[0], v, self.bouc_wen.rate(v, y[-1:]))
+        return self._combined(y[1], v, force)
+
+    def _combined(self, turn: Vector, d: Vector, force: Vector) -> Vector:
+        p = self.structure
+        return np.stack([turn, p.top_ordinate @ d, self.arm @ force, p.effective_mass @ force])
+
+    def ground_forces(self, y: Vector, a: float, side: int) -> tuple[float, float]:
+        """What the ground gives the base: Eq. 21, and Eq. 22 with the weight upward (its sign is a misprint)."""
+        p = self.structure
+        rotation, modes = self.accelerations(y, a, side)
+        d, v = self.modal(y)
+        sin, cos, spin = np.sin(y[0]), np.cos(y[0]), y[1] if side else 0.0
+        m, along, across = p.effective_mass, p.l0r, side * p.m_tot * p.half_width - p.effective_mass @ d
+        along_speed, along_rate = 2.0 * spin * (m @ v), m @ modes
+        horizontal = rotation * (across * sin + along * cos) + spin**2 * (across * cos - along * sin)
+        vertical = rotation * (across * cos - along * sin) - spin**2 * (across * sin + along * cos)
+        return (
+            p.m_tot * a + horizontal + along_rate * cos - along_speed * sin,
+            p.m_tot * GRAVITY + vertical - along_rate * sin - along_speed * cos,
+        )
+
+    def kinetic_energy(self, y: Vector, side: int) -> float:
+        """Eq. 6 (complete), or the energy of which Eq. 23 is the equation of motion."""
+        d, v = self.modal(y)
+        m = self.structure.effective_mass
+        return 0.5 * self.inertia(d, side) * y[1] ** 2 + y[1] * (self.arm @ v) + 0.5 * m @ (v * v)
+
+    def potential_energy(self, y: Vector, side: int) -> float:
+        """Eq. 8 without shaking, zero at rest; elastic structures alone."""
+        p = self.structure
+        d = self.modal(y)[0]
+        strain = 0.5 * p.effective_mass @ (p.omega * d) ** 2
+        if not self.complete:
+            return strain + side * self.resisting * y[0] - 0.5 * p.l0r * GRAVITY * y[0] ** 2
+        across = side * p.m_tot * p.half_width - p.effective_mass @ d
+        return strain + GRAVITY * (across * np.sin(y[0]) - 2.0 * p.l0r * np.sin(0.5 * y[0]) ** 2)

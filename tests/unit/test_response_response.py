@@ -1,0 +1,232 @@
+"""What a response is: peaks and counts, and its history's quantities where it has a history."""
+
+import copy
+import json
+import pickle
+import subprocess
+import sys
+from dataclasses import fields
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockflex import (
+    EnergyLedger,
+    FloorPeaks,
+    Frame,
+    GroundMotion,
+    History,
+    InitialState,
+    InputError,
+    Response,
+    load_suite,
+    quiet_motion,
+    simulate,
+)
+from rockflex.models import Model
+from rockflex.response import respond
+from rockflex.solve import Solution
+
+MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
+FRAME = Frame(
+    n_stories=4,
+    story_height=3.0,
+    story_mass=40e3,
+    base_mass=60e3,
+    stiffness_ratio=0.125,
+    period=0.5,
+    aspect_ratio=8.0,
+    damping_ratio=0.03,
+)
+QUANTITIES = (
+    "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
+    "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
+    "floor_acceleration", "energy",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def response():
+    return simulate(FRAME, MOTION, free_vibration=1.0)
+
+
+@pytest.fixture(scope="module")
+def peaks_only():
+    return simulate(FRAME, MOTION, output="peaks")
+
+
+def test_a_response_has_the_quantities_of_its_history(response):
+    for name in QUANTITIES:
+        assert getattr(response, name) is getattr(response.history, name) or np.array_equal(
+            getattr(response, name), getattr(response.history, name)
+        )
+    assert response.energy is response.energy
+    assert isinstance(response.energy, EnergyLedger)
+    assert repr(response).startswith("Response(MDOF-S under 'El Centro': rocking, θ_max=")
+
+
+def test_no_quantity_is_forgotten():
+    """Every public property of a history, with its documentation, completed by editors and named in the docstring."""
+    public = {
+        name
+        for name, kind in vars(History).items()
+        if isinstance(kind, property | cached_property) and not name.startswith("_")
+    }
+    assert public == set(QUANTITIES)
+    for name in QUANTITIES:
+        assert name in dir(Response)
+        assert getattr(Response, name).__doc__ == getattr(History, name).__doc__
+        assert f"`{name}`" in Response.__doc__
+
+
+def test_nothing_else_is_an_attribute(response):
+    for name in ("nothing", "_private", "nodes", "__array__"):
+        with pytest.raises(AttributeError, match=f"'Response' object has no attribute '{name}'"):
+            getattr(response, name)
+    for name in ("max_rotation", "rotation"):
+        with pytest.raises(AttributeError):
+            setattr(response, name, 0.0)
+
+
+def test_copies_are_whole(response, peaks_only):
+    for run in (response, peaks_only):
+        for twin in (copy.copy(run), copy.deepcopy(run), pickle.loads(pickle.dumps(run))):
+            assert twin.peaks() == run.peaks()
+            assert hasattr(twin, "rotation") == hasattr(run, "rotation")
+            if run.history is not None:
+                assert np.array_equal(twin.history.nodes, run.history.nodes)
+
+
+def test_floor_peaks_are_read_only(response):
+    for each in (response.floors, copy.deepcopy(response.floors), pickle.loads(pickle.dumps(response.floors))):
+        for field in fields(FloorPeaks):
+            values = getattr(each, field.name)
+            assert np.array_equal(values, getattr(response.floors, field.name))
+            with pytest.raises(ValueError, match="read-only"):
+                values[0] = 0.0
+
+
+@pytest.mark.parametrize(
+    ("peaks", "text"),
+    [
+        (([1.0, 2.0], [1.0, 2.0], [1.0]), r"story_drift, story_shear, floor_acceleration have the sizes \[2, 2, 1\]"),
+        (([1.0], [np.nan], [1.0]), "story_shear must be finite"),
+        (([[1.0]], [1.0], [1.0]), "story_drift must be one-dimensional"),
+    ],
+)
+def test_floor_peaks_that_do_not_fit(peaks, text):
+    with pytest.raises(InputError, match=text):
+        FloorPeaks(*peaks)
+
+
+def test_peaks_are_a_row_of_a_table(response):
+    row = response.peaks()
+    assert json.loads(json.dumps(row)) == row
+    assert set(row) >= {"model", "motion", "status", "max_rotation", "n_impacts", "end_time", "settled"}
+    assert all(getattr(response, name) == value for name, value in row.items())
+
+
+def test_peaks_alone_have_no_history(peaks_only):
+    assert peaks_only.history is None
+    assert peaks_only.floors is None
+    for name in QUANTITIES:
+        assert not hasattr(peaks_only, name)
+        assert getattr(peaks_only, name, None) is None
+        text = f'This response keeps peaks only, so it has no {name}. Simulate with output="history".'
+        for kind in (InputError, AttributeError):
+            with pytest.raises(kind) as caught:
+                getattr(peaks_only, name)
+            assert str(caught.value) == text
+
+
+def test_tables_hold_responses(response, peaks_only):
+    table = pd.DataFrame({"run": [response, peaks_only]})
+    assert str(table).count("Response(MDOF-S") == 2
+    assert table["run"].map(lambda run: hasattr(run, "rotation")).tolist() == [True, False]
+    assert table.copy(deep=True)["run"][1] is peaks_only
+
+
+def test_type_checkers_know_the_quantities(tmp_path):
+    path = tmp_path / "user.py"
+    path.write_text(
+        "from typing import assert_type\n"
+        "import numpy as np\n"
+        "from numpy.typing import NDArray\n"
+        "import rockflex as rf\n"
+        "def use(run: rf.Response) -> None:\n"
+        + "".join(f"    assert_type(run.{name}, NDArray[np.float64])\n" for name in QUANTITIES if name != "energy")
+        + "    assert_type(run.energy, rf.EnergyLedger)\n"
+    )
+    checker = Path(sys.executable).with_name("basedpyright")
+    done = subprocess.run(
+        [checker, "--pythonpath", sys.executable, path], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert "0 errors" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 0
+
+
+def test_nominal_overturning_is_a_flag_of_its_own():
+    for factor in (1.0, 8.0):
+        run = simulate(FRAME, MOTION.scaled(factor), output="peaks")
+        limit = 0.7 * np.arctan(1.0 / 8.0)
+        assert run.nominal_overturning == (run.max_rotation > limit)
+    assert run.nominal_overturning
+
+
+def solution(**changes):
+    given = {
+        "overturned": False,
+        "settled": False,
+        "end_time": 1.0,
+        "peaks": np.zeros(4),
+        "peak_times": np.zeros(4),
+        "n_uplifts": 0,
+        "n_impacts": 0,
+        "nodes": None,
+    }
+    return Solution(**{**given, **changes})
+
+
+@pytest.mark.parametrize(
+    ("changes", "status"),
+    [
+        ({}, "no_uplift"),
+        ({"peaks": np.array([0.0, 1.0, 2.0, 3.0])}, "no_uplift"),
+        ({"n_uplifts": 1}, "rocking"),
+        ({"n_impacts": 1}, "rocking"),
+        ({"peaks": np.array([1e-9, 0.0, 0.0, 0.0])}, "rocking"),
+        ({"n_uplifts": 1, "overturned": True}, "overturned"),
+    ],
+)
+def test_status(changes, status):
+    assert respond(Model().of(FRAME.rocking()), "", solution(**changes)).status == status
+
+
+def test_peaks_of_the_solver_are_named_in_their_order():
+    peaks, times = np.arange(4.0 + 3 * 4), 0.1 * np.arange(16.0)
+    run = respond(Model().of(FRAME.rocking()), "one", solution(peaks=peaks, peak_times=times))
+    found = [run.max_rotation, run.max_top_displacement, run.max_base_moment, run.max_base_shear]
+    assert found == peaks[:4].tolist()
+    found = [
+        run.time_of_max_rotation,
+        run.time_of_max_top_displacement,
+        run.time_of_max_base_moment,
+        run.time_of_max_base_shear,
+    ]
+    assert found == times[:4].tolist()
+    assert run.floors.story_drift.tolist() == [4, 5, 6, 7]
+    assert run.floors.story_shear.tolist() == [8, 9, 10, 11]
+    assert run.floors.floor_acceleration.tolist() == [12, 13, 14, 15]
+    for changes in ({"peaks": peaks[:3], "peak_times": times}, {"peaks": peaks, "peak_times": times[:3]}):
+        with pytest.raises(ValueError, match="shorter"):
+            respond(Model().of(FRAME.rocking()), "one", solution(**changes))
+
+
+def test_a_start_off_the_ground_is_no_uplift():
+    """It counts as rocking, and the base may come back once more often than it left."""
+    run = simulate(FRAME, quiet_motion(20.0, dt=0.01), "2DOF-S", initial=InitialState(rotation=0.01))
+    assert run.status == "rocking"
+    assert run.n_impacts == run.n_uplifts + 1
