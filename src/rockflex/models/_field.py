@@ -54,8 +54,11 @@ def inertia_left(field: Field, side: float, motion: Array) -> float:
 
 
 @kernel
-def field_rates(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> None:
-    """Rates of the motion on one side (0: in contact) under one ground acceleration."""
+def field_rates(field: Field, side: float, branch: float, acceleration: float, motion: Array, rates: Array) -> None:
+    """Rates of the motion on one side (0: in contact) under one ground acceleration.
+
+    `branch` is the sign of D'_1 that the hysteresis goes by, so that its law is smooth until it has turned.
+    """
     n = field.omega2.size
     theta, spin = motion[2 * n], motion[2 * n + 1]
     sine, cosine = 0.0, 1.0
@@ -74,7 +77,7 @@ def field_rates(field: Field, side: float, acceleration: float, motion: Array, r
             slip = field.omega2[i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
             restoring += slip
             rates[2 * n + 5] = field.mass[i] * slip * v
-            rates[2 * n + 2] = hysteresis(field, v, motion[2 * n + 2])
+            rates[2 * n + 2] = hysteresis(field, branch, v, motion[2 * n + 2])
         rest = -restoring - drag - acceleration * cosine
         if side != 0.0 and field.complete:
             rest += field.gravity * sine - spin * spin * (offset - d)
@@ -106,8 +109,8 @@ def field_rates(field: Field, side: float, acceleration: float, motion: Array, r
 
 
 @kernel
-def hysteresis(field: Field, velocity: float, z: float) -> float:
-    """Z' of Eq. 38."""
+def hysteresis(field: Field, branch: float, velocity: float, z: float) -> float:
+    """Rate of z (Eq. 38), with `branch` D' for |D'|."""
     if field.whole > 0:
         power, factor, left = 1.0, abs(z), field.whole
         while left > 0:
@@ -118,5 +121,5 @@ def hysteresis(field: Field, velocity: float, z: float) -> float:
     else:
         power = math.pow(abs(z), field.exponent)
     # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z.
-    turn = power * abs(velocity) if z >= 0.0 else -power * abs(velocity)
+    turn = branch * velocity * (power if z >= 0.0 else -power)
     return (velocity - field.gamma * turn - field.beta * velocity * power) / field.yield_displacement

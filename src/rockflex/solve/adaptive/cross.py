@@ -89,6 +89,7 @@ def cross(
             polys = stages.polys
             extend(flow, side, here, slope, step, stages)
             row_poly(GUARD, flow.rows[phase, GUARD], here, slope, side, step, stages)
+        stages.known[0] = False  # unless the step is taken whole, below
         tips, next_side = np.inf, 0.0
         if side != 0.0:
             if start >= LIFTED:
@@ -140,6 +141,7 @@ def cross(
             advance(room.series, stop, step, room.state)
         elif stop == 1.0:
             step_over(stages)
+            stages.known[0] = True
         else:
             settle_on(stop, stages)
             if turns:
@@ -193,7 +195,7 @@ def land(flow: Flow, side: float, acceleration: float, stages: Stages) -> tuple[
         next_side = 1.0 if spin > 0.0 else -1.0
         if energy_of_motion(flow, next_side, motion) > before * (1.0 + GAIN):
             return GAINED, side
-        field_rates(flow.field, next_side, acceleration, motion, stages.rates[0])
+        field_rates(flow.field, next_side, 1.0, acceleration, motion, stages.rates[0])
         back = -next_side * stages.rates[0, 2 * n + 1]
         if 2.0 * abs(spin) < back * flow.impact.shortest:
             stick(flow.impact, motion)
@@ -214,13 +216,15 @@ def energy_of_motion(flow: Flow, side: float, motion: Array) -> float:
 def turning(flow: Flow, stages: Stages) -> float:
     """Where the velocity of the hysteretic spring changes its sign, and its law its branch; inf where it does not."""
     n = flow.field.omega2.size  # the place of D'_1
-    before, after = stages.motion[n], stages.trial[n]
-    if before * after >= 0.0:
+    if stages.branch[0] * stages.trial[n] >= 0.0:
         return np.inf
     work = stages.polys.shape[0] - 1
-    sign = 1.0 if before > 0.0 else -1.0
     for j in range(TERMS - 1):
-        stages.polys[work, j] = sign * stages.bends[j, n]
+        stages.polys[work, j] = stages.branch[0] * stages.bends[j, n]
     expand_nested(stages.polys, work)
-    stages.polys[work, 0] = abs(before)
+    stages.polys[work, 0] = abs(stages.motion[n])
+    if stages.motion[n] == 0.0:  # it has just turned; that zero is divided out
+        for k in range(TERMS - 1):
+            stages.polys[work, k] = stages.polys[work, k + 1]
+        stages.polys[work, TERMS - 1] = 0.0
     return first_descent(stages.polys, work, 0.0, 1.0)

@@ -25,7 +25,7 @@ def nothing_hides(
     phase = ROCKING if side != 0.0 else CONTACT
     n = flow.rows.shape[2] - 2
     modes = flow.field.omega2.size
-    if flow.field.hysteretic and room.motion[modes] * room.trial[modes] < 0.0:
+    if flow.field.hysteretic and room.branch[0] * room.trial[modes] < 0.0:
         return False
     for f in range(log.peaks.size):
         first = flow.rows[phase, f, n] * acceleration + flow.rows[phase, f, n + 1] * side

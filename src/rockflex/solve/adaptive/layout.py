@@ -7,6 +7,7 @@ The motion is that of `Field`: [D.., D'.., θ, θ', z, E_damped, E_input, E_hyst
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex.models import EXTRA, Field, Impact
 from rockflex.solve.adaptive.tableau import STAGES
@@ -39,6 +40,8 @@ class Stages(NamedTuple):
     polys: Array  # (F + 1, 8)
     ends: Array  # (F,): the rows at the end of the step
     step: Array  # (1,): length that the error control proposes
+    branch: Array  # (1,): sign of the hysteretic spring's velocity
+    known: NDArray[np.bool_]  # (1,): whether the first stage is the last one of the step before
     size: Array  # (2N + 3,): largest magnitude of each component so far
 
 
@@ -53,5 +56,7 @@ def stages(motion: Array, rows: int) -> Stages:
         np.zeros((rows + 1, TERMS)),
         np.zeros(rows),
         np.full(1, np.inf),
+        np.ones(1),
+        np.zeros(1, dtype=np.bool_),
         np.zeros(n - EXTRA + 1),
     )

@@ -43,6 +43,7 @@ def run(
                 return SETTLED, offset, count
         if piece[0] != last:  # the start, or a jump of the acceleration at the record's end
             count = append(nodes, count, offset * dt, side, piece[0], stages.motion)
+            stages.known[0] = False
             raise_to_motion(flow, side, piece[0], offset * dt, log, stages)
         status, reached, side, count = cross_piece(
             system, flow, piece, dt, offset, side, log, room, stages, nodes, count

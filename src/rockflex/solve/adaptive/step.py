@@ -5,14 +5,15 @@ import numpy as np
 from rockflex._kernel import kernel
 from rockflex.models import field_rates
 from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
-from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, A, C
+from rockflex.solve.adaptive.sums import place_stage
+from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.exact.layout import Array
 
 __all__ = ["FAILED", "expand_nested", "extend", "row_poly", "settle_on", "step_over", "take_step"]
 
 SHORTEST = 1e-13  # s: a step this short means that the motion cannot be followed
 FAILED = -1.0
-SAFETY, LEAST, MOST = 0.9, 0.2, 8.0  # of the error control
+SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 
 @kernel
@@ -21,27 +22,26 @@ def take_step(flow: Flow, side: float, acceleration: float, slope: float, longes
 
     `room.trial` holds the end of the step, `room.rates` the stages up to it.
     """
-    n = room.motion.size
     step = min(room.step[0], longest)
-    field_rates(flow.field, side, acceleration, room.motion, room.rates[0])
+    if not room.known[0]:
+        if flow.field.hysteretic:
+            choose_branch(flow, side, acceleration, room)
+        field_rates(flow.field, side, room.branch[0], acceleration, room.motion, room.rates[0])
+    room.known[0] = True
+    most = MOST
     while True:
         for stage in range(1, LAST + 1):
-            for i in range(n):
-                room.trial[i] = 0.0
-            for k in range(stage):
-                weight = A[stage, k]
-                if weight != 0.0:
-                    for i in range(n):
-                        room.trial[i] += weight * room.rates[k, i]
-            for i in range(n):
-                room.trial[i] = room.motion[i] + step * room.trial[i]
-            field_rates(flow.field, side, acceleration + slope * step * C[stage], room.trial, room.rates[stage])
+            place_stage(stage, step, room.motion, room.rates, room.trial)
+            field_rates(
+                flow.field, side, room.branch[0], acceleration + slope * step * C[stage], room.trial, room.rates[stage]
+            )
         error = error_of(flow, step, room)
         if error <= 1.0:
-            grown = step * min(MOST, SAFETY * error**-0.125 if error > 0.0 else MOST)
+            grown = step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
             # A step cut short by a sample or an event says little about the next one.
             room.step[0] = grown if step < longest else max(grown, room.step[0])
             return step
+        most = 1.0
         shrunk = max(LEAST, SAFETY * error**-0.125) if error < np.inf else LEAST
         step *= shrunk
         room.step[0] = step
@@ -50,12 +50,23 @@ def take_step(flow: Flow, side: float, acceleration: float, slope: float, longes
 
 
 @kernel
+def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) -> None:
+    """Set the branch of the hysteresis by the sign of the velocity, or where it is zero, of what it will be."""
+    n = flow.field.omega2.size
+    velocity = room.motion[n]
+    if velocity == 0.0:
+        field_rates(flow.field, side, 1.0, acceleration, room.motion, room.rates[0])
+        velocity = room.rates[0, n]
+    room.branch[0] = 1.0 if velocity >= 0.0 else -1.0
+
+
+@kernel
 def error_of(flow: Flow, step: float, room: Stages) -> float:
     """Norm of the step's error over what is tolerated; infinite where the step left all numbers."""
     fifth = third = 0.0
     for i in range(flow.scale.size):
-        coarse = fine = 0.0
-        for k in range(LAST + 1):
+        coarse, fine = ERROR_3[0] * room.rates[0, i], ERROR_5[0] * room.rates[0, i]
+        for k in range(5, LAST):
             coarse += ERROR_3[k] * room.rates[k, i]
             fine += ERROR_5[k] * room.rates[k, i]
         size = max(room.size[i], abs(room.motion[i]), abs(room.trial[i]), flow.scale[i])
@@ -72,16 +83,10 @@ def extend(flow: Flow, side: float, acceleration: float, slope: float, step: flo
     """Fill `room.bends`, the continuous extension of the step just taken."""
     n = room.motion.size
     for stage in range(LAST + 1, STAGES):
-        for i in range(n):
-            room.bends[0, i] = 0.0
-        for k in range(stage):
-            weight = A[stage, k]
-            if weight != 0.0:
-                for i in range(n):
-                    room.bends[0, i] += weight * room.rates[k, i]
-        for i in range(n):
-            room.bends[0, i] = room.motion[i] + step * room.bends[0, i]
-        field_rates(flow.field, side, acceleration + slope * step * C[stage], room.bends[0], room.rates[stage])
+        place_stage(stage, step, room.motion, room.rates, room.bends[0])
+        field_rates(
+            flow.field, side, room.branch[0], acceleration + slope * step * C[stage], room.bends[0], room.rates[stage]
+        )
     for i in range(n):
         rise = room.trial[i] - room.motion[i]
         room.bends[0, i] = rise
@@ -89,12 +94,10 @@ def extend(flow: Flow, side: float, acceleration: float, slope: float, step: flo
         room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
     for j in range(4):
         for i in range(n):
-            room.bends[3 + j, i] = 0.0
-        for k in range(STAGES):
-            weight = DENSE[j, k]
-            if weight != 0.0:
-                for i in range(n):
-                    room.bends[3 + j, i] += step * weight * room.rates[k, i]
+            total = DENSE[j, 0] * room.rates[0, i]
+            for k in range(5, STAGES):
+                total += DENSE[j, k] * room.rates[k, i]
+            room.bends[3 + j, i] = step * total
 
 
 @kernel
@@ -102,6 +105,7 @@ def step_over(room: Stages) -> None:
     """Put the motion at the end of the step in place of that at its start."""
     for i in range(room.motion.size):
         room.motion[i] = room.trial[i]
+        room.rates[0, i] = room.rates[LAST, i]
     for i in range(room.size.size):
         room.size[i] = max(room.size[i], abs(room.motion[i]))
 
