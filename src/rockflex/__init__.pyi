@@ -5,7 +5,12 @@ from .modal import ModalProperties as ModalProperties
 from .modal import RockingProperties as RockingProperties
 from .modal import modal_properties as modal_properties
 from .modal import rocking_properties as rocking_properties
+from .models import BoucWen as BoucWen
+from .models import ImpactLaw as ImpactLaw
 from .models import Model as Model
+from .models import Restitution as Restitution
+from .models import VVELComplete as VVELComplete
+from .models import VVELSimplified as VVELSimplified
 from .motion import GroundMotion as GroundMotion
 from .motion import RecordInfo as RecordInfo
 from .motion import Suite as Suite

@@ -120,15 +120,15 @@ SHORT = {
     ),
     "2DOF-S-BW": (
         {"n_modes": 1},
-        {"complete": False, "law": impact_laws.SimplifiedVVEL(), "bouc_wen": BoucWen(0.02)},
+        {"complete": False, "law": impact_laws.SimplifiedVVEL(), "bouc_wen": BoucWen(0.025)},
         "2DOF-S-BW",
-        {"bouc_wen": ("BoucWen", (0.02,))},
+        {"bouc_wen": ("BoucWen", (0.025,))},
     ),
     "2DOF-C-yielding": (
         {"n_modes": 1},
-        {"bouc_wen": BoucWen(0.015, 0.05, 0.7, 0.3, 2.0)},
+        {"bouc_wen": BoucWen(0.025, 0.05, 0.7, 0.3, 2.0)},
         "2DOF-C",
-        {"bouc_wen": ("BoucWen", (0.015, 0.05, 0.7, 0.3, 2.0))},
+        {"bouc_wen": ("BoucWen", (0.025, 0.05, 0.7, 0.3, 2.0))},
     ),
     "fixed-yielding": (
         {"n_modes": 1},

@@ -9,14 +9,18 @@ import pytest
 import sympy as sp
 
 from rockflex import RockingProperties
+from rockflex.models import EXTRA, NonlinearModel, field_rates
 from twins.complete_model import CompleteModel, Structure
 from twins.lagrange import GRAVITY, GROUND, derived, lumped, orthogonal
 
 
 def right_hand_side(properties, side, a, state):
     """(D'', θ'') of the complete model from [D, D', θ, θ'] on a side: what is under test."""
-    turn, modes = twin(properties).accelerations(np.roll(state, 2), a, side)
-    return modes, turn
+    motion = np.concatenate([state, np.zeros(EXTRA)])
+    rates = np.empty_like(motion)
+    field_rates(NonlinearModel("MDOF-C", properties).field(), float(side), 1.0, a, motion, rates)
+    n = properties.n_modes
+    return rates[n : 2 * n], rates[2 * n + 1]
 
 
 def ground_forces(properties, side, a, state):

@@ -7,7 +7,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import damping_ratios, finite_vector, mode_count, positive
+from rockflex._checks import damping_ratios, finite_vector, positive, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal._floors import FloorModes
@@ -25,7 +25,8 @@ _OVERTURNING_SHARE = 0.7
 class RockingProperties:
     """The parameters of a rocking structure with n modes (Silva & Stojadinović 2024, Table 2).
 
-    They hold for any structure, and can be filled by hand from the output of any finite element program.
+    They hold for any structure, and can be filled by hand from the output of any finite element program. With no modes
+    at all they are those of a rigid block.
     Sequences become read-only arrays. Two of them compare equal only if they are the same object.
 
     Attributes
@@ -119,11 +120,12 @@ class RockingProperties:
 
     @property
     def nominal_overturning_rotation(self) -> float:
-        """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3)."""
-        return _OVERTURNING_SHARE * math.atan2(self.half_width, self.effective_height[0])
+        """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3); of a rigid block with L_0^r/m_tot."""
+        height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
+        return _OVERTURNING_SHARE * math.atan2(self.half_width, height)
 
     def truncated(self, n_modes: SupportsIndex) -> "RockingProperties":
-        """Return the same structure with its first `n_modes` modes alone, as a surrogate model has it.
+        """Return the same structure with its first `n_modes` modes alone, as a surrogate model has it; 0: rigid.
 
         I_θ, L_0^r, m_tot and Σ m_i h_i² belong to the structure and stay as they are (Section 2.3).
 
@@ -132,7 +134,7 @@ class RockingProperties:
         InputError
             If there are not as many modes.
         """
-        k = mode_count(n_modes, self.n_modes)
+        k = whole_number("n_modes", n_modes, 0, self.n_modes)
         if k == self.n_modes:
             return self
         return replace(
@@ -142,21 +144,18 @@ class RockingProperties:
             effective_height=self.effective_height[:k],
             top_ordinate=self.top_ordinate[:k],
             zeta=self.zeta[:k],
-            floors=None if self.floors is None else self.floors.truncated(k),
+            floors=None if self.floors is None or k == 0 else self.floors.truncated(k),
         )
 
 
 def _check_modes(modes: dict[str, Float]) -> None:
     omega, effective_mass = modes["omega"], modes["effective_mass"]
-    if omega.size == 0:
-        message = "omega must hold at least one mode, but none was given."
-        raise InputError(message)
     for name, values in modes.items():
         if values.size != omega.size:
             message = f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given."
             raise InputError(message)
     for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
-        if values.min() <= 0.0:
+        if values.min(initial=np.inf) <= 0.0:
             i = int(np.argmin(values))
             message = (
                 f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. "

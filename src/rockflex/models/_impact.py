@@ -6,7 +6,7 @@ full contact; any other carries the rocking on, to the side of its sign.
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,7 @@ from rockflex._checks import finite, positive
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 
-__all__ = ["ImpactLaw", "Restitution", "VVELComplete", "VVELSimplified", "housner"]
+__all__ = ["ForgottenLaw", "ImpactLaw", "Restitution", "VVELComplete", "VVELSimplified", "housner"]
 
 Array = NDArray[np.float64]
 
@@ -30,8 +30,11 @@ class ImpactLaw(Protocol):
         What the law conserves and what it gives up, in words.
     """
 
-    keeps: ClassVar[str]
-    loses: ClassVar[str]
+    @property
+    def keeps(self) -> str: ...
+
+    @property
+    def loses(self) -> str: ...
 
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
@@ -44,8 +47,8 @@ class ImpactLaw(Protocol):
 class VVELSimplified:
     """Vertical velocity energy loss, mass by mass (Silva & Stojadinović 2024, Eqs. 25 and 32)."""
 
-    keeps: ClassVar[str] = "the horizontal velocity of every mass, as far as the modes can follow"
-    loses: ClassVar[str] = "the rotation: its vertical velocities, and what the modes cannot follow"
+    keeps = "the horizontal velocity of every mass, as far as the modes can follow"
+    loses = "the rotation: its vertical velocities, and what the modes cannot follow"
 
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
@@ -62,8 +65,8 @@ class VVELComplete:
     that is Eq. 29 with the sign that Eq. 25 names, and where all modes are kept the factor is one.
     """
 
-    keeps: ClassVar[str] = "the horizontal kinetic energy of all masses together"
-    loses: ClassVar[str] = "the rotation and its vertical velocities"
+    keeps = "the horizontal kinetic energy of all masses together"
+    loses = "the rotation and its vertical velocities"
 
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
@@ -101,8 +104,8 @@ class Restitution:
     e: float
     shortest_excursion: float = 1e-4
 
-    keeps: ClassVar[str] = "the horizontal velocity of every mass, and a share of the rotation"
-    loses: ClassVar[str] = "the rest of the rotation's energy"
+    keeps = "the horizontal velocity of every mass, and a share of the rotation"
+    loses = "the rest of the rotation's energy"
 
     def __post_init__(self) -> None:
         e = finite("e", self.e, "")
@@ -121,6 +124,29 @@ class Restitution:
         """D'_n + h*_n (1 - e) θ', and e θ'."""
         passed = self.e * rotation_velocity
         return modal_velocity + properties.effective_height * (rotation_velocity - passed), passed
+
+
+@dataclass(frozen=True)
+class ForgottenLaw:
+    """What a saved response remembers of the user's own law: not what it does."""
+
+    description: str
+    keeps: str  # pyright: ignore[reportIncompatibleVariableOverride]
+    loses: str
+
+    def after(
+        self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
+    ) -> tuple[Array, float]:
+        """Cannot be had.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        del properties, modal_velocity, rotation_velocity
+        message = f"The impact law {self.description} was not saved with the response. Give the law itself."
+        raise InputError(message)
 
 
 def housner(properties: RockingProperties) -> Restitution:

@@ -1,19 +1,31 @@
-"""The paper's names of models: "2DOF-S", "3DOF-S", ... "MDOF-S", "fixed", "5DOF-fixed"."""
+"""The paper's names of models: "2DOF-S", ... "MDOF-S", "2DOF-C", "3DOF-C-SI", "fixed", "rigid" and their kin."""
 
 import re
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
+from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
 from rockflex.models._linear import LinearModel
+from rockflex.models._nonlinear import NonlinearModel
 
-__all__ = ["Model", "parse_model"]
+__all__ = ["Model", "RockingModel", "parse_model"]
 
-_PATTERN = re.compile(r"(?:(?P<count>[1-9][0-9]{0,5})|(?P<all>M))DOF-(?P<kind>S|fixed)")
-_EXPECTED = '"2DOF-S", "3DOF-S", ..., "MDOF-S" (all modes), "fixed" (all modes) or "5DOF-fixed"'
+RockingModel = LinearModel | NonlinearModel
+
+_PATTERN = re.compile(
+    r"(?:(?P<count>[1-9][0-9]{0,5})|(?P<all>M))DOF-(?P<kind>S|C|fixed)(?:-(?P<closure>SI|E))?(?P<yields>-BW)?"
+)
+_EXPECTED = (
+    '"2DOF-S", "3DOF-S", ... or "MDOF-S" (all modes); "2DOF-C" or "MDOF-C"; "2DOF-C-SI", "3DOF-C-E", ...; "rigid" or '
+    '"rigid-C"; "fixed" or "5DOF-fixed"; with one mode also "2DOF-S-BW" and its like'
+)
+_SAME = 1e-6  # Σ m* h*² over Σ m_i h_i², for all modes to count as kept
 
 
 @dataclass(frozen=True)
@@ -23,50 +35,135 @@ class Model:
     Parameters
     ----------
     n_modes
-        Number of modes kept; None for all of them.
+        Number of modes kept; None for all of them, 0 for a rigid block.
     lifts
-        Whether the base can lift (Eqs. 23-25) or is fixed (Eq. 15).
+        Whether the base can lift, or is fixed (Eq. 15).
+    complete
+        Eqs. 13, 14 and 16 with large rotations, or the simplified Eqs. 23 and 24.
+    closure
+        Impact of a complete model where no other law is given: ``"SI"`` for Eq. 25, ``"E"`` for Eq. 25's velocities
+        scaled to meet Eq. 19. None for Eqs. 19 and 29 themselves, which need one mode or all of them.
+    yields
+        Whether the label promises a Bouc-Wen superstructure ("2DOF-S-BW").
 
     Raises
     ------
     InputError
-        If `n_modes` is neither None nor a whole number of at least 1, or `lifts` is not a boolean.
+        If a value is of the wrong kind, or the combination makes no model.
     """
 
     n_modes: int | None = None
     lifts: bool = True
+    complete: bool = False
+    closure: Literal["SI", "E"] | None = None
+    yields: bool = False
 
     def __post_init__(self) -> None:
         if self.n_modes is not None:
-            object.__setattr__(self, "n_modes", whole_number("n_modes", self.n_modes, 1))
-        if not isinstance(self.lifts, bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"lifts must be True (the base can lift) or False (it is fixed), but {self.lifts!r} was given."
+            object.__setattr__(self, "n_modes", whole_number("n_modes", self.n_modes, 0))
+        meanings = {
+            "lifts": "True (the base can lift) or False (it is fixed)",
+            "complete": "True (Eqs. 13 and 14) or False (Eq. 23)",
+            "yields": "True (the label ends in -BW) or False",
+        }
+        for name, meaning in meanings.items():
+            value = getattr(self, name)
+            if not isinstance(value, bool | np.bool_):
+                message = f"{name} must be {meaning}, but {value!r} was given."
+                raise InputError(message)
+            object.__setattr__(self, name, bool(value))
+        if self.closure not in (None, "SI", "E"):
+            message = f'closure must be "SI", "E" or None, but {self.closure!r} was given.'
             raise InputError(message)
-        object.__setattr__(self, "lifts", bool(self.lifts))
+        self._check_combination()
+
+    def _check_combination(self) -> None:
+        message = ""
+        if self.closure is not None and not (self.complete and self.lifts and self.n_modes != 0):
+            message = 'The closures "SI" and "E" belong to complete models with modes. Leave closure out.'
+        elif self.complete and not self.lifts:
+            message = "A fixed base has no complete model: its rotation is zero. Leave complete out."
+        elif self.n_modes == 0 and not self.lifts:
+            message = "A rigid block on a fixed base does not move. Keep a mode, or let the base lift."
+        elif self.yields and self.n_modes not in (None, 1):
+            message = f"A Bouc-Wen superstructure has one mode, but {self.n_modes} were asked for. Use 2DOF-S-BW."
+        elif self.complete and self.closure is None and self.n_modes not in (None, 0, 1):
+            k = self.n_modes + 1 if self.n_modes else 0
+            message = (
+                f"{k}DOF-C has no impact law of its own: Eq. 19 is one equation for {self.n_modes} velocities. "
+                f"Use {k}DOF-C-SI (Eq. 25), {k}DOF-C-E (Eq. 25 scaled to meet Eq. 19), or MDOF-C with all modes."
+            )
+        if message:
+            raise InputError(message)
 
     @property
     def label(self) -> str:
         """Name in the paper's manner: degrees of freedom, the rotation counted where the base can lift."""
+        kind = "C" if self.complete else "S"
+        end = (f"-{self.closure}" if self.closure else "") + ("-BW" if self.yields else "")
+        if self.n_modes == 0:
+            return "rigid-C" if self.complete else "rigid"
         if self.n_modes is None:
-            return "MDOF-S" if self.lifts else "fixed"
-        return f"{self.n_modes + 1}DOF-S" if self.lifts else f"{self.n_modes}DOF-fixed"
+            return f"MDOF-{kind}{end}" if self.lifts else f"fixed{end}"
+        return f"{self.n_modes + 1}DOF-{kind}{end}" if self.lifts else f"{self.n_modes}DOF-fixed{end}"
 
-    def of(self, properties: RockingProperties) -> LinearModel:
-        """Tie the model to a structure.
+    def of(
+        self, properties: RockingProperties, impact: ImpactLaw | None = None, bouc_wen: BoucWen | None = None
+    ) -> RockingModel:
+        """Tie the model to a structure, with an impact law and a superstructure other than its own if given.
 
         Raises
         ------
         InputError
-            If the structure has fewer modes than the model keeps.
+            If the structure has fewer modes than the model keeps, or the model cannot have what is given.
         """
         if self.n_modes is not None and self.n_modes > properties.n_modes:
+            whole = Model(None, self.lifts, self.complete, self.closure, self.yields).label
             message = (
                 f"Model {self.label} needs {self.n_modes} modes, but the structure has {properties.n_modes}. "
-                f"Give more modes, or use {Model(None, self.lifts).label} for all there are."
+                f"Give more modes, or use {whole} for all there are."
             )
             raise InputError(message)
+        if self.n_modes is None and properties.n_modes == 0:
+            message = f'Model {self.label} needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".'
+            raise InputError(message)
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
-        return LinearModel(self.label, kept, self.lifts)
+        label = self._check_yielding(kept, bouc_wen)
+        law = impact if impact is not None else self._law(kept)
+        if self.complete or bouc_wen is not None:
+            return NonlinearModel(label, kept, self.lifts, law, self.complete, bouc_wen)
+        return LinearModel(label, kept, self.lifts, law)
+
+    def _check_yielding(self, kept: RockingProperties, bouc_wen: BoucWen | None) -> str:
+        """The label with its -BW."""
+        if bouc_wen is None:
+            if self.yields:
+                message = f"{self.label} needs its hysteresis. Give bouc_wen=BoucWen(yield_displacement=...)."
+                raise InputError(message)
+            return self.label
+        if kept.n_modes != 1:
+            one = "2DOF-S" if self.lifts else "1DOF-fixed"
+            message = (
+                f"bouc_wen goes with models of one mode, but {self.label} has {kept.n_modes}. Use {one}, or leave "
+                "it out."
+            )
+            raise InputError(message)
+        return self.label if self.yields else f"{self.label}-BW"
+
+    def _law(self, kept: RockingProperties) -> ImpactLaw:
+        """The model's own impact law."""
+        if self.n_modes == 0 and self.lifts:
+            return housner(kept)
+        if not self.complete or self.closure == "SI":
+            return VVELSimplified()
+        modal_inertia = float(kept.effective_mass @ kept.effective_height**2)
+        if self.closure is None and kept.n_modes > 1 and modal_inertia < (1.0 - _SAME) * kept.translational_inertia:
+            message = (
+                f"{self.label} needs all modes, but those given carry {modal_inertia / kept.translational_inertia:.2%} "
+                "of Σ m_i h_i²: Eq. 19 is one equation for many velocities. Use MDOF-C-SI or MDOF-C-E."
+            )
+            raise InputError(message)
+        return VVELComplete()
 
 
 def parse_model(model: str | Model) -> Model:
@@ -79,15 +176,19 @@ def parse_model(model: str | Model) -> Model:
     """
     if isinstance(model, Model):
         return model
-    if model == "fixed":
-        return Model(lifts=False)
+    named = {"fixed": Model(lifts=False), "rigid": Model(0), "rigid-C": Model(0, complete=True)}
     found = _PATTERN.fullmatch(model) if isinstance(model, str) else None  # pyright: ignore[reportUnnecessaryIsInstance]
-    if found and not (found["all"] and found["kind"] == "fixed"):
-        lifts = found["kind"] == "S"
-        if found["all"]:
-            return Model()
-        n_modes = int(found["count"]) - lifts
-        if n_modes >= 1:
-            return Model(n_modes, lifts)
-    message = f"Unknown model {model!r}. Expected {_EXPECTED}, or a Model."
-    raise InputError(message)
+    if found is None:
+        if isinstance(model, str) and model in named:  # pyright: ignore[reportUnnecessaryIsInstance]
+            return named[model]
+        message = f"Unknown model {model!r}. Expected {_EXPECTED}, or a Model."
+        raise InputError(message)
+    lifts, complete = found["kind"] != "fixed", found["kind"] == "C"
+    closures: dict[str | None, Literal["SI", "E"] | None] = {"SI": "SI", "E": "E"}
+    closure = closures.get(found["closure"])
+    n_modes = None if found["all"] else int(found["count"]) - lifts
+    odd = (found["all"] and not lifts) or n_modes == 0 or (closure is not None and not complete)
+    if odd:
+        message = f"Unknown model {model!r}. Expected {_EXPECTED}, or a Model."
+        raise InputError(message)
+    return Model(n_modes, lifts, complete, closure, found["yields"] is not None)

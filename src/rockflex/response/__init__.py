@@ -3,7 +3,12 @@
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
-from rockflex.response._observables import Observables, floor_observables, global_observables
+from rockflex.response._observables import (
+    Observables,
+    elastic_observables,
+    floor_observables,
+    global_observables,
+)
 from rockflex.response._response import PEAKS, Response, respond
 
 __all__ = [
@@ -13,6 +18,7 @@ __all__ = [
     "History",
     "Observables",
     "Response",
+    "elastic_observables",
     "floor_observables",
     "global_observables",
     "respond",

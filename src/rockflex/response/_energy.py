@@ -1,8 +1,9 @@
-"""The energy ledger of the simplified models (Eqs. 15, 23 and 25).
+"""The energy ledger of a history.
 
-The simplified equations are those of a system with the energy
+The simplified equations (Eqs. 15, 23 and 25) are those of a system with the energy
 ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'² + ½ Σ m* ω² D² + s m_tot g B θ - ½ L_0^r g θ²
-relative to the moving ground, on which the ground does the work -∫ a (L_0^r θ' + Σ m* D') dt.
+relative to the moving ground, on which the ground does the work -∫ a (L_0^r θ' + Σ m* D') dt. The complete ones have
+that of Eqs. 6-8.
 """
 
 import math
@@ -13,10 +14,10 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.models import LinearModel
+from rockflex.models import LinearModel, NonlinearModel, RockingModel
 from rockflex.solve import ExactEngine
 
-__all__ = ["EnergyLedger", "energy_ledger"]
+__all__ = ["EnergyLedger", "energy_ledger", "is_impact"]
 
 Array = NDArray[np.float64]
 
@@ -28,16 +29,20 @@ MOST_PIECES = 10_000  # of an interval: a minute of quadrature for a record of a
 class EnergyLedger:
     """Energies in J at every node of a history, shape (n_nodes,) each, relative to the moving ground; read-only.
 
-    ``kinetic + strain + gravity + damped + lost - input`` keeps its first value; `residual` is what it strays.
+    ``kinetic + strain + gravity + damped + yielded + lost - input`` keeps its first value; `residual` is what it
+    strays.
 
     Parameters
     ----------
     kinetic, strain, gravity
         Energy of motion, of flexure, and of the raised weight (zero in contact).
     damped, input
-        Dissipated by modal damping, and put in by the ground, up to each node: quadratures of the exact states.
+        Dissipated by modal damping, and put in by the ground, up to each node: quadratures of the exact states, or
+        integrated with the motion.
+    yielded
+        Taken up by the hysteretic spring of a Bouc-Wen superstructure, whose `strain` is that of its elastic share.
     lost
-        Lost in the impacts up to each node, by the impact law: ½ θ'² (I_θ - Σ m* h*²) each (Eq. 25).
+        Lost in the impacts up to each node.
     impact_losses
         Loss of each impact, shape (n_impacts,).
     """
@@ -46,6 +51,7 @@ class EnergyLedger:
     strain: Array
     gravity: Array
     damped: Array
+    yielded: Array
     input: Array
     lost: Array
     impact_losses: Array
@@ -53,7 +59,7 @@ class EnergyLedger:
     @property
     def residual(self) -> Array:
         """Energy that the ledger cannot account for at each node, in J."""
-        total = self.kinetic + self.strain + self.gravity + self.damped + self.lost - self.input
+        total = self.kinetic + self.strain + self.gravity + self.damped + self.yielded + self.lost - self.input
         return total - total[0]
 
     @property
@@ -64,7 +70,7 @@ class EnergyLedger:
         return float(np.max(np.abs(self.residual))) / scale if scale > 0.0 else 0.0
 
 
-def energy_ledger(model: LinearModel, nodes: Array) -> EnergyLedger:
+def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
     """Ledger of a history; `nodes` as in `History`.
 
     Raises
@@ -74,20 +80,24 @@ def energy_ledger(model: LinearModel, nodes: Array) -> EnergyLedger:
     """
     p = model.properties
     n = p.n_modes
-    side, d, v = nodes[:, 1], nodes[:, 3 : 3 + n], nodes[:, 3 + n : 3 + 2 * n]
-    rotation, spin = nodes[:, -2], nodes[:, -1]
-    lever = p.effective_mass * p.effective_height
-    kinetic = 0.5 * p.i_theta * spin**2 + spin * (v @ lever) + 0.5 * v**2 @ p.effective_mass
-    impact = np.flatnonzero((side[:-1] != 0.0) & (side[1:] == 0.0))
-    losses = 0.5 * spin[impact] ** 2 * model.free_inertia
+    kinetic, strain, gravity = _stored(model, nodes)
+    impact = np.flatnonzero(is_impact(model, nodes))
+    losses = kinetic[impact] - kinetic[impact + 1]
     lost = np.zeros(nodes.shape[0])
     np.add.at(lost, impact + 1, losses)
-    damped, work = _work(model, nodes)
+    damped, work = _work(model.linear if isinstance(model, NonlinearModel) else model, nodes)
+    yielded = np.zeros(damped.size)
+    if isinstance(model, NonlinearModel):
+        integrated = (nodes[:-1, 1] != 0.0) | (model.bouc_wen is not None)
+        counted = np.diff(nodes[:, 6 + 2 * n : 9 + 2 * n], axis=0)
+        # The counters rest while contact is carried in closed form, and jump to where they were when it ends.
+        damped, work, yielded = np.where(integrated, counted.T, (damped, work, yielded))
     ledger = EnergyLedger(
         kinetic=kinetic,
-        strain=0.5 * d**2 @ (p.effective_mass * p.omega**2),
-        gravity=side * p.resisting_moment * rotation - 0.5 * p.l0r * GRAVITY * rotation**2,
+        strain=strain,
+        gravity=gravity,
         damped=np.concatenate(([0.0], np.cumsum(damped))),
+        yielded=np.concatenate(([0.0], np.cumsum(yielded))),
         input=np.concatenate(([0.0], np.cumsum(work))),
         lost=np.cumsum(lost),
         impact_losses=losses,
@@ -97,10 +107,37 @@ def energy_ledger(model: LinearModel, nodes: Array) -> EnergyLedger:
     return ledger
 
 
+def is_impact(model: RockingModel, nodes: Array) -> NDArray[np.bool_]:
+    """True between the two nodes of every impact, shape (n_nodes - 1,)."""
+    spin = nodes[:, 4 + 2 * model.properties.n_modes]
+    same_time, rocking = nodes[1:, 0] == nodes[:-1, 0], nodes[:-1, 1] != 0.0
+    return same_time & rocking & ((nodes[1:, 1] != nodes[:-1, 1]) | (spin[1:] != spin[:-1]))
+
+
+def _stored(model: RockingModel, nodes: Array) -> tuple[Array, Array, Array]:
+    """Kinetic, strain and gravity energy at every node."""
+    p = model.properties
+    n = p.n_modes
+    side, d, v = nodes[:, 1], nodes[:, 3 : 3 + n], nodes[:, 3 + n : 3 + 2 * n]
+    rotation, spin = nodes[:, 3 + 2 * n], nodes[:, 4 + 2 * n]
+    kinetic = 0.5 * p.i_theta * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
+    kinetic += 0.5 * v**2 @ p.effective_mass
+    share = model.bouc_wen.post_yield_ratio if isinstance(model, NonlinearModel) and model.bouc_wen else 1.0
+    strain = 0.5 * share * d**2 @ (p.effective_mass * p.omega**2)
+    if isinstance(model, NonlinearModel) and model.complete:
+        offset = side * p.half_width
+        displaced = d @ p.effective_mass
+        kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
+        raised = (p.m_tot * offset - displaced) * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
+        return kinetic, strain, GRAVITY * raised
+    return kinetic, strain, side * p.resisting_moment * rotation - 0.5 * p.l0r * GRAVITY * rotation**2
+
+
 def _work(model: LinearModel, nodes: Array) -> tuple[Array, Array]:
     """Energy damped and put in between neighbouring nodes, (n_nodes - 1,) each, by Gauss quadrature."""
     p = model.properties
     n = p.n_modes
+    nodes = nodes[:, : 5 + 2 * n]
     empty = np.zeros((0, 2 * n + 4))
     engine = ExactEngine(model, empty, empty)
     span = np.diff(nodes[:, 0])

@@ -3,15 +3,27 @@
 import io
 import json
 import zipfile
+from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import write_whole
 from rockflex.modal import FloorModes, RockingProperties
-from rockflex.models import LinearModel
+from rockflex.models import (
+    BoucWen,
+    ForgottenLaw,
+    ImpactLaw,
+    LinearModel,
+    NonlinearModel,
+    Restitution,
+    RockingModel,
+    VVELComplete,
+    VVELSimplified,
+)
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
 from rockflex.response._response import PEAKS, Response
@@ -23,6 +35,12 @@ PROPERTIES = (
     "omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width", "zeta",
     "translational_inertia",
 )  # fmt: skip
+LAWS: dict[str, Callable[..., ImpactLaw]] = {
+    "VVELSimplified": VVELSimplified,
+    "VVELComplete": VVELComplete,
+    "Restitution": Restitution,
+    "ForgottenLaw": ForgottenLaw,
+}
 FLOOR_MODES = ("heights", "displacement", "force")
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration")
 
@@ -37,6 +55,10 @@ def save(response: Response, path: Path) -> Path:
     if response.history is not None:
         model = response.history.model
         scalars["lifts"] = model.lifts
+        scalars["law"] = _described(model.law)
+        if isinstance(model, NonlinearModel):
+            scalars["complete"] = model.complete
+            scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
         arrays["nodes"] = response.history.nodes
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
         if model.properties.floors is not None:
@@ -93,10 +115,24 @@ def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
     return scalars[name]
 
 
-def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> LinearModel:
+def _described(law: ImpactLaw) -> dict[str, Any]:
+    """An impact law as JSON; of the user's own, what it says of itself."""
+    name = type(law).__name__
+    if name in LAWS and type(law) is LAWS[name]:
+        return {"law": name, **asdict(cast("Any", law))}
+    return {"law": "ForgottenLaw", "description": repr(law), "keeps": str(law.keeps), "loses": str(law.loses)}
+
+
+def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     values = {name: arrays[f"properties.{name}"] for name in PROPERTIES}
     values = {name: value if value.ndim else float(value) for name, value in values.items()}
     floors = None
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
-    return LinearModel(scalars["model"], RockingProperties(**values, floors=floors), _typed(scalars, "lifts", bool))
+    properties = RockingProperties(**values, floors=floors)
+    lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
+    law = LAWS[parameters.pop("law")](**parameters)
+    if "complete" not in scalars:
+        return LinearModel(scalars["model"], properties, lifts, law)
+    bouc_wen = None if scalars["bouc_wen"] is None else BoucWen(**scalars["bouc_wen"])
+    return NonlinearModel(scalars["model"], properties, lifts, law, _typed(scalars, "complete", bool), bouc_wen)

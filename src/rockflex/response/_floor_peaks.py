@@ -26,7 +26,7 @@ class FloorPeaks:
     story_shear : ndarray, shape (N_floors,)
         Sum of the elastic forces from each floor up, in N.
     floor_acceleration : ndarray, shape (N_floors,)
-        Total horizontal acceleration of each floor, in m/s².
+        Total horizontal acceleration of each floor, in m/s²; of the nonlinear models at samples and events only.
 
     Raises
     ------

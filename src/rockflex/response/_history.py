@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._checks import finite_rows
-from rockflex.models import LinearModel
-from rockflex.response._energy import EnergyLedger, energy_ledger
+from rockflex.models import EXTRA, NonlinearModel, RockingModel
+from rockflex.response._accelerations import accelerations
+from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
+from rockflex.response._floors import floor_histories
 from rockflex.response._missing import MissingQuantityError
-from rockflex.response._observables import floor_observables, global_observables
+from rockflex.response._observables import global_observables
 
 __all__ = ["History"]
 
@@ -29,7 +31,9 @@ class History:
         The model that ran.
     nodes
         Shape (n_nodes, 2N + 5); a row is time (s), side of rocking, ground acceleration (m/s²), D (m), D' (m/s),
-        θ (rad), θ' (rad/s). An event is two rows at the same time. Kept as a copy.
+        θ (rad), θ' (rad/s). An event is two rows at the same time. Nonlinear models have four columns more: z of
+        Eq. 38, and the energies damped, put in and taken up by the hysteretic spring (J), which are known where the
+        motion was integrated. Kept as a copy.
 
     Raises
     ------
@@ -37,11 +41,13 @@ class History:
         If `nodes` has another shape, or a value that is not finite.
     """
 
-    model: LinearModel
+    model: RockingModel
     nodes: Array
 
     def __post_init__(self) -> None:
         columns = 2 * self.model.properties.n_modes + 5
+        if isinstance(self.model, NonlinearModel):
+            columns += EXTRA
         object.__setattr__(self, "nodes", finite_rows("nodes", self.nodes, "SI units", columns))
 
     def __reduce__(self) -> tuple[Callable[..., "History"], tuple[Any, ...]]:
@@ -83,12 +89,29 @@ class History:
     @property
     def rotation(self) -> Array:
         """θ in rad, shape (n_nodes,)."""
-        return self.nodes[:, -2]
+        return self.nodes[:, 3 + 2 * self.model.properties.n_modes]
 
     @property
     def rotation_velocity(self) -> Array:
         """θ' in rad/s, shape (n_nodes,)."""
-        return self.nodes[:, -1]
+        return self.nodes[:, 4 + 2 * self.model.properties.n_modes]
+
+    @property
+    def modal_acceleration(self) -> Array:
+        """D''_n in m/s², shape (n_nodes, N)."""
+        return self._accelerations[:, :-1]
+
+    @property
+    def rotation_acceleration(self) -> Array:
+        """θ'' in rad/s², shape (n_nodes,)."""
+        return self._accelerations[:, -1]
+
+    @property
+    def yielding(self) -> Array:
+        """Z of the Bouc-Wen superstructure (Eq. 38), no unit, shape (n_nodes,); zero where it is elastic."""
+        if not isinstance(self.model, NonlinearModel):
+            return np.zeros(self.nodes.shape[0])
+        return self.nodes[:, 5 + 2 * self.model.properties.n_modes]
 
     @property
     def top_displacement(self) -> Array:
@@ -97,12 +120,12 @@ class History:
 
     @property
     def base_moment(self) -> Array:
-        """M_b = Σ m*_n h*_n ω_n² D_n in N m, shape (n_nodes,)."""
+        """M_b = Σ m*_n h*_n ω_n² D_n (or Eq. 37's force) in N m, shape (n_nodes,)."""
         return self._global[:, 1]
 
     @property
     def base_shear(self) -> Array:
-        """V_b = Σ m*_n ω_n² D_n in N, shape (n_nodes,)."""
+        """V_b = Σ m*_n ω_n² D_n (or Eq. 37's force) in N, shape (n_nodes,)."""
         return self._global[:, 2]
 
     @property
@@ -113,7 +136,7 @@ class History:
     @property
     def impact_times(self) -> Array:
         """Times at which the rotation returned to zero, in s, shape (n_impacts,)."""
-        return self.time[1:][(self.side[:-1] != 0.0) & (self.side[1:] == 0.0)]
+        return self.time[1:][is_impact(self.model, self.nodes)]
 
     @property
     def story_drift(self) -> Array:
@@ -127,7 +150,7 @@ class History:
 
     @property
     def floor_acceleration(self) -> Array:
-        """Total horizontal acceleration a + h θ'' + Σ Γ φ D'' of each floor, in m/s², (n_nodes, N_floors)."""
+        """Total horizontal acceleration of each floor, in m/s², shape (n_nodes, N_floors)."""
         return self._floors[2]
 
     @cached_property
@@ -148,7 +171,13 @@ class History:
         return values
 
     @cached_property
-    def _floors(self) -> list[Array]:
+    def _accelerations(self) -> Array:
+        values = accelerations(self.model, self.nodes)
+        values.setflags(write=False)
+        return values
+
+    @cached_property
+    def _floors(self) -> tuple[Array, Array, Array]:
         floors = self.model.properties.floors
         if floors is None:
             message = (
@@ -156,6 +185,7 @@ class History:
                 "accelerations. Simulate a Frame or a LumpedStructure, or give RockingProperties its floors."
             )
             raise MissingQuantityError(message)
-        values = floor_observables(self.model, floors).evaluate(self.nodes)
-        values.setflags(write=False)
-        return np.split(values, 3, axis=1)
+        histories = floor_histories(self.model, floors, self.nodes)
+        for values in histories:
+            values.setflags(write=False)
+        return histories

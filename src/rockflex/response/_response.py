@@ -7,9 +7,10 @@ from typing import Any, Generic, Self, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.models import LinearModel
+from rockflex.models import LinearModel, RockingModel
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
+from rockflex.response._floors import floor_accelerations
 from rockflex.response._history import History
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._observables import GLOBAL
@@ -47,8 +48,9 @@ class Response:
 
     All peaks are the largest magnitudes of the continuous motion, between samples too. A response that keeps its
     history has the history's quantities as its own: `time`, `side`, `ground_acceleration`, `modal_displacement`,
-    `modal_velocity`, `rotation`, `rotation_velocity`, `top_displacement`, `base_moment`, `base_shear`, `uplift_times`,
-    `impact_times`, `story_drift`, `story_shear`, `floor_acceleration` and `energy`; see `History`. One that keeps peaks
+    `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
+    `top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`, `story_drift`, `story_shear`,
+    `floor_acceleration` and `energy`; see `History`. One that keeps peaks
     only has none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
 
     Parameters
@@ -65,9 +67,9 @@ class Response:
     max_top_displacement, time_of_max_top_displacement
         Largest |u_top| relative to the rotating base in m, and when.
     max_base_moment, time_of_max_base_moment
-        Largest |M_b| of the elastic forces in N m, and when.
+        Largest |M_b| of the elastic forces in N m, and when; zero for a rigid block, which has none.
     max_base_shear, time_of_max_base_shear
-        Largest |V_b| of the elastic forces in N, and when.
+        Largest |V_b| of the elastic forces in N, and when; zero for a rigid block.
     n_uplifts, n_impacts
         How often the base left the ground, and how often it came back, during the run. A start off the ground is no
         uplift, so there may then be one impact more than there are uplifts.
@@ -109,6 +111,9 @@ class Response:
     modal_velocity = _OfHistory[Array]()
     rotation = _OfHistory[Array]()
     rotation_velocity = _OfHistory[Array]()
+    modal_acceleration = _OfHistory[Array]()
+    rotation_acceleration = _OfHistory[Array]()
+    yielding = _OfHistory[Array]()
     top_displacement = _OfHistory[Array]()
     base_moment = _OfHistory[Array]()
     base_shear = _OfHistory[Array]()
@@ -152,13 +157,13 @@ class Response:
 PEAKS = tuple(f.name for f in fields(Response) if f.name not in ("floors", "history"))
 
 
-def respond(model: LinearModel, motion: str, solution: Solution) -> Response:
-    """Name what a solver returned; its rows are those of `global_observables`, then of `floor_observables`."""
+def respond(model: RockingModel, motion: str, solution: Solution) -> Response:
+    """Name what a solver returned; its rows are those of `global_observables`, then of the floors."""
     rotation = float(solution.peaks[0])
     globals_end = 1 + len(GLOBAL)
     floors = None
     if solution.peaks.size > globals_end:
-        floors = FloorPeaks(*np.split(solution.peaks[globals_end:], 3))
+        floors = _floor_peaks(model, solution, solution.peaks[globals_end:])
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0 or rotation > 0.0
     status = "rocking" if left_ground else "no_uplift"
     tracked = slice(1, globals_end)
@@ -180,3 +185,15 @@ def respond(model: LinearModel, motion: str, solution: Solution) -> Response:
         floors=floors,
         history=None if solution.nodes is None else History(model, solution.nodes),
     )
+
+
+def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
+    if isinstance(model, LinearModel):
+        return FloorPeaks(*np.split(peaks, 3))
+    # Accelerations of the nonlinear models are no linear functionals: their largest stands at a sample or an event.
+    floors = model.properties.floors
+    accelerations = np.zeros(0)
+    if floors is not None and solution.nodes is not None:
+        accelerations = np.abs(floor_accelerations(model, floors, solution.nodes)).max(axis=0)
+    drift, shear = np.split(peaks, 2)
+    return FloorPeaks(drift, shear, accelerations)

@@ -8,6 +8,7 @@ from typing import Any, Literal, Protocol, get_args
 from rockflex._checks import real_or_nan
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
+from rockflex.models import BoucWen, ImpactLaw, NonlinearModel, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.study._initial import InitialState
 
@@ -15,7 +16,9 @@ __all__ = [
     "Output",
     "Structure",
     "check_initial",
+    "check_options",
     "check_output",
+    "check_settling",
     "described",
     "factors_of",
     "free_vibration_time",
@@ -89,6 +92,32 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
         )
         raise InputError(message)
     return seconds
+
+
+def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
+    """Raise an InputError unless both are what their names say, or None."""
+    if not isinstance(bouc_wen, BoucWen | None):  # pyright: ignore[reportUnnecessaryIsInstance]
+        message = (
+            f"bouc_wen must be a BoucWen or None, but {bouc_wen!r} was given. Write BoucWen(yield_displacement=...)."
+        )
+        raise InputError(message)
+    if impact is not None and (isinstance(impact, type) or not isinstance(impact, ImpactLaw)):  # pyright: ignore[reportUnnecessaryIsInstance]
+        message = (
+            f"impact must be an impact law, but {described(impact)} was given. Give VVELSimplified(), VVELComplete(), "
+            "Restitution(e), or an object with `keeps`, `loses` and `after(properties, modal_velocity, "
+            "rotation_velocity)`."
+        )
+        raise InputError(message)
+
+
+def check_settling(model: RockingModel, free_vibration: float | None) -> None:
+    """Raise an InputError where a run is to settle and no one can tell when a hysteretic spring has."""
+    if free_vibration is None and isinstance(model, NonlinearModel) and model.bouc_wen is not None:
+        message = (
+            f'free_vibration="settle" cannot tell when the hysteretic spring of {model.label} is at rest. '
+            "Give the free vibration in seconds."
+        )
+        raise InputError(message)
 
 
 def check_initial(initial: InitialState | None) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, within
 from rockflex._errors import InputError
-from rockflex.models import LinearModel
+from rockflex.models import RockingModel
 
 __all__ = ["InitialState"]
 
@@ -65,7 +65,7 @@ class InitialState:
         # Rebuilt on unpickling: NumPy forgets that an array was read-only.
         return InitialState, (self.rotation, self.modal_displacement, self.modal_velocity, self.rotation_velocity)
 
-    def state(self, model: LinearModel) -> Array:
+    def state(self, model: RockingModel) -> Array:
         """State [D.., D'.., θ, θ'] for a model.
 
         Raises

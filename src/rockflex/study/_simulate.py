@@ -4,15 +4,17 @@ from typing import Literal
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import LinearModel, Model, parse_model
+from rockflex.models import BoucWen, ImpactLaw, LinearModel, Model, RockingModel, parse_model
 from rockflex.motion import GroundMotion
-from rockflex.response import Response, floor_observables, global_observables, respond
-from rockflex.solve import ExactEngine
+from rockflex.response import Response, elastic_observables, floor_observables, global_observables, respond
+from rockflex.solve import AdaptiveEngine, Engine, ExactEngine
 from rockflex.study._arguments import (
     Output,
     Structure,
     check_initial,
+    check_options,
     check_output,
+    check_settling,
     described,
     free_vibration_time,
     properties_of,
@@ -28,12 +30,16 @@ def simulate(
     model: str | Model = "MDOF-S",
     output: Output = "history",
     free_vibration: float | Literal["settle"] = 0.0,
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
     initial: InitialState | None = None,
 ) -> Response:
-    """Simulate one structure under one ground motion, exactly.
+    """Simulate one structure under one ground motion.
 
     The simplified models (Silva & Stojadinović 2024, Eqs. 15, 23-25 and 30-32) are carried in closed form; every
-    uplift, impact and peak is found to machine precision, those between samples included.
+    uplift, impact and peak is found to machine precision, those between samples included. The complete models (Eqs.
+    13-16 and 26-29) are carried so in contact, and integrated to some ten digits while they rock, the yielding ones
+    (Eqs. 37-38) throughout.
 
     Parameters
     ----------
@@ -42,7 +48,10 @@ def simulate(
     motion
         The ground motion; linear between samples, and zero in the free vibration after the last one.
     model
-        ``"2DOF-S"``, ``"3DOF-S"``, ... ``"MDOF-S"`` (all modes), ``"fixed"`` or ``"5DOF-fixed"``, or a `Model`.
+        ``"2DOF-S"``, ``"3DOF-S"``, ... ``"MDOF-S"`` (all modes): simplified. ``"2DOF-C"``, ``"MDOF-C"``: complete;
+        with some of several modes ``"3DOF-C-SI"`` (impact by Eq. 25) or ``"3DOF-C-E"`` (scaled to meet Eq. 19).
+        ``"rigid"``, ``"rigid-C"``: the same structure without flexure, and with Housner's impact. ``"fixed"``,
+        ``"5DOF-fixed"``: on a base that cannot lift. Or a `Model`.
     output
         ``"history"`` keeps the state at every sample and event, ``"peaks"`` only the peaks.
     free_vibration
@@ -50,6 +59,11 @@ def simulate(
         or until the base can never lift again nor any peak grow. With zero the run ends at the last sample, where the
         record's last acceleration still acts. Only free vibration takes the ground to rest: if the record ends with an
         acceleration that is not zero, it jumps to zero there, and the history has both sides of the jump.
+    bouc_wen
+        Hysteresis of the superstructure of a model with one mode, "2DOF-S" or "1DOF-fixed" for instance.
+    impact
+        An impact law other than the model's own: `VVELSimplified`, `VVELComplete`, `Restitution`, or any object that
+        is an `ImpactLaw`.
     initial
         The state at t = 0; at rest if None.
 
@@ -66,25 +80,33 @@ def simulate(
         If the run cannot be solved; the message names the time and the state.
     """
     check_output(output)
-    tied = parse_model(model).of(properties_of(structure))
+    check_options(bouc_wen, impact)
+    tied = parse_model(model).of(properties_of(structure), impact, bouc_wen)
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
         raise InputError(message)
     check_initial(initial)
+    free = free_vibration_time(free_vibration)
+    check_settling(tied, free)
     engine = make_engine(tied, output)
     solution = engine.run(
         motion.acceleration,
         motion.dt,
-        free_vibration=free_vibration_time(free_vibration),
+        free_vibration=free,
         state=None if initial is None else initial.state(tied),
         history=output == "history",
     )
     return respond(tied, motion.name, solution)
 
 
-def make_engine(model: LinearModel, output: Output) -> ExactEngine:
+def make_engine(model: RockingModel, output: Output) -> Engine:
     """Engine that tracks the global peaks and, for histories, those of the floors."""
     rows = global_observables(model)
-    if output == "history" and model.properties.floors is not None:
-        rows = rows + floor_observables(model, model.properties.floors)
-    return ExactEngine(model, rows.contact, rows.rocking)
+    floors = model.properties.floors if output == "history" else None
+    if isinstance(model, LinearModel):
+        if floors is not None:
+            rows = rows + floor_observables(model, floors)
+        return ExactEngine(model, rows.contact, rows.rocking)
+    if floors is not None:
+        rows = rows + elastic_observables(model, floors)
+    return AdaptiveEngine(model, rows.contact)

@@ -5,16 +5,18 @@ from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
-from rockflex.models import LinearModel, Model, parse_model
+from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.parallel import map_threads
 from rockflex.response import respond
-from rockflex.solve import ExactEngine
+from rockflex.solve import Engine
 from rockflex.study._arguments import (
     Output,
     Structure,
     check_initial,
+    check_options,
     check_output,
+    check_settling,
     factors_of,
     free_vibration_time,
     is_structure,
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = ["simulate_many"]
 
-Prepared = tuple[LinearModel, ExactEngine]
+Prepared = tuple[RockingModel, Engine]
 
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
 
@@ -42,6 +44,8 @@ def simulate_many(
     output: Output = "peaks",
     scales: float | Sequence[float] = 1.0,
     free_vibration: float | Literal["settle"] = 0.0,
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
     initial: InitialState | None = None,
     workers: SupportsIndex | None = None,
 ) -> "pd.DataFrame":
@@ -58,9 +62,10 @@ def simulate_many(
         ``"peaks"``, or ``"history"`` for a further column `response` with every run's `Response`.
     scales
         Factor on the acceleration, or a sequence of factors.
-    free_vibration, initial
-        As in `simulate`. The same initial state serves all models; for a model with fewer modes than it has values,
-        or with a fixed base where it rotates, the run is one that cannot be solved.
+    free_vibration, bouc_wen, impact, initial
+        As in `simulate`. A `bouc_wen` needs models of one mode throughout. The same initial state serves all models;
+        for a model with fewer modes than it has values, or with a fixed base where it rotates, the run is one that
+        cannot be solved.
     workers
         Number of threads; None for one a core.
 
@@ -79,6 +84,7 @@ def simulate_many(
         motion would overflow.
     """
     check_output(output)
+    check_options(bouc_wen, impact)
     check_initial(initial)
     everything = sequence_of("structures", structures, is_structure, "a Frame, a LumpedStructure or RockingProperties")
     records = sequence_of("motions", motions, lambda given: isinstance(given, GroundMotion), "a GroundMotion")
@@ -106,7 +112,7 @@ def simulate_many(
             motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
             prepared = engines[which]
             if prepared is None:
-                prepared = engines[which] = _prepare(everything[index], chosen[which], output)
+                prepared = engines[which] = _prepare(everything[index], chosen[which], output, free, impact, bouc_wen)
             if isinstance(prepared, str):
                 table.errors[row] = prepared
                 continue
@@ -130,10 +136,18 @@ def simulate_many(
     return table.frame(shape, [motion.name for motion in records], factors, [model.label for model in chosen])
 
 
-def _prepare(structure: Structure | RockingProperties, model: Model, output: Output) -> Prepared | str:
+def _prepare(
+    structure: Structure | RockingProperties,
+    model: Model,
+    output: Output,
+    free_vibration: float | None,
+    impact: ImpactLaw | None,
+    bouc_wen: BoucWen | None,
+) -> Prepared | str:
     """A model tied to a structure and its engine, or why there is none."""
     try:
-        tied = model.of(properties_of(structure))
+        tied = model.of(properties_of(structure), impact, bouc_wen)
+        check_settling(tied, free_vibration)
         return tied, make_engine(tied, output)
     except InputError as error:
         return str(error)

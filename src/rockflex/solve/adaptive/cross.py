@@ -39,6 +39,7 @@ from rockflex.solve.exact.unit import (
 
 __all__ = ["STALLED", "cross"]
 
+BARELY = 1e-300  # m/s: what a velocity is set to where it turns, for its sign
 STALLED = -5  # the error control found no step short enough
 
 
@@ -145,7 +146,7 @@ def cross(
         else:
             settle_on(stop, stages)
             if turns:
-                stages.motion[n] = 0.0
+                stages.motion[n] = -stages.branch[0] * BARELY
         done = dt if stop == 1.0 and step == longest else done + stop * step
         start = INSIDE
         if ends:
@@ -223,7 +224,7 @@ def turning(flow: Flow, stages: Stages) -> float:
         stages.polys[work, j] = stages.branch[0] * stages.bends[j, n]
     expand_nested(stages.polys, work)
     stages.polys[work, 0] = abs(stages.motion[n])
-    if stages.motion[n] == 0.0:  # it has just turned; that zero is divided out
+    if abs(stages.motion[n]) <= BARELY:  # it has just turned; that zero is divided out
         for k in range(TERMS - 1):
             stages.polys[work, k] = stages.polys[work, k + 1]
         stages.polys[work, TERMS - 1] = 0.0
