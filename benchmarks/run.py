@@ -1,4 +1,4 @@
-"""Speed of the exact engine, as ratios within one run: against SciPy's solvers, and against the bare recurrence.
+"""Speed of the engines, as ratios within one run: against SciPy's solvers, and against the bare recurrence.
 
 ``make bench`` prints one table. Every figure is the least of several repetitions (the ODE solvers run once, since they
 take seconds). Ratios hold on any machine; the times are this machine's.
@@ -7,13 +7,14 @@ take seconds). Ratios hold on any machine; the times are this machine's.
 import resource
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
+import nonlinear
 import numpy as np
 from numba import njit
 from rich.console import Console
 from rich.table import Table
+from timing import frame, least, milliseconds
 
 import rockflex as rf
 from rockflex.models import parse_model
@@ -42,6 +43,7 @@ def main() -> None:
     for label in columns[0]:
         table.add_row(label, *(column[label] for column in columns))
     console.print(table)
+    console.print(nonlinear.table(motion))
     console.print(memory())
 
 
@@ -74,19 +76,6 @@ def measure(n: int, motion: rf.GroundMotion) -> dict[str, str]:
         "DOP853 / one call": f"{dop853 / call:.0f}",
         "batch, one core / floor": f"{batch / bare:.1f}",
     }
-
-
-def frame(n: int) -> rf.Frame:
-    return rf.Frame(
-        n_stories=n,
-        story_height=3.0,
-        story_mass=40e3,
-        base_mass=40e3,
-        stiffness_ratio=np.inf,
-        period=1.0,
-        aspect_ratio=10.0,
-        damping_ratio=0.02,
-    )
 
 
 def ode(structure: rf.Frame, motion: rf.GroundMotion, method: str) -> float:
@@ -152,20 +141,6 @@ def memory() -> str:
         peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
         lines.append(f"  {runs:9,d} runs: peak {peak:6.0f} MiB, of it the table {size:6.1f} MiB; {seconds:5.1f} s")
     return "\n".join(lines)
-
-
-def least(function: Callable[[], object], repetitions: int) -> float:
-    function()
-    times = []
-    for _ in range(repetitions):
-        started = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - started)
-    return min(times)
-
-
-def milliseconds(seconds: float) -> str:
-    return f"{seconds * 1e3:.3f}"
 
 
 if __name__ == "__main__":

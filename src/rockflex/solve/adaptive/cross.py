@@ -217,12 +217,15 @@ def energy_of_motion(flow: Flow, side: float, motion: Array) -> float:
 def turning(flow: Flow, stages: Stages) -> float:
     """Where the velocity of the hysteretic spring changes its sign, and its law its branch; inf where it does not."""
     n = flow.field.omega2.size  # the place of D'_1
-    if stages.branch[0] * stages.trial[n] >= 0.0:
-        return np.inf
     work = stages.polys.shape[0] - 1
     for j in range(TERMS - 1):
         stages.polys[work, j] = stages.branch[0] * stages.bends[j, n]
     expand_nested(stages.polys, work)
+    size = 0.0
+    for k in range(TERMS):
+        size += abs(stages.polys[work, k])
+    if size == 0.0:
+        return np.inf  # at rest
     stages.polys[work, 0] = abs(stages.motion[n])
     if abs(stages.motion[n]) <= BARELY:  # it has just turned; that zero is divided out
         for k in range(TERMS - 1):

@@ -25,8 +25,11 @@ def nothing_hides(
     phase = ROCKING if side != 0.0 else CONTACT
     n = flow.rows.shape[2] - 2
     modes = flow.field.omega2.size
-    if flow.field.hysteretic and room.branch[0] * room.trial[modes] < 0.0:
-        return False
+    if flow.field.hysteretic:
+        first, last = room.branch[0] * room.motion[modes], room.branch[0] * room.trial[modes]
+        before, after = room.branch[0] * room.rates[0, modes], room.branch[0] * room.rates[LAST, modes]
+        if stretch(first, last, step * before, step * after)[0] < 0.0:
+            return False
     for f in range(log.peaks.size):
         first = flow.rows[phase, f, n] * acceleration + flow.rows[phase, f, n + 1] * side
         before = flow.rows[phase, f, n] * slope
@@ -38,12 +41,7 @@ def nothing_hides(
                 last += weight * room.trial[i]
                 before += weight * room.rates[0, i]
                 after += weight * room.rates[LAST, i]
-        before *= step
-        after *= step
-        slack = STRAY * (abs(last - first - before) + abs(last - first - after))
-        low, high = cubic_range(first, last, before, after)
-        low -= slack
-        high += slack
+        low, high = stretch(first, last, step * before, step * after)
         if f > 0:
             # At the ends a peak is no secret: it is noted below.
             hidden = max(high, -low) > max(log.peaks[f], abs(first), abs(last))
@@ -57,3 +55,11 @@ def nothing_hides(
         room.ends[f] = last
     raise_peaks(room.ends, side, time + step, log)
     return True
+
+
+@kernel
+def stretch(first: float, last: float, before: float, after: float) -> tuple[float, float]:
+    """Least and largest value that a smooth function may have over [0, 1], from its values and slopes at the ends."""
+    slack = STRAY * (abs(last - first - before) + abs(last - first - after))
+    low, high = cubic_range(first, last, before, after)
+    return low - slack, high + slack
