@@ -51,6 +51,7 @@ def cross(
     acceleration: float,
     last: float,
     slope: float,
+    begun: float,
     dt: float,
     time: float,
     until: float,
@@ -60,11 +61,14 @@ def cross(
     nodes: Array,
     count: int,
 ) -> tuple[int, float, int]:
-    """Carry `stages.motion` over the sample from `time` to `until`; return status, side and the count of nodes."""
+    """Carry `stages.motion` over the rest of the sample from `time` to `until`, of which `begun` s are done.
+
+    Returns status, side and the count of nodes.
+    """
     n = flow.field.omega2.size
     unit = float(system.steps[system.steps.size - 1])
     resistance = flow.resistance
-    done, resume, lift, start = 0.0, 0.0, 0.0, INSIDE
+    done, resume, lift, start = begun, 0.0, 0.0, INSIDE
     log.tally[EVENTS] = 0
     while done < dt:
         phase = ROCKING if side != 0.0 else CONTACT

@@ -61,5 +61,7 @@ def nothing_hides(
 def stretch(first: float, last: float, before: float, after: float) -> tuple[float, float]:
     """Least and largest value that a smooth function may have over [0, 1], from its values and slopes at the ends."""
     slack = STRAY * (abs(last - first - before) + abs(last - first - after))
+    if before * after > 0.0 and min(abs(before), abs(after)) > 8.0 * slack:  # it rises or falls all along
+        return min(first, last), max(first, last)
     low, high = cubic_range(first, last, before, after)
     return low - slack, high + slack

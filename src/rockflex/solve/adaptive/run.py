@@ -4,6 +4,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.adaptive.cross import cross
+from rockflex.solve.adaptive.glide import glide
 from rockflex.solve.adaptive.layout import Flow, Stages
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
@@ -77,7 +78,7 @@ def cross_piece(
     rate = 1.0 / dt
     slope, tuned = 0.0, False  # tuned: `room.w` holds the motion, in contact
     while i < last:
-        finding = EVENT
+        finding, begun = EVENT, 0.0
         if side == 0.0 and not flow.field.hysteretic:
             if not tuned:
                 slope = 0.0
@@ -88,13 +89,29 @@ def cross_piece(
             if i > before or tuned:
                 to_state(system, CONTACT, piece[i], slope, side, room)
             tuned = True
-            if i == last:
-                break
+        else:
+            i, begun, count = glide(flow, piece, dt, i, offset, side, log, stages, nodes, count)
+        if i == last:
+            break
         time, until = (offset + i) * dt, (offset + i + 1) * dt
         if finding == EVENT:
             incline = (piece[i + 1] - piece[i]) * rate
             status, side, count = cross(
-                system, flow, side, piece[i], piece[i + 1], incline, dt, time, until, log, room, stages, nodes, count
+                system,
+                flow,
+                side,
+                piece[i],
+                piece[i + 1],
+                incline,
+                begun,
+                dt,
+                time,
+                until,
+                log,
+                room,
+                stages,
+                nodes,
+                count,
             )
             tuned = False
             if status != CROSSED:
