@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 WORKERS ?= 2
 
-.PHONY: demo test check lint types bench records clean help
+.PHONY: demo figures test check lint types bench records clean help
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 10
@@ -17,6 +17,9 @@ $(READY): pyproject.toml
 
 demo: $(READY)  ## structure #1 of Table 1 under two records; figures under out/demo
 	$(BIN)/python examples/demo.py
+
+figures: $(READY)  ## Figs. 3, 4, 16 and 17 of the paper with equivalents, and rocking spectra; under out/paper
+	$(BIN)/python examples/paper_figures_3_4_16_17.py
 
 test: lint types $(READY)  ## lint, types and every test
 	$(BIN)/python -m pytest -n $(WORKERS)

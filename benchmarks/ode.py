@@ -80,7 +80,7 @@ def peak_rotation(
         moment = moment_of(t, y)
         if side == 0.0 and abs(moment) >= resistance * (1.0 - 1e-13):
             side = -1.0 if moment > 0.0 else 1.0
-        turn = _event(lambda t, y, *_: y[1], terminal=False)
+        turn = _event(lambda _t, y, *_: y[1], terminal=False)
         if side == 0.0:
             events = [turn]
             if lifts:
@@ -94,8 +94,8 @@ def peak_rotation(
             # Off the ground first: at θ = 0 the event would fire at once, and the solver's interpolant straddles it.
             off = solve_ivp(rocking, (t, t + 1e-4), y, method="LSODA", rtol=rtol, atol=atol, args=(s,))
             t, y = off.t[-1], off.y[:, -1]
-            back = _event(lambda t, y, s: s * y[2], direction=-1.0)
-            events = [turn, back, _event(lambda t, y, s: y[3], terminal=False)]
+            back = _event(lambda _t, y, s: s * y[2], direction=-1.0)
+            events = [turn, back, _event(lambda _t, y, _s: y[3], terminal=False)]
             run = solve_ivp(
                 rocking, (t, end), y, method="LSODA", rtol=rtol, atol=atol, max_step=dt, events=events, args=(s,)
             )

@@ -3,6 +3,7 @@
 import ctypes
 import hashlib
 import importlib
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -16,6 +17,8 @@ importlib.import_module("numba.experimental.function_type")  # lets numba's type
 
 CALLBACK = types.int64(types.uintp, types.int64)
 _C_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_size_t, ctypes.c_int64)
+
+_IMPORTS = re.compile(rb"^from rockflex\.([\w.]+) import", re.MULTILINE)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -63,10 +66,16 @@ class Callback(types.WrapperAddressProtocol):
 
 @cache
 def sources_digest() -> str:
-    """Digest of all sources beside kernels, whose constants are compiled in, so that none is ever used out of date."""
+    """Digest of all sources that are compiled in, kernels and constants, so that no kernel is ever used out of date."""
+    package = Path(__file__).parent
+    sources = {path: path.read_bytes() for path in package.rglob("*.py")}
+    kernels = {path for path, source in sources.items() if b"_kernel import " in source}
+    named = {
+        package.joinpath(*name.decode().split(".")).with_suffix(".py")
+        for path in kernels
+        for name in _IMPORTS.findall(sources[path])
+    }
     digest = hashlib.sha256()
-    kernels = (path for path in Path(__file__).parent.rglob("*.py") if b"_kernel import kernel" in path.read_bytes())
-    for folder in sorted({path.parent for path in kernels}):
-        for path in sorted(folder.glob("*.py")):
-            digest.update(path.read_bytes())
+    for path in sorted(kernels | (named & sources.keys())):
+        digest.update(sources[path])
     return digest.hexdigest()

@@ -166,7 +166,7 @@ FOUND = imports(SOURCES)
 
 def test_the_walk_sees_the_package() -> None:
     assert {"rockflex.__init__", "rockflex._kernel", "rockflex.solve.exact.unit"} <= SOURCES.keys()
-    assert [each.importer for each in FOUND if each.target == "numba"] == ["rockflex._kernel"]
+    assert {each.importer for each in FOUND if each.target.split(".")[0] == "numba"} == {"rockflex._kernel"}
     assert any(each.when == DEFERRED for each in FOUND)
     assert any(each.when == TYPING for each in FOUND)
 

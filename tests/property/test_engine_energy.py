@@ -51,7 +51,8 @@ def test_free_and_undamped(given_, fraction, left, data):
     loss = 0.5 * spin[:-1] ** 2 * (p.i_theta - lever @ p.effective_height) * impact
     np.testing.assert_allclose(energy[:-1] - energy[1:], loss, rtol=0.0, atol=1e-10 * energy[0])
     assert np.all(energy[1:][impact] <= energy[:-1][impact] * (1.0 + 1e-12))
-    np.testing.assert_allclose(run.energy.impact_losses, loss[impact], rtol=1e-12)
+    # A loss is known to the rounding of the energies before and after.
+    np.testing.assert_allclose(run.energy.impact_losses, loss[impact], rtol=1e-12, atol=1e-14 * energy[0])
 
 
 @settings_

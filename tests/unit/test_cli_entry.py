@@ -56,6 +56,8 @@ def test_entry_point_is_main():
     [
         ([], ["run", "modes", "motion", "Examples", "rockflex modes structure.toml", "Exit codes"]),
         (["run"], ["--free-vibration", "--strict", "Examples", "rockflex run structure.toml el-centro-1940"]),
+        (["run"], ["--impact", "--restitution", "--yield-displacement", "(Eqs. 37-38)", "--friction 0.5"]),
+        (["run"], ["2DOF-C-SI", "1DOF-fixed-BW", "rigid-C", "--initial-rotation"]),
         (["modes"], ["--modes", "--stiffness-ratio", "Examples", "rockflex modes structure.toml --modes 3 --json"]),
         (["motion"], ["--period", "Examples", "rockflex motion record.csv --units g --dt 0.01 --json"]),
     ],

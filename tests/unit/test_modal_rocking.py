@@ -119,9 +119,18 @@ def test_truncation_keeps_what_belongs_to_the_structure():
     assert props.truncated(3) is props
 
 
-@pytest.mark.parametrize("n_modes", [0, 4, -1, False, 1.5])
+def test_a_structure_without_modes_is_a_block():
+    block = assembled().truncated(0)
+    given = {name: getattr(block, name) for name in ("i_theta", "l0r", "m_tot", "half_width", "translational_inertia")}
+    for same in (block, RockingProperties([], [], [], [], zeta=[], **given), pickle.loads(pickle.dumps(block))):
+        assert (same.n_modes, same.floors, same.zeta.size) == (0, None, 0)
+        assert {name: getattr(same, name) for name in given} == given
+        assert same.nominal_overturning_rotation == pytest.approx(0.7 * math.atan(1.5 * same.m_tot / same.l0r))
+
+
+@pytest.mark.parametrize("n_modes", [4, -1, False, 1.5])
 def test_truncation_out_of_range(n_modes):
-    with pytest.raises(InputError, match=rf"n_modes must be a whole number from 1 to 3, but {n_modes} was"):
+    with pytest.raises(InputError, match=rf"n_modes must be a whole number from 0 to 3, but {n_modes} was"):
         assembled().truncated(n_modes)
 
 
@@ -131,7 +140,7 @@ def test_truncation_out_of_range(n_modes):
         ({"omega": [0.0, 7.76]}, r"omega must be positive, but omega\[0\] = 0 rad/s was given"),
         ({"omega": [7.76, 1.66]}, r"omega\[1\] = 1.66 rad/s is below omega\[0\] = 7.76 rad/s\. Sort"),
         ({"omega": [1.66, np.nan]}, r"omega must be finite, but 1 of 2"),
-        ({"omega": []}, r"omega must hold at least one mode, but none was given"),
+        ({"omega": []}, r"effective_mass must hold one value a mode, as omega does \(0\), but 2 were given"),
         ({"effective_mass": [8.48e6]}, r"effective_mass must hold one value a mode.*\(2\), but 1 were given"),
         (
             {"effective_mass": [8.48e6, -1.0]},

@@ -1,15 +1,12 @@
-import io
 import math
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
-from scipy.integrate import cumulative_trapezoid
 
 import rockflex as rf
-from rockflex.plot import plot_energy, plot_mode_shapes, plot_moment_rotation, plot_motion
-from rockflex.plot._units import readable, short
+from drawing import drawn
+from rockflex.plot import plot_energy, plot_mode_shapes, plot_moment_rotation
 
 FRAME = rf.Frame(
     n_stories=5,
@@ -36,22 +33,6 @@ def responses():
 def fallen():
     initial = rf.InitialState(rotation=0.05, rotation_velocity=0.5)
     return rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=initial)
-
-
-def drawn(figure):
-    """Draw, with every warning an error; texts must stay inside the figure and the legend off the panels."""
-    renderer = FigureCanvasAgg(figure).get_renderer()
-    figure.draw(renderer)
-    panels = [axes.get_window_extent() for axes in figure.axes]
-    for legend in figure.legends:
-        box = legend.get_window_extent(renderer)
-        assert not any(box.overlaps(panel) for panel in panels)
-        assert box.x1 <= figure.bbox.x1 + 1.0
-    titles = [axes.title.get_window_extent(renderer) for axes in figure.axes if axes.title.get_text()]
-    for i, title in enumerate(titles):
-        assert figure.bbox.x0 - 1.0 <= title.x0 < title.x1 <= figure.bbox.x1 + 1.0
-        assert not any(title.overlaps(other) for other in titles[i + 1 :])
-    return figure
 
 
 # --- moment over rotation ------------------------------------------------------------------------------------------
@@ -256,81 +237,3 @@ def test_energy_is_drawn_up_to_the_fall(fallen):
 def test_energy_needs_a_history():
     with pytest.raises(rf.InputError, match="keeps peaks only, but a plot needs the history"):
         plot_energy(rf.simulate(FRAME, RECORD, "2DOF-S", output="peaks"))
-
-
-# --- ground motion -------------------------------------------------------------------------------------------------
-
-
-def test_motion_draws_its_integrals_and_its_spectrum():
-    figure = drawn(plot_motion(RECORD))
-    a, spectrum, v, d = figure.axes
-    assert [axes.get_ylabel() for axes in (a, v, d, spectrum)] == ["$a$ [m/s²]", "$v$ [m/s]", "$d$ [m]", "$S_a$ [m/s²]"]
-    samples = RECORD.acceleration
-    velocity = cumulative_trapezoid(samples, dx=RECORD.dt, initial=0.0)
-    np.testing.assert_array_equal(a.get_lines()[0].get_ydata(), samples)
-    np.testing.assert_allclose(v.get_lines()[0].get_ydata(), velocity, atol=1e-12)
-    np.testing.assert_allclose(d.get_lines()[0].get_ydata(), RECORD.displacement)
-    for axes in (a, v, d):
-        assert axes.get_xlim() == (0.0, RECORD.duration)
-        assert axes.get_ylim()[1] > np.abs(axes.get_lines()[0].get_ydata()).max()
-    (curve,) = spectrum.get_lines()
-    for i in (0, 100, 239):
-        assert curve.get_ydata()[i] == pytest.approx(RECORD.sa(float(curve.get_xdata()[i]), 0.05), rel=1e-12)
-    assert spectrum.get_xscale() == "log"
-    assert spectrum.get_ylim()[1] > curve.get_ydata().max()
-
-
-def test_motion_states_its_measures():
-    a, spectrum, v, d = plot_motion(RECORD).axes
-    assert a.get_title(loc="right") == f"PGA = {RECORD.pga:.3g} m/s² ({RECORD.pga / 9.81:.3g} g)"
-    assert v.get_title(loc="right") == f"PGV = {RECORD.pgv:.3g} m/s"
-    assert d.get_title(loc="right") == f"PGD = {RECORD.pgd:.3g} m"
-    assert spectrum.get_title() == (
-        f"$I_a$ = {RECORD.arias:.3g} m/s, $D_{{5–95}}$ = {RECORD.d5_95:.3g} s (shaded)\nspectrum for ζ = 5 %"
-    )
-
-
-def test_motion_shades_the_significant_duration():
-    energy = cumulative_trapezoid(RECORD.acceleration**2, dx=RECORD.dt, initial=0.0)
-    expected = [np.interp(share * energy[-1], energy, RECORD.time) for share in (0.05, 0.95)]
-    for axes in plot_motion(RECORD).axes:
-        if axes.get_xlabel() == "$T$ [s]":
-            continue
-        (box,) = axes.patches
-        np.testing.assert_allclose([box.get_x(), box.get_x() + box.get_width()], expected, atol=2 * RECORD.dt)
-
-
-def test_motion_may_be_quiet_and_nameless():
-    figure = drawn(plot_motion(rf.GroundMotion(np.zeros(100), 0.01)))
-    assert figure.get_suptitle() == "ground motion"
-    assert figure.axes[0].get_ylim() == (-1.0, 1.0)
-    named = plot_motion(rf.GroundMotion(np.zeros(100), 0.01, name="$x"))
-    assert named.get_suptitle() == r"\$x"
-    named.savefig(io.BytesIO())
-
-
-def test_motion_refuses_what_is_none():
-    with pytest.raises(rf.InputError) as caught:
-        plot_motion(np.zeros(5))
-    assert str(caught.value) == (
-        "motion must be a GroundMotion, but ndarray was given. "
-        "Read one from a file, take one of a suite, or build it from its samples."
-    )
-
-
-# --- numbers -------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("largest", "expected"),
-    [(2.5e9, (1e9, "GN m")), (1e6, (1e6, "MN m")), (-3e4, (1e3, "kN m")), (999.0, (1.0, "N m")), (0.0, (1.0, "N m"))],
-)
-def test_units_suit_the_largest_value(largest, expected):
-    assert readable(largest, "N m") == expected
-
-
-@pytest.mark.parametrize(
-    ("value", "text"), [(2345.6, "2350"), (-0.012345, "−0.0123"), (1.0, "1"), (0.0, "0"), (380123.0, "380000")]
-)
-def test_numbers_have_three_digits(value, text):
-    assert short(value) == text

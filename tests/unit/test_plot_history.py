@@ -11,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 
 import rockflex as rf
+from drawing import notes, spans, uplift_intervals
 from rockflex.plot import plot_history
 from rockflex.plot._curves import curves_of
 
@@ -26,9 +27,6 @@ FRAME = rf.Frame(
 )
 MODELS = ("2DOF-S", "3DOF-S", "MDOF-S", "fixed")
 RECORD = rf.load_suite("el-centro-1940")[0]
-# Rotation at which the static resisting moment vanishes, from the masses by hand.
-HALF_WIDTH = FRAME.modal().effective_height[0] / 10.0
-BALANCE = 6 * 40e3 * HALF_WIDTH / (40e3 * 3.0 * (1 + 2 + 3 + 4 + 5))
 
 
 @pytest.fixture(scope="module")
@@ -41,46 +39,9 @@ def figure(four):
     return plot_history(four)
 
 
-@pytest.fixture(scope="module")
-def fallen():
-    """Released beyond the amplitude from which it can return, after one return."""
-    quiet = rf.quiet_motion(20.0)
-    return rf.simulate(FRAME, quiet, "2DOF-S", initial=rf.InitialState(rotation=0.05, rotation_velocity=0.5))
-
-
-@pytest.fixture(scope="module")
-def returned():
-    return rf.simulate(FRAME, rf.quiet_motion(20.0), "3DOF-S", initial=rf.InitialState(rotation=0.05))
-
-
 def curve(axes, index):
     """The line of a response, among those that carry a label of their own."""
     return [line for line in axes.get_lines() if not line.get_label().startswith("_")][index]
-
-
-def spans(collection):
-    """Start and end of the bars of a collection."""
-    boxes = [path.get_extents() for path in collection.get_paths()]
-    return np.array([(box.x0, box.x1) for box in boxes])
-
-
-def uplift_intervals(response):
-    """Start and end of every stretch of the history with the base off the ground, found node by node."""
-    found, start = [], None
-    nodes = list(zip(response.time, response.side, strict=True))
-    for (t, s), (_, after) in pairwise(nodes):
-        if s == 0 and after != 0:
-            start = t
-        if s != 0 and after == 0:
-            found.append((start if start is not None else nodes[0][0], t))
-            start = None
-    if nodes[-1][1] != 0:
-        found.append((start if start is not None else nodes[0][0], nodes[-1][0]))
-    return np.array(found)
-
-
-def notes(axes):
-    return [text.get_text() for text in axes.texts]
 
 
 def test_four_panels_hold_a_line_for_every_response(figure, four):
@@ -195,75 +156,6 @@ def test_a_run_without_uplift_says_so_and_keeps_an_open_axis():
     assert "fixed base" in notes(plot_history(rf.simulate(FRAME, weak, "fixed")).axes[0])
 
 
-def test_overturning_squashes_no_other_curve(fallen, returned):
-    assert (fallen.status, returned.status) == ("overturned", "rocking")
-    figure = plot_history([fallen, returned])
-    rotation, displacement, moment, _ = figure.axes
-    high = rotation.get_ylim()[1]
-    assert high == pytest.approx(1.12 * returned.max_rotation)
-    (triangle,) = (line for line in rotation.get_lines() if line.get_marker() in "^v")
-    when = float(np.interp(high, np.abs(fallen.rotation), fallen.time))
-    assert float(triangle.get_xdata()[0]) == pytest.approx(when, rel=1e-9)
-    assert triangle.get_marker() == "^"
-    assert triangle.get_ydata()[0] == high
-    for axes in figure.axes:
-        (line,) = (line for line in axes.get_lines() if line.get_linestyle() == ":")
-        assert list(line.get_xdata()) == [fallen.end_time] * 2
-    assert f"overturned, {fallen.end_time:.2f} s" in notes(rotation)
-    before = fallen.time < np.min(fallen.time[np.abs(fallen.rotation) > BALANCE])
-    for axes, values, factor, name in (
-        (displacement, fallen.top_displacement, 1.0, "top_displacement"),
-        (moment, fallen.base_moment, 1e6, "base_moment"),
-    ):
-        largest = max(np.abs(values[before]).max(), getattr(returned, f"max_{name}")) / factor
-        assert axes.get_ylim()[1] == pytest.approx(1.12 * largest)
-    assert np.abs(fallen.base_moment).max() / 1e6 > moment.get_ylim()[1]
-
-
-def test_overturning_to_the_left_points_down():
-    initial = rf.InitialState(rotation=-0.05, rotation_velocity=-0.5)
-    left = rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=initial)
-    assert left.status == "overturned"
-    axes = plot_history(left).axes[0]
-    (triangle,) = (line for line in axes.get_lines() if line.get_marker() in "^v")
-    assert triangle.get_marker() == "v"
-    assert triangle.get_ydata()[0] == axes.get_ylim()[0]
-
-
-def test_where_all_overturn_the_axis_reaches_the_rotation_of_balance(fallen):
-    assert plot_history(fallen).axes[0].get_ylim()[1] == pytest.approx(1.12 * BALANCE)
-    fixed = rf.simulate(FRAME, rf.quiet_motion(20.0), "fixed")
-    assert plot_history([fallen, fixed]).axes[0].get_ylim()[1] == pytest.approx(1.12 * BALANCE)
-
-
-def test_a_fall_that_the_record_cuts_short_squashes_nothing_either(returned):
-    initial = rf.InitialState(rotation=0.05, rotation_velocity=0.5)
-    falling = rf.simulate(FRAME, rf.quiet_motion(1.0), "2DOF-S", initial=initial)
-    assert falling.status == "rocking"
-    assert falling.max_rotation > BALANCE
-    axes = plot_history([falling, returned]).axes[0]
-    assert axes.get_ylim()[1] == pytest.approx(1.12 * returned.max_rotation)
-    assert any(line.get_marker() == "^" for line in axes.get_lines())
-
-
-def test_a_run_beyond_balance_from_the_start_is_shown_whole():
-    start = rf.InitialState(rotation=1.2 * BALANCE)
-    response = rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=start)
-    assert response.status == "overturned"
-    panels = plot_history(response).axes
-    assert panels[0].get_ylim()[1] > 0.5 * math.pi
-    assert panels[1].get_ylim()[1] > response.max_top_displacement
-
-
-def test_phases_open_at_both_ends_are_shaded(returned):
-    initial = rf.InitialState(rotation=0.05)
-    short = rf.simulate(FRAME, rf.quiet_motion(0.5), "2DOF-S", initial=initial)
-    np.testing.assert_allclose(spans(plot_history(short).axes[1].collections[0]), [[0.0, 0.5]])
-    expected = uplift_intervals(returned)
-    assert expected[0, 0] == 0.0
-    np.testing.assert_allclose(spans(plot_history(returned).axes[1].collections[0]), expected, rtol=1e-12)
-
-
 def test_labels_and_titles(four):
     other = rf.simulate(FRAME, rf.GroundMotion(RECORD.acceleration, RECORD.dt, name="a$b"), "2DOF-S")
     legend = plot_history([four[0], other]).legends[0]
@@ -337,3 +229,39 @@ def test_matplotlib_is_imported_late_and_pyplot_never():
         "assert 'matplotlib' in sys.modules and 'matplotlib.pyplot' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_panels_are_chosen_and_lettered_from_the_top(four):
+    figure = plot_history(four, panels=("top_displacement", "rotation"), title="")
+    assert [axes.get_ylabel() for axes in figure.axes] == [r"$u_{\mathrm{top}}$ [m]", "θ [rad]"]
+    assert [notes(axes)[0] for axes in figure.axes] == ["A", "B"]
+    np.testing.assert_array_equal(curve(figure.axes[0], 2).get_ydata(), four[2].top_displacement)
+    assert figure.axes[1].get_xlabel() == "time [s]"
+    # The bars of the uplifts stand at the foot of the first.
+    assert [len(axes.collections) for axes in figure.axes] == [4, 1]
+    (alone,) = plot_history(four[0], panels=["base_shear"]).axes
+    assert alone.get_ylabel() == "$V_b$ [kN]"
+
+
+@pytest.mark.parametrize("panels", [(), ("rotation", "rotation"), ("theta",)])
+def test_panels_that_are_none_are_named(four, panels):
+    with pytest.raises(rf.InputError) as caught:
+        plot_history(four, panels=panels)
+    assert str(caught.value) == (
+        "panels must be one or more of rotation, top_displacement, base_moment, base_shear, each once, "
+        f"but {panels!r} was given."
+    )
+
+
+def test_complete_and_yielding_models_have_looks_of_their_own(four):
+    labels = ("2DOF-C", "2DOF-C-SI", "3DOF-C-E", "2DOF-S")
+    models = [rf.simulate(FRAME, RECORD, label) for label in labels]
+    models.append(rf.simulate(FRAME, RECORD, "2DOF-S", bouc_wen=rf.BoucWen(0.02)))
+    curves = curves_of([*models, *four[2:]])
+    colors = {curve.label: curve.look.color for curve in curves}
+    assert colors["2DOF-C"] == "#cc79a7"
+    assert colors["2DOF-C-SI"] == "#e69f00"
+    assert colors["2DOF-S"] == "#d55e00"
+    assert colors["2DOF-S-BW"] == "#56b4e9"
+    assert len({(curve.look.color, curve.look.dashes) for curve in curves}) == len(curves)
+    assert curves[0].order < curves[1].order < 3.0

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import fields
 from functools import cached_property
+from inspect import isfunction
 from pathlib import Path
 
 import numpy as np
@@ -44,8 +45,11 @@ FRAME = Frame(
 QUANTITIES = (
     "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
-    "floor_acceleration", "energy",
+    "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
+    "vertical_reaction", "friction_demand", "required_friction", "energy",
 )  # fmt: skip
+KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float"}
+METHODS = ("required_friction_excluding_impacts", "sliding_time")
 
 
 @pytest.fixture(scope="module")
@@ -76,10 +80,12 @@ def test_no_quantity_is_forgotten():
         if isinstance(kind, property | cached_property) and not name.startswith("_")
     }
     assert public == set(QUANTITIES)
-    for name in QUANTITIES:
+    methods = {name for name, kind in vars(History).items() if isfunction(kind) and not name.startswith("_")}
+    assert methods == set(METHODS)
+    for name in (*QUANTITIES, *METHODS):
         assert name in dir(Response)
         assert getattr(Response, name).__doc__ == getattr(History, name).__doc__
-        assert f"`{name}`" in Response.__doc__
+        assert f"`{name}`" in Response.__doc__ or f"`{name}()`" in Response.__doc__
 
 
 def test_nothing_else_is_an_attribute(response):
@@ -132,7 +138,7 @@ def test_peaks_are_a_row_of_a_table(response):
 def test_peaks_alone_have_no_history(peaks_only):
     assert peaks_only.history is None
     assert peaks_only.floors is None
-    for name in QUANTITIES:
+    for name in (*QUANTITIES, *METHODS):
         assert not hasattr(peaks_only, name)
         assert getattr(peaks_only, name, None) is None
         text = f'This response keeps peaks only, so it has no {name}. Simulate with output="history".'
@@ -157,8 +163,9 @@ def test_type_checkers_know_the_quantities(tmp_path):
         "from numpy.typing import NDArray\n"
         "import rockflex as rf\n"
         "def use(run: rf.Response) -> None:\n"
-        + "".join(f"    assert_type(run.{name}, NDArray[np.float64])\n" for name in QUANTITIES if name != "energy")
-        + "    assert_type(run.energy, rf.EnergyLedger)\n"
+        + "".join(f"    assert_type(run.{n}, {KINDS.get(n, 'NDArray[np.float64]')})\n" for n in QUANTITIES)
+        + "    assert_type(run.required_friction_excluding_impacts(0.1), float)\n"
+        + "    assert_type(run.sliding_time(0.5), float | None)\n"
     )
     checker = Path(sys.executable).with_name("basedpyright")
     done = subprocess.run(

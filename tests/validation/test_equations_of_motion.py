@@ -10,7 +10,8 @@ import sympy as sp
 
 from rockflex import RockingProperties
 from rockflex.models import EXTRA, NonlinearModel, field_rates
-from twins.complete_model import CompleteModel, Structure
+from rockflex.response._accelerations import accelerations
+from rockflex.response._friction import reactions
 from twins.lagrange import GRAVITY, GROUND, derived, lumped, orthogonal
 
 
@@ -25,13 +26,10 @@ def right_hand_side(properties, side, a, state):
 
 def ground_forces(properties, side, a, state):
     """(F_x, F_z) that the ground gives the base, in N: what is under test."""
-    return twin(properties).ground_forces(np.roll(state, 2), a, side)
-
-
-def twin(properties):
-    names = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width")
-    given = {name: getattr(properties, name) for name in (*names, "zeta", "translational_inertia")}
-    return CompleteModel(Structure.of(**given), complete=True)
+    model = NonlinearModel("MDOF-C", properties)
+    nodes = np.array([[0.0, side, a, *state, *np.zeros(EXTRA)]])
+    forces = reactions(model, nodes, accelerations(model, nodes))
+    return np.array([forces.horizontal[0], forces.vertical[0]])
 
 
 BOTH = pytest.mark.parametrize("side", [1, -1])

@@ -58,6 +58,7 @@ def modes(
     damping_ratio: options.DampingRatio = None,
 ) -> None:
     """Print the modes of a structure on a fixed base, and what it takes to rock."""
+    from rockflex._checks import whole_number
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
@@ -70,7 +71,7 @@ def modes(
     loaded = load_structure(path, options.frame_arguments(frame))
     properties = loaded.properties
     if n_modes is not None:
-        properties = properties.truncated(n_modes)
+        properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))
     rows = _rows(loaded, properties)
     rocking = describe_properties(properties)
     document: dict[str, Any] = {

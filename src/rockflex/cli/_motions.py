@@ -5,12 +5,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, load_suite, read_motion, read_suite, suite_names
+from rockflex.motion import GroundMotion, load_suite, quiet_motion, read_motion, read_suite, suite_names
 
-__all__ = ["FoundMotion", "embedded_suites", "find_motions"]
+__all__ = ["FoundMotion", "embedded_suites", "find_motions", "quiet_ground"]
+
+SHORTEST = 0.01  # s of a quiet ground before the free vibration is left to settle
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,25 @@ def find_motions(names: Sequence[str], units: str | None = None, dt: float | Non
         message = "--units and --dt say what a file does not, but no file was given. Leave them out."
         raise InputError(message)
     return list(found.values())
+
+
+def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], float | Literal["settle"]]:
+    """Ground at rest for a free vibration, and what is left of that after it.
+
+    Raises
+    ------
+    InputError
+        If there is no length to it.
+    """
+    if free == 0.0:
+        message = (
+            "A free vibration from --initial-rotation needs a ground motion or a length. "
+            "Give --free-vibration in seconds, or settle."
+        )
+        raise InputError(message)
+    if isinstance(free, str):
+        return [FoundMotion(quiet_motion(SHORTEST), "at rest")], free
+    return [FoundMotion(quiet_motion(free), "at rest")], 0.0
 
 
 def _from_path(name: str, units: str | None, dt: float | None) -> Iterator[FoundMotion]:

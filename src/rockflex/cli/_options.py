@@ -9,23 +9,33 @@ import typer
 __all__ = [
     "AspectRatio",
     "BaseMass",
+    "BwBeta",
+    "BwExponent",
+    "BwGamma",
     "DampingRatio",
     "Dt",
     "Figures",
     "Force",
+    "Friction",
+    "Impact",
+    "InitialRotation",
     "Json",
     "Out",
     "Period",
+    "PostYieldRatio",
+    "Restitution",
     "Stiffness",
     "Stories",
     "StoryHeight",
     "StoryMass",
     "StructureFile",
     "Units",
+    "YieldDisplacement",
     "frame_arguments",
 ]
 
 FRAME = "Structure by flags (all eight), in place of a file"
+ASSUMPTIONS = "Impact, hysteresis, start and sliding"
 RECORD_FILES = "Records from files that do not say it themselves"
 
 StructureFile = Annotated[
@@ -69,6 +79,72 @@ DampingRatio = Annotated[
     float | None,
     typer.Option(
         "--damping-ratio", metavar="ZETA", help="Fraction of critical damping: 0.02 is 2 %.", rich_help_panel=FRAME
+    ),
+]
+Impact = Annotated[
+    str | None,
+    typer.Option(
+        "--impact",
+        metavar="LAW",
+        help="simplified (Eq. 25), complete (Eq. 29) or restitution, in place of each model's own law.",
+        rich_help_panel=ASSUMPTIONS,
+    ),
+]
+Restitution = Annotated[
+    float | None,
+    typer.Option(
+        "--restitution",
+        metavar="E",
+        help="Rotation velocity after an impact over that before, 0 to 1; with --impact restitution.",
+        rich_help_panel=ASSUMPTIONS,
+    ),
+]
+YieldDisplacement = Annotated[
+    float | None,
+    typer.Option(
+        "--yield-displacement",
+        metavar="DY",
+        help="D_y of the first mode in m (Eqs. 37-38). Models whose label ends in -BW yield, all others stay elastic.",
+        rich_help_panel=ASSUMPTIONS,
+    ),
+]
+PostYieldRatio = Annotated[
+    float | None,
+    typer.Option(
+        "--post-yield-ratio",
+        metavar="ALPHA",
+        help="Stiffness after yielding over that before. Default: 0.01.",
+        rich_help_panel=ASSUMPTIONS,
+    ),
+]
+BwGamma = Annotated[
+    float | None,
+    typer.Option("--bw-gamma", metavar="GAMMA", help="γ of Eq. 38. Default: 0.5.", rich_help_panel=ASSUMPTIONS),
+]
+BwBeta = Annotated[
+    float | None,
+    typer.Option("--bw-beta", metavar="BETA", help="β of Eq. 38. Default: 0.5.", rich_help_panel=ASSUMPTIONS),
+]
+BwExponent = Annotated[
+    float | None,
+    typer.Option("--bw-exponent", metavar="N", help="n of Eq. 38, 1 or more. Default: 8.", rich_help_panel=ASSUMPTIONS),
+]
+InitialRotation = Annotated[
+    float | None,
+    typer.Option(
+        "--initial-rotation",
+        metavar="RAD",
+        help="Rotation at t = 0, at rest there. Without a motion: free vibration as long as --free-vibration says.",
+        rich_help_panel=ASSUMPTIONS,
+    ),
+]
+Friction = Annotated[
+    float | None,
+    typer.Option(
+        "--friction",
+        metavar="MU",
+        help="Print the friction that each run needs (Eqs. 20-22), and when sliding would start with this coefficient.",
+        rich_help_panel=ASSUMPTIONS,
     ),
 ]
 Units = Annotated[

@@ -16,10 +16,15 @@ rockflex run structure.toml fema-p695-far-field --model MDOF-S,fixed --out resul
 
 rockflex run structure.toml record.csv --units g --free-vibration settle --times
 
+rockflex run structure.toml el-centro-1940 --model 2DOF-C,MDOF-C,rigid --friction 0.5
+
+rockflex run structure.toml el-centro-1940 --model 2DOF-S,2DOF-S-BW,1DOF-fixed-BW --yield-displacement 0.075
+
+rockflex run structure.toml --model 2DOF-C --initial-rotation 0.05 --free-vibration 20 --impact restitution \
+--restitution 0.9
+
 rockflex run --stories 5 --story-height 3 --story-mass 40e3 --base-mass 40e3 --stiffness-ratio inf \
 --period 1 --aspect-ratio 10 --damping-ratio 0.02 fema-p695-far-field/FF-2-a --scale 1 --scale 1.5 --json"""
-
-MODELS = ["2DOF-S", "MDOF-S", "fixed"]
 
 
 def run(
@@ -37,11 +42,17 @@ def run(
         typer.Option("--motion", "-m", metavar="MOTION", help="A ground motion; may be repeated.", show_default=False),
     ] = None,
     model: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(
-            "--model", metavar="LABEL", help="2DOF-S, 3DOF-S, ... MDOF-S, fixed, 5DOF-fixed; several by commas."
+            "--model",
+            metavar="LABEL",
+            help="Several by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, MDOF-C, "
+            "3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; base held: fixed, 5DOF-fixed; one mode that "
+            "yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW. Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
+            "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation those of them that rock.",
+            show_default=False,
         ),
-    ] = MODELS,
+    ] = None,
     scale: Annotated[
         list[float], typer.Option("--scale", metavar="FACTOR", help="Factor on the acceleration; may be repeated.")
     ] = [1.0],  # noqa: B006
@@ -59,6 +70,15 @@ def run(
     out: options.Out = None,
     figures: options.Figures = 4,
     force: options.Force = False,
+    impact: options.Impact = None,
+    restitution: options.Restitution = None,
+    yield_displacement: options.YieldDisplacement = None,
+    post_yield_ratio: options.PostYieldRatio = None,
+    bw_gamma: options.BwGamma = None,
+    bw_beta: options.BwBeta = None,
+    bw_exponent: options.BwExponent = None,
+    initial_rotation: options.InitialRotation = None,
+    friction: options.Friction = None,
     stories: options.Stories = None,
     story_height: options.StoryHeight = None,
     story_mass: options.StoryMass = None,
@@ -76,27 +96,55 @@ def run(
     """
     from time import perf_counter
 
-    from rockflex.cli._motions import find_motions
+    from rockflex.cli._choices import (
+        choose_models,
+        make_assumptions,
+        parse_coefficient,
+        parse_free_vibration,
+        parse_scales,
+    )
+    from rockflex.cli._console import note
+    from rockflex.cli._motions import find_motions, quiet_ground
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._run_output import UNITS, write_runs
     from rockflex.cli._run_tables import print_failures, print_runs
-    from rockflex.cli._simulations import Plan, parse_free_vibration, parse_models, parse_scales, perform, warm_up
+    from rockflex.cli._simulations import Plan, perform, warm_up
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
     check_folder(out, force=force)
     file, names = split_arguments(structure, arguments or [])
     frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
     loaded = load_structure(file, options.frame_arguments(frame))
-    found = find_motions([*names, *(motion or [])], units, dt)
+    hysteresis = {
+        "yield_displacement": yield_displacement,
+        "post_yield_ratio": post_yield_ratio,
+        "gamma": bw_gamma,
+        "beta": bw_beta,
+        "exponent": bw_exponent,
+    }
+    flags = {"impact": impact, "restitution": restitution, **hysteresis}
+    assumptions = make_assumptions(file, loaded.assumed, flags, initial_rotation)
+    by_flag = any(value is not None for value in hysteresis.values())
+    models = choose_models(model, loaded.properties, assumptions, by_flag=by_flag)
+    if assumptions.bouc_wen is not None and not any(label.endswith("-BW") for label in models):
+        note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was asked for")
+    free = parse_free_vibration(free_vibration, models)
+    names += motion or []
+    if names or initial_rotation is None:
+        found = find_motions(names, units, dt)
+    else:
+        found, free = quiet_ground(free)
     scales = parse_scales(scale)
     plan = Plan(
         properties=loaded.properties,
         motions=[item.motion for item in found],
         scales=scales,
-        models=parse_models(model, loaded.properties),
-        free_vibration=parse_free_vibration(free_vibration),
+        models=models,
+        free_vibration=free,
         history=out is not None and len(found) * len(scales) <= figures,
         workers=workers,
+        assumptions=assumptions,
+        friction=parse_coefficient(friction),
     )
     warm_up(plan)
     start = perf_counter()
@@ -107,7 +155,7 @@ def run(
         "structure": loaded.describe(),
         "properties": describe_properties(plan.properties),
         "motions": [item.describe() for item in found],
-        "options": {"models": plan.models, "scales": plan.scales, "free_vibration": plan.free_vibration},
+        "options": plan.describe(),
         "units": UNITS,
         "elapsed": elapsed,
         "runs": [{**item.row(), "run_time": item.run_time} for item in runs],

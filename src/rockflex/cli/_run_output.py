@@ -27,11 +27,17 @@ UNITS = {
     "max_top_displacement": "m",
     "max_base_moment": "N m",
     "max_base_shear": "N",
+    "sliding_time": "s",
+    "impact.shortest_excursion": "s",
+    "bouc_wen.yield_displacement": "m",
+    "initial_rotation": "rad",
 }
 SERIES = (
     "time", "side", "ground_acceleration", "rotation", "rotation_velocity", "top_displacement", "base_moment",
     "base_shear",
 )  # fmt: skip
+
+FORCES = ("horizontal_reaction", "vertical_reaction", "friction_demand")
 
 
 def write_runs(folder: Path, document: dict[str, Any], plan: Plan, runs: Sequence[Run], *, force: bool) -> None:
@@ -47,11 +53,11 @@ def write_runs(folder: Path, document: dict[str, Any], plan: Plan, runs: Sequenc
     with staged(folder, document, force=force) as stage:
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
         if plan.history:
-            _write_histories(stage, runs)
+            _write_histories(stage, plan, runs)
     note(f"Written to {folder}" + ("" if plan.history else "; histories and figures only up to --figures motions"))
 
 
-def _write_histories(stage: Path, runs: Sequence[Run]) -> None:
+def _write_histories(stage: Path, plan: Plan, runs: Sequence[Run]) -> None:
     import pandas as pd
 
     from rockflex.plot import plot_history, save_figure
@@ -63,16 +69,21 @@ def _write_histories(stage: Path, runs: Sequence[Run]) -> None:
         responses = [run.response for run in members if run.response is not None]
         if not responses:
             continue
-        table = pd.concat(list(_series(responses)))
+        table = pd.concat(list(_series(plan, responses)))
         table.to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
         title = None if scale == 1.0 else f"{motion} × {scale:g}"
         labels = [response.model for response in responses]
         save_figure(plot_history(responses, labels=labels, title=title), stage / f"{stem}.png")
 
 
-def _series(responses: Sequence[Response]) -> "Iterator[pd.DataFrame]":
+def _series(plan: Plan, responses: Sequence[Response]) -> "Iterator[pd.DataFrame]":
     """Histories as tables, one model below the other; an event is two rows at the same time."""
     import pandas as pd
 
+    names = [*SERIES]
+    if plan.assumptions.bouc_wen is not None:
+        names.append("yielding")
+    if plan.friction is not None:
+        names += FORCES
     for response in responses:
-        yield pd.DataFrame({"model": response.model, **{name: getattr(response, name) for name in SERIES}})
+        yield pd.DataFrame({"model": response.model, **{name: getattr(response, name) for name in names}})

@@ -4,20 +4,31 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from rockflex.cli._console import fits, grid, moment_unit, note, number, output, show
-from rockflex.cli._simulations import Plan, Run
+from rockflex.cli._simulations import SLIDING, Plan, Run
+from rockflex.response import IMPACT_WINDOW
 
 __all__ = ["print_failures", "print_runs"]
 
 MAX_LISTED = 5
 NOMINAL = "† θ passed 0.7 atan(B/h*_1), the nominal limit of overturning"
+FRICTION = (
+    "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
+    "the base slides where it passes {mu:g}"
+)
 Columns = list[tuple[str, list[str]]]
 
 
 def print_runs(title: str, plan: Plan, runs: Sequence[Run], elapsed: float, *, times: bool) -> None:
     """Print the peaks of every run, and when they occurred if asked to; by motion where the terminal is narrow."""
     console = output()
-    console.print(title, markup=False, soft_wrap=True)
-    for columns, n_words in [(_peaks(runs), 1)] + ([(_times(runs), 0)] if times else []):
+    for line in (title, *plan.assumptions.remarks()):
+        console.print(line, markup=False, soft_wrap=True)
+    tables = [(_peaks(runs), 1)]
+    if times:
+        tables.append((_times(runs), 0))
+    if plan.friction is not None:
+        tables.append((_sliding(runs), 0))
+    for columns, n_words in tables:
         headings = [heading for heading, _ in columns]
         cells = list(zip(*(values for _, values in columns), strict=True))
         places = [[run.motion] if plan.scales == [1.0] else [run.motion, f"{run.scale:g}"] for run in runs]
@@ -35,6 +46,8 @@ def print_runs(title: str, plan: Plan, runs: Sequence[Run], elapsed: float, *, t
     console.print()
     if any(run.peaks["nominal_overturning"] for run in runs):
         console.print(NOMINAL, markup=False, soft_wrap=True)
+    if plan.friction is not None:
+        console.print(FRICTION.format(window=IMPACT_WINDOW, mu=plan.friction), markup=False, soft_wrap=True)
     each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
     console.print(f"{len(runs)} run{'s' * (len(runs) > 1)} in {number(elapsed, 3)} s{each}", markup=False)
 
@@ -71,6 +84,16 @@ def _times(runs: Sequence[Run]) -> Columns:
     names = {"rotation": "θ_max", "top_displacement": "u_top", "base_moment": "M_b", "base_shear": "V_b"}
     columns = [(f"t({label}) [s]", _column(runs, f"time_of_max_{name}", digits=5)) for name, label in names.items()]
     return [*columns, ("end [s]", _column(runs, "end_time", digits=5))]
+
+
+def _sliding(runs: Sequence[Run]) -> Columns:
+    times = [run.friction["sliding_time"] for run in runs]
+    moments = [
+        "-" if run.error is not None else "no" if time is None else number(time, 5)
+        for run, time in zip(runs, times, strict=True)
+    ]
+    required = [[number(run.friction[name]) for run in runs] for name in SLIDING[:2]]
+    return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
 
 
 def _column(runs: Sequence[Run], name: str, size: float = 1.0, digits: int = 4) -> list[str]:

@@ -2,11 +2,20 @@
 
 import reprlib
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-__all__ = ["TABLES", "FrameTable", "LumpedTable", "PropertiesTable", "StructureFile", "Table", "problems"]
+__all__ = [
+    "TABLES",
+    "BoucWenTable",
+    "FrameTable",
+    "LumpedTable",
+    "PropertiesTable",
+    "StructureFile",
+    "Table",
+    "problems",
+]
 
 Vector = list[float]
 Matrix = list[list[float]]
@@ -59,16 +68,36 @@ class PropertiesTable(Table):
     )
 
 
+class BoucWenTable(Table):
+    """The arguments of `BoucWen`."""
+
+    yield_displacement: float = Field(description="D_y of the first mode, a number in m")
+    post_yield_ratio: float | None = Field(None, description="stiffness after yielding over that before, a number")
+    gamma: float | None = Field(None, description="γ of the hysteresis, a number")
+    beta: float | None = Field(None, description="β of the hysteresis, a number")
+    exponent: float | None = Field(None, description="n of the hysteresis, a number of at least 1")
+
+
 class StructureFile(Table):
-    """A structure file: one table, and perhaps a name."""
+    """A structure file: one structure, perhaps a name, and what `rockflex run` is to assume of it."""
 
     name: str = Field("", description="a name, in quotes")
+    impact: Literal["simplified", "complete", "restitution"] | None = Field(
+        None, description='"simplified", "complete" or "restitution"'
+    )
+    restitution: float | None = Field(None, description="a number from 0 to 1")
+    bouc_wen: BoucWenTable | None = Field(None, description="a table")
     frame: FrameTable | None = Field(None, description="a table")
     lumped: LumpedTable | None = Field(None, description="a table")
     properties: PropertiesTable | None = Field(None, description="a table")
 
 
-TABLES: dict[str, type[Table]] = {"frame": FrameTable, "lumped": LumpedTable, "properties": PropertiesTable}
+TABLES: dict[str, type[Table]] = {
+    "frame": FrameTable,
+    "lumped": LumpedTable,
+    "properties": PropertiesTable,
+    "bouc_wen": BoucWenTable,
+}
 
 
 def problems(error: ValidationError, content: dict[str, Any]) -> list[str]:

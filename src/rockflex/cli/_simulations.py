@@ -1,14 +1,14 @@
 """The runs of one structure: timed one by one where they are few, shared among threads where they are many."""
 
-import math
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import groupby, product
 from time import perf_counter
 from typing import Any, Literal
 
-from rockflex._errors import InputError, SolverError
+from rockflex._errors import SolverError
+from rockflex.cli._choices import Assumptions
 from rockflex.cli._console import progress
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
@@ -17,7 +17,7 @@ from rockflex.parallel import map_threads
 from rockflex.response import PEAKS, Response
 from rockflex.study import simulate, simulate_many
 
-__all__ = ["Plan", "Run", "parse_free_vibration", "parse_models", "parse_scales", "perform", "warm_up"]
+__all__ = ["SLIDING", "Plan", "Run", "perform", "warm_up"]
 
 FEW = 64  # runs; more are not timed one by one
 BATCH = 1024  # runs between two steps of the progress bar
@@ -34,11 +34,20 @@ class Plan:
     free_vibration: float | Literal["settle"] = 0.0
     history: bool = False
     workers: int | None = None
+    assumptions: Assumptions = field(default_factory=Assumptions)
+    friction: float | None = None
+    """Coefficient of friction, or None where sliding is not asked about."""
 
     @property
     def output(self) -> Literal["history", "peaks"]:
-        """What is kept of each run."""
-        return "history" if self.history else "peaks"
+        """What a run returns; the friction is that of a history."""
+        return "history" if self.history or self.friction is not None else "peaks"
+
+    def describe(self) -> dict[str, Any]:
+        """Return what was asked for, for a document."""
+        described = {"models": self.models, "scales": self.scales, "free_vibration": self.free_vibration}
+        friction = {} if self.friction is None else {"friction": self.friction}
+        return {**described, **self.assumptions.describe(), **friction}
 
     @property
     def size(self) -> int:
@@ -59,14 +68,17 @@ class Run:
     run_time: float | None = None
     """Seconds; None where runs were shared among threads."""
     response: Response | None = None
+    friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
+    """Required friction and when sliding would start, by their names; empty where not asked for."""
 
     def row(self) -> dict[str, Any]:
         """Return everything but the run time and the history, in the columns of `simulate_many`."""
         head = {"motion": self.motion, "scale": self.scale, "model": self.model}
-        return {**head, "status": self.status, "error": self.error, **self.peaks}
+        return {**head, "status": self.status, "error": self.error, **self.peaks, **self.friction}
 
 
 COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))
+SLIDING = ("required_friction", "required_friction_excluding_impacts", "sliding_time")
 
 
 def perform(plan: Plan) -> list[Run]:
@@ -79,7 +91,7 @@ def perform(plan: Plan) -> list[Run]:
     SolverError
         If not one run could be solved.
     """
-    runs = _one_by_one(plan) if plan.history or plan.size <= FEW else _in_batches(plan)
+    runs = _one_by_one(plan) if plan.output == "history" or plan.size <= FEW else _in_batches(plan)
     failed = [run for run in runs if run.error is not None]
     if len(failed) == len(runs):
         first = failed[0]
@@ -93,57 +105,9 @@ def warm_up(plan: Plan) -> None:
     with progress("Loading the kernels (compiling them, the first time)"):
         for model in plan.models:
             with suppress(SolverError):
-                simulate(plan.properties, plan.motions[0], model, output=plan.output)
-
-
-def parse_models(given: Sequence[str], properties: RockingProperties) -> list[str]:
-    """Split the labels at commas, and check that the structure has the modes for each.
-
-    Raises
-    ------
-    InputError
-        If a label is unknown, or needs more modes than there are.
-    """
-    labels = [label.strip() for item in given for label in item.split(",") if label.strip()]
-    if not labels:
-        message = "No model was given. Expected labels such as 2DOF-S,MDOF-S,fixed."
-        raise InputError(message)
-    return list(dict.fromkeys(parse_model(label).of(properties).label for label in labels))
-
-
-def parse_free_vibration(given: str) -> float | Literal["settle"]:
-    """Read seconds, or "settle".
-
-    Raises
-    ------
-    InputError
-        If the text is neither.
-    """
-    if given == "settle":
-        return "settle"
-    try:
-        seconds = float(given)
-    except ValueError:
-        seconds = math.nan
-    if not (seconds >= 0.0 and math.isfinite(seconds)):
-        message = f"--free-vibration must be zero or more seconds, or settle, but {given!r} was given."
-        raise InputError(message)
-    return seconds
-
-
-def parse_scales(given: Sequence[float]) -> list[float]:
-    """Return the factors, each once.
-
-    Raises
-    ------
-    InputError
-        If one is not finite.
-    """
-    for scale in given:
-        if not math.isfinite(scale):
-            message = f"--scale must be a finite factor on the acceleration, but {scale} was given."
-            raise InputError(message)
-    return list(dict.fromkeys(given))
+                options = plan.assumptions.options(model)
+                response = simulate(plan.properties, plan.motions[0], model, output=plan.output, **options)
+                _friction(plan, response)
 
 
 def _one_by_one(plan: Plan) -> list[Run]:
@@ -157,41 +121,68 @@ def _one_by_one(plan: Plan) -> list[Run]:
                 model,
                 output=plan.output,
                 free_vibration=plan.free_vibration,
+                **plan.assumptions.options(model),
             )
         except SolverError as error:
-            return place, Run(motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS))
-        elapsed = perf_counter() - start
+            lost: dict[str, float | None] = {} if plan.friction is None else dict.fromkeys(SLIDING, None)
+            return place, Run(motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost)
+        elapsed = None if many else perf_counter() - start
         peaks = {name: getattr(response, name) for name in COLUMNS}
-        return place, Run(motion.name, scale, model, response.status, None, peaks, elapsed, response)
+        kept = response if plan.history else None
+        friction = _friction(plan, response)
+        return place, Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction)
 
+    many = plan.size > FEW
     tasks = enumerate(product(plan.motions, plan.scales, plan.models))
-    done = sorted(map_threads(run, tasks, plan.workers or 1), key=lambda item: item[0])
-    return [run for _, run in done]
+    done: list[tuple[int, Run]] = []
+    with progress("Simulating", plan.size) if many else nullcontext() as advance:
+        for item in map_threads(run, tasks, plan.workers if many else plan.workers or 1):
+            done.append(item)
+            if advance is not None:
+                advance(1)
+    return [run for _, run in sorted(done, key=lambda item: item[0])]
+
+
+def _friction(plan: Plan, response: Response) -> dict[str, float | None]:
+    """The friction of one run, if it is asked for."""
+    if plan.friction is None:
+        return {}
+    values = (
+        response.required_friction,
+        response.required_friction_excluding_impacts(),
+        response.sliding_time(plan.friction),
+    )
+    return dict(zip(SLIDING, values, strict=True))
 
 
 def _in_batches(plan: Plan) -> list[Run]:
-    each = len(plan.scales) * len(plan.models)
-    step = max(1, BATCH // each)
+    step = max(1, BATCH // (len(plan.scales) * len(plan.models)))
     runs: list[Run] = []
     with progress("Simulating", plan.size) as advance:
         for first in range(0, len(plan.motions), step):
             motions = plan.motions[first : first + step]
-            table = simulate_many(
-                plan.properties,
-                motions,
-                plan.models,
-                scales=plan.scales,
-                free_vibration=plan.free_vibration,
-                workers=plan.workers,
-            )
-            rows = list(_rows(table))
-            n_scales, n_models = len(plan.scales), len(plan.models)
-            runs += [
-                rows[(motion * n_models + model) * n_scales + scale]
-                for motion, scale, model in product(range(len(motions)), range(n_scales), range(n_models))
-            ]
-            advance(len(rows))
+            found: dict[tuple[str, float, str], Run] = {}
+            # Elastic and yielding models differ in their options.
+            for _, group in groupby(sorted(plan.models, key=_yields), key=_yields):
+                models = list(group)
+                table = simulate_many(
+                    plan.properties,
+                    motions,
+                    models,
+                    scales=plan.scales,
+                    free_vibration=plan.free_vibration,
+                    workers=plan.workers,
+                    **plan.assumptions.options(models[0]),
+                )
+                found |= {(run.motion, run.scale, run.model): run for run in _rows(table)}
+            names = [motion.name for motion in motions]
+            runs += [found[place] for place in product(names, plan.scales, plan.models)]
+            advance(len(found))
     return runs
+
+
+def _yields(model: str) -> bool:
+    return parse_model(model).yields
 
 
 def _rows(table: Any) -> Iterator[Run]:

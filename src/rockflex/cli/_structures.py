@@ -3,7 +3,7 @@
 import math
 import tomllib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from rockflex.structure import Frame, LumpedStructure
 __all__ = ["LoadedStructure", "describe_properties", "load_structure", "split_arguments"]
 
 FLAGS = {"n_stories": "--stories"}  # the others are named after their argument
+ASSUMED = {"impact", "restitution", "bouc_wen"}
 KINDS: dict[str, type[Frame | LumpedStructure | RockingProperties]] = {
     "frame": Frame,
     "lumped": LumpedStructure,
@@ -33,6 +34,8 @@ class LoadedStructure:
     kind: str
     values: dict[str, Any]
     built: Frame | LumpedStructure | RockingProperties
+    assumed: dict[str, Any] = field(default_factory=dict[str, Any])
+    """What the file says beside: `impact`, `restitution` and `bouc_wen`, each where it is there."""
 
     @property
     def properties(self) -> RockingProperties:
@@ -58,7 +61,7 @@ class LoadedStructure:
 
     def describe(self) -> dict[str, Any]:
         """Return what it was made of, for a document."""
-        return {"name": self.name, "kind": self.kind, **self.values}
+        return {"name": self.name, "kind": self.kind, **self.values, **self.assumed}
 
 
 def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
@@ -101,7 +104,8 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     except InputError as error:
         message = f"{file}, [{kind}]: {error}"
         raise InputError(message) from error
-    return LoadedStructure(document.name or file.stem, kind, values, built)
+    assumed = document.model_dump(include=ASSUMED, exclude_none=True)
+    return LoadedStructure(document.name or file.stem, kind, values, built, assumed)
 
 
 def describe_properties(properties: RockingProperties) -> dict[str, Any]:

@@ -3,6 +3,22 @@
 from rockflex.modal._analysis import ModalProperties, modal_properties
 from rockflex.modal._assembly import rocking_properties
 from rockflex.modal._floors import FloorModes
+from rockflex.modal._participation import MassNormalisedModes, modes_that_take_part
+from rockflex.modal._pinned_beam import PinnedBeam, pinned_beam
 from rockflex.modal._rocking import RockingProperties
+from rockflex.modal._uplifted import UpliftedModes, frequency_equation, uplifted_modes
 
-__all__ = ["FloorModes", "ModalProperties", "RockingProperties", "modal_properties", "rocking_properties"]
+__all__ = [
+    "FloorModes",
+    "MassNormalisedModes",
+    "ModalProperties",
+    "PinnedBeam",
+    "RockingProperties",
+    "UpliftedModes",
+    "frequency_equation",
+    "modal_properties",
+    "modes_that_take_part",
+    "pinned_beam",
+    "rocking_properties",
+    "uplifted_modes",
+]

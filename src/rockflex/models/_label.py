@@ -120,7 +120,7 @@ class Model:
         if self.n_modes is not None and self.n_modes > properties.n_modes:
             whole = Model(None, self.lifts, self.complete, self.closure, self.yields).label
             message = (
-                f"Model {self.label} needs {self.n_modes} modes, but the structure has {properties.n_modes}. "
+                f"Model {self.label} needs {_modes(self.n_modes)}, but the structure has {properties.n_modes}. "
                 f"Give more modes, or use {whole} for all there are."
             )
             raise InputError(message)
@@ -166,6 +166,10 @@ class Model:
         return VVELComplete()
 
 
+def _modes(count: int) -> str:
+    return "1 mode" if count == 1 else f"{count} modes"
+
+
 def parse_model(model: str | Model) -> Model:
     """Read a model's label; a `Model` is returned as it is.
 
@@ -176,7 +180,12 @@ def parse_model(model: str | Model) -> Model:
     """
     if isinstance(model, Model):
         return model
-    named = {"fixed": Model(lifts=False), "rigid": Model(0), "rigid-C": Model(0, complete=True)}
+    named = {
+        "fixed": Model(lifts=False),
+        "fixed-BW": Model(lifts=False, yields=True),
+        "rigid": Model(0),
+        "rigid-C": Model(0, complete=True),
+    }
     found = _PATTERN.fullmatch(model) if isinstance(model, str) else None  # pyright: ignore[reportUnnecessaryIsInstance]
     if found is None:
         if isinstance(model, str) and model in named:  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, RED, Look, literal
+from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal
 
 if TYPE_CHECKING:
     from rockflex.response import History, Response
 
-__all__ = ["Curve", "curves_of", "rotation_limit"]
+__all__ = ["Curve", "curves_of", "rotation_limit", "title_of"]
 
 Array = NDArray[np.float64]
 
@@ -40,8 +40,9 @@ class Curve:
 
     @property
     def order(self) -> float:
-        """Drawing order: the fewer modes the higher, as gaps between dashes let a curve below show through."""
-        return 2.0 + 1.0 / (1.0 + self.history.model.properties.n_modes) if self.lifts else 1.9
+        """Drawing order: the fewer modes the higher, and dashes over a line, as their gaps let it show through."""
+        modes = 2.0 + 1.0 / (1.0 + self.history.model.properties.n_modes) if self.lifts else 1.9
+        return modes - 0.01 * (self.look.dashes == "-")
 
     @property
     def balance_rotation(self) -> float:
@@ -51,14 +52,11 @@ class Curve:
 
     @property
     def uplifts(self) -> Array:
-        """Start and end of every phase of rocking in s, shape (n_phases, 2)."""
+        """Start and end of every time off the ground in s, shape (n_phases, 2), on whichever side."""
         h = self.history
-        starts, ends = h.uplift_times, h.impact_times
-        if h.side[0] != 0.0:
-            starts = np.insert(starts, 0, h.time[0])
-        if h.side[-1] != 0.0:
-            ends = np.append(ends, h.time[-1])
-        return np.column_stack((starts, ends))
+        lifted = np.concatenate(([0], h.side != 0.0, [0]))
+        starts, ends = np.flatnonzero(np.diff(lifted) > 0), np.flatnonzero(np.diff(lifted) < 0) - 1
+        return np.column_stack((h.time[starts], h.time[ends]))
 
     @property
     def falls(self) -> bool:
@@ -89,6 +87,14 @@ def rotation_limit(curves: list[Curve]) -> float:
     fallen = [curve.balance_rotation for curve in curves if curve.falls]
     standing = any(curve.finished_rotation > 0.0 for curve in curves if not curve.falls)
     return finished if standing else max(finished, *fallen, 0.0)
+
+
+def title_of(curves: list[Curve], title: str | None) -> str:
+    """The title given, or else the name of the motion if there is only one."""
+    if title is not None:
+        return title
+    motions = {curve.response.motion for curve in curves}
+    return literal(motions.pop()) if len(motions) == 1 else ""
 
 
 def curves_of(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> list[Curve]:
@@ -139,11 +145,11 @@ def _names(responses: "list[Response]", labels: Sequence[str] | None) -> list[st
 
 
 def _looks(histories: "list[History]") -> list[Look]:
-    """Looks of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two; others for what is left."""
+    """Looks of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two; others for the rest."""
     most = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
-    spare, looks = list(LOOKS), list[Look]()
-    for history in histories:
-        own = _own_look(history, most)
+    wanted = [_own_look(history, most) for history in histories]
+    spare, looks = [look for look in LOOKS if look not in wanted], list[Look]()
+    for own in wanted:
         if own is None or own in looks:
             if not spare:
                 message = (
@@ -160,6 +166,10 @@ def _own_look(history: "History", most: int) -> Look | None:
     n = model.properties.n_modes
     if not model.lifts:
         return Look(GRAY, "-", 1.4)
+    if np.any(history.yielding != 0.0):
+        return Look(SKY, "-")
+    if "-C" in model.label:
+        return Look(ORANGE, (0, (4, 1.5))) if model.label.endswith(("-SI", "-E")) else Look(PURPLE, "-")
     if model.label.startswith("M") or n == most > 2:
         return Look(BLACK, "-")
     return {1: Look(RED, "-."), 2: Look(GREEN, "--")}.get(n)

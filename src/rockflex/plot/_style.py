@@ -69,7 +69,7 @@ class Look:
     """Colour and line style of one curve."""
 
     color: str
-    dashes: str | tuple[int, tuple[int, ...]]
+    dashes: str | tuple[int, tuple[float, ...]]
     width: float = 1.0
 
 

@@ -2,6 +2,7 @@
 
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
+from rockflex.response._friction import IMPACT_WINDOW
 from rockflex.response._history import History
 from rockflex.response._observables import (
     Observables,
@@ -12,6 +13,7 @@ from rockflex.response._observables import (
 from rockflex.response._response import PEAKS, Response, respond
 
 __all__ = [
+    "IMPACT_WINDOW",
     "PEAKS",
     "EnergyLedger",
     "FloorPeaks",

@@ -13,6 +13,7 @@ from rockflex.models import EXTRA, NonlinearModel, RockingModel
 from rockflex.response._accelerations import accelerations
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
 from rockflex.response._floors import floor_histories
+from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._observables import global_observables
 
@@ -153,6 +154,69 @@ class History:
         """Total horizontal acceleration of each floor, in m/s², shape (n_nodes, N_floors)."""
         return self._floors[2]
 
+    @property
+    def horizontal_reaction(self) -> Array:
+        """What the ground gives the base across, Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_nodes,)."""
+        return self._friction.reactions.horizontal
+
+    @property
+    def vertical_reaction(self) -> Array:
+        """What the ground gives the base upward, Σ m_i (g + z''_i), in N, shape (n_nodes,).
+
+        Eq. 22 with the sign of the weight mended; as printed, it is less by 2 m_tot g.
+        """
+        return self._friction.reactions.vertical
+
+    @property
+    def friction_demand(self) -> Array:
+        """|ΣF_x| / ΣF_z of Eq. 20, no unit, shape (n_nodes,); infinite where the base would lose contact."""
+        return self._friction.demand
+
+    @cached_property
+    def required_friction(self) -> float:
+        """Largest friction demand of the run, between nodes too; infinite if the base would lose contact.
+
+        Raises
+        ------
+        InputError
+            If the model is too fast for the sampling.
+        """
+        return self._friction.required()
+
+    def required_friction_excluding_impacts(self, window: float = IMPACT_WINDOW, printed: bool = False) -> float:
+        """Largest friction demand without the instants after each impact, in which it has short spikes.
+
+        Parameters
+        ----------
+        window
+            Seconds after each impact that do not count; with zero all do. If none is left, the result is zero.
+        printed
+            Take Eq. 22 as printed, Σ m_i (-g + z''_i) with one sign wrong, by its magnitude; for comparison.
+
+        Raises
+        ------
+        InputError
+            If `window` is negative or not finite, or the model is too fast for the sampling.
+        """
+        return self._friction_by(printed).required(window)
+
+    def sliding_time(self, mu: float, printed: bool = False) -> float | None:
+        """Time in s at which the friction demand first exceeds `mu`, where sliding would start; None if it never does.
+
+        Parameters
+        ----------
+        mu
+            Coefficient of friction, positive.
+        printed
+            As in `required_friction_excluding_impacts`.
+
+        Raises
+        ------
+        InputError
+            If `mu` is not a positive number, or the model is too fast for the sampling.
+        """
+        return self._friction_by(printed).sliding_time(mu)
+
     @cached_property
     def energy(self) -> EnergyLedger:
         """Where the energy is, where it came from and where it went.
@@ -175,6 +239,13 @@ class History:
         values = accelerations(self.model, self.nodes)
         values.setflags(write=False)
         return values
+
+    @cached_property
+    def _friction(self) -> Friction:
+        return Friction(self.model, self.nodes)
+
+    def _friction_by(self, printed: bool) -> Friction:
+        return Friction(self.model, self.nodes, printed=True) if printed else self._friction
 
     @cached_property
     def _floors(self) -> tuple[Array, Array, Array]:

@@ -1,5 +1,6 @@
 """What one run answers: peaks, when they occurred, how the run ended and, where kept, its history."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Generic, Self, TypeVar, overload
@@ -50,8 +51,9 @@ class Response:
     history has the history's quantities as its own: `time`, `side`, `ground_acceleration`, `modal_displacement`,
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
     `top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`, `story_drift`, `story_shear`,
-    `floor_acceleration` and `energy`; see `History`. One that keeps peaks
-    only has none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
+    `floor_acceleration`, `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
+    `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. One that keeps peaks only has
+    none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
 
     Parameters
     ----------
@@ -122,6 +124,12 @@ class Response:
     story_drift = _OfHistory[Array]()
     story_shear = _OfHistory[Array]()
     floor_acceleration = _OfHistory[Array]()
+    horizontal_reaction = _OfHistory[Array]()
+    vertical_reaction = _OfHistory[Array]()
+    friction_demand = _OfHistory[Array]()
+    required_friction = _OfHistory[float]()
+    required_friction_excluding_impacts = _OfHistory[Callable[..., float]]()
+    sliding_time = _OfHistory[Callable[..., float | None]]()
     energy = _OfHistory[EnergyLedger]()
 
     def __repr__(self) -> str:

@@ -10,6 +10,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex.models import LinearModel, NonlinearModel
 from rockflex.solve._solution import Solution
+from rockflex.solve.adaptive.cross import STALLED
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log
 from rockflex.solve.exact.run import SETTLED, UNSETTLED
@@ -18,7 +19,6 @@ from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURN
 __all__ = ["QUIET", "Engine"]
 
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
-STALLED = -5  # of the adaptive engine, whose error control found no step short enough
 
 
 class Engine(ABC):

@@ -1,6 +1,33 @@
 """Structures above a base that can rock: how masses, stiffness and geometry are assembled."""
 
+from rockflex.structure._beam import Beam
+from rockflex.structure._block import rigid_block
+from rockflex.structure._cantilever import CantileverWithTipMass
+from rockflex.structure._equivalents import equivalent_2hz_long_base, equivalent_s1
+from rockflex.structure._fish_bone import FishBone
 from rockflex.structure._frame import Frame
+from rockflex.structure._from_matrices import ModalStructure, from_matrices, from_modes
 from rockflex.structure._lumped import LumpedStructure
+from rockflex.structure._ritz import RitzShapes, cosine_shapes
+from rockflex.structure._sections import LumpedMasses
+from rockflex.structure._tapered_tower import TaperedTower
+from rockflex.structure._wall_frame import WallFrame
 
-__all__ = ["Frame", "LumpedStructure"]
+__all__ = [
+    "Beam",
+    "CantileverWithTipMass",
+    "FishBone",
+    "Frame",
+    "LumpedMasses",
+    "LumpedStructure",
+    "ModalStructure",
+    "RitzShapes",
+    "TaperedTower",
+    "WallFrame",
+    "cosine_shapes",
+    "equivalent_2hz_long_base",
+    "equivalent_s1",
+    "from_matrices",
+    "from_modes",
+    "rigid_block",
+]

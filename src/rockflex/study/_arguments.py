@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Any, Literal, Protocol, get_args
 
-from rockflex._checks import real_or_nan
+from rockflex._checks import finite_vector, real_or_nan
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, NonlinearModel, RockingModel
@@ -23,6 +23,7 @@ __all__ = [
     "factors_of",
     "free_vibration_time",
     "is_structure",
+    "positive_numbers",
     "properties_of",
     "sequence_of",
 ]
@@ -145,6 +146,15 @@ def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: s
             message = f"{name}[{place}] is {described(item)}. Expected {wanted}."
             raise InputError(message)
     return items
+
+
+def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[float]:
+    """One positive number or more, as a list."""
+    numbers = finite_vector(name, values, unit)
+    if numbers.min(initial=math.inf) <= 0.0 or numbers.size == 0:
+        message = f"{name} must be one or more positive numbers{unit and f' in {unit}'}, but {values!r} was given."
+        raise InputError(message)
+    return numbers.tolist()
 
 
 def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list[float]:

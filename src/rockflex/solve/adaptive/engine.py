@@ -1,7 +1,10 @@
 """The adaptive engine's door: the complete and the yielding models."""
 
+import math
+
 import numpy as np
 
+from rockflex._constants import GRAVITY
 from rockflex.models import EXTRA, NonlinearModel, impact_of
 from rockflex.solve._engine import QUIET, Engine
 from rockflex.solve.adaptive.layout import Flow, stages
@@ -14,6 +17,7 @@ from rockflex.solve.exact.tables import tabulate
 __all__ = ["AdaptiveEngine"]
 
 TOLERANCE = 1e-10  # relative, of a step
+TREMOR = 0.01  # m/s²
 
 
 class AdaptiveEngine(Engine):
@@ -71,9 +75,8 @@ class AdaptiveEngine(Engine):
 
 
 def _scale(model: NonlinearModel) -> Array:
-    """Sizes of D, D', θ, θ' and z that a weak tremor of 0.01 m/s² reaches; smaller errors do not matter."""
+    """Sizes of D, D', θ, θ' and z below which errors do not matter: what a ground acceleration of `TREMOR` does."""
     p = model.properties
-    tremor = 0.01
-    rotation = 0.01 * p.m_tot * p.half_width / p.l0r * 0.01
-    fall = np.sqrt(p.l0r * 9.81 / p.i_theta)
-    return np.concatenate((tremor / p.omega**2, tremor / p.omega, [rotation, rotation * fall, 1e-3]))
+    rotation = TREMOR / GRAVITY * p.m_tot * p.half_width / p.l0r
+    fall = math.sqrt(p.l0r * GRAVITY / p.i_theta)
+    return np.concatenate((TREMOR / p.omega**2, TREMOR / p.omega, [rotation, rotation * fall, TREMOR / GRAVITY]))

@@ -1,0 +1,148 @@
+"""From mass-normalised modes and what they carry to modal and rocking properties, whatever the freedoms are."""
+
+from dataclasses import dataclass
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import mode_count
+from rockflex._errors import InputError
+from rockflex.modal._analysis import ModalProperties
+from rockflex.modal._floors import FloorModes
+from rockflex.modal._rocking import RockingProperties
+
+__all__ = ["MassNormalisedModes", "modes_that_take_part"]
+
+Float = NDArray[np.float64]
+
+# A participation below this share of the largest one possible is rounding of the eigenvectors.
+_NO_PARTICIPATION = 1e-10
+_NO_TOP_ORDINATE = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class MassNormalisedModes:
+    """Modes with φ_n^T M φ_n = 1, and what the structure carries when it moves as a rigid body.
+
+    With ι the displacement of a unit translation of the base and r that of a unit rotation (heights for
+    horizontal freedoms, 1 for rotations), the rigid-body sums of Silva & Stojadinović 2024, Section 2.1, are
+    those of any structure, with lumped or with distributed mass.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n,)
+        Circular frequencies in rad/s, rising.
+    shear : ndarray, shape (n,)
+        L_n^h = ι^T M φ_n in √kg.
+    moment : ndarray, shape (n,)
+        L_n^θ = r^T M φ_n in √kg m.
+    heights : ndarray, shape (S,)
+        Heights of the stations above the base in m, strictly rising; the last one is the top.
+    ordinates : ndarray, shape (S, n)
+        φ_n at the stations.
+    forces : ndarray, shape (S, n), or None
+        Forces at the stations that are statically equivalent to M φ_n; None where no such forces are known.
+    mass : float
+        ι^T M ι in kg, without the base.
+    first_moment : float
+        L_0^r = r^T M ι in kg m.
+    inertia : float
+        r^T M r in kg m².
+    rotary : float
+        Rotary inertia in kg m² that turns with the base but takes no part in the modes.
+    """
+
+    omega: Float
+    shear: Float
+    moment: Float
+    heights: Float
+    ordinates: Float
+    forces: Float | None
+    mass: float
+    first_moment: float
+    inertia: float
+    rotary: float = 0.0
+
+    def modal(self) -> ModalProperties:
+        """Return the modes with the top ordinate 1."""
+        shear, moment = self.shear.copy(), self.moment
+        no_shear = np.abs(shear) <= _NO_PARTICIPATION * np.sqrt(self.mass)
+        no_moment = np.abs(moment) <= _NO_PARTICIPATION * np.sqrt(self.inertia)
+        shear[no_shear] = 0.0
+        height = np.where(no_moment, np.nan, np.copysign(np.inf, moment))
+        np.divide(moment, shear, out=height, where=~no_shear)
+        above = self.heights > 0.0
+        shapes = self.ordinates[above]
+        scale = _normalising_ordinates(shapes)
+        return ModalProperties(
+            omega=self.omega.copy(),
+            effective_mass=shear**2,
+            effective_height=height,
+            participation=shear * scale,
+            shapes=shapes / scale,
+            heights=self.heights[above],
+        )
+
+    def rocking(
+        self, base_mass: float, half_width: float, zeta: Float, n_modes: SupportsIndex | None
+    ) -> RockingProperties:
+        """Return the parameters on a base that can rock; `zeta` holds one ratio a mode.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes, or one among them takes part in the base moment alone.
+        """
+        modal = self.modal()
+        kept = modes_that_take_part(modal, n_modes)
+        shear, omega = self.shear[kept], self.omega[kept]
+        displacement = self.ordinates[:, kept] * shear
+        floors = None
+        if self.forces is not None:
+            floors = FloorModes(self.heights, displacement, self.forces[:, kept] * shear * omega**2)
+        m_tot = self.mass + base_mass
+        return RockingProperties(
+            omega=omega,
+            effective_mass=modal.effective_mass[kept],
+            effective_height=modal.effective_height[kept],
+            top_ordinate=displacement[-1],
+            i_theta=self.inertia + self.rotary + m_tot * half_width**2,
+            l0r=self.first_moment,
+            m_tot=m_tot,
+            half_width=half_width,
+            zeta=zeta[kept],
+            translational_inertia=self.inertia,
+            floors=floors,
+        )
+
+
+def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
+    """Return the indices of the first `n_modes` modes that the ground or the rotation excites.
+
+    Raises
+    ------
+    InputError
+        If there are not as many, or one among them takes part in the base moment but not in the base shear.
+    """
+    take_part = np.flatnonzero(~np.isnan(modal.effective_height))
+    kept = take_part[: mode_count(n_modes, take_part.size)]
+    rotation_only = kept[np.isinf(modal.effective_height[kept])]
+    if rotation_only.size:
+        mode = int(rotation_only[0])
+        below = int(np.sum(kept < mode))
+        remedy = f", or keep only the modes below it (n_modes={below})." if below else "."
+        message = (
+            f"Mode {mode + 1} ({modal.omega[mode]:.6g} rad/s) takes part in the base moment but not in the "
+            "base shear, so it has no modal coordinate D_n. Change a mass or a stiffness slightly"
+            f"{remedy}"
+        )
+        raise InputError(message)
+    return kept
+
+
+def _normalising_ordinates(shapes: Float) -> Float:
+    magnitude = np.abs(shapes)
+    largest = shapes[magnitude.argmax(axis=0), np.arange(shapes.shape[1])]
+    scale = np.where(magnitude[-1] > _NO_TOP_ORDINATE * np.abs(largest), shapes[-1], largest)
+    return np.where(scale == 0.0, 1.0, scale)  # a mode may leave all stations where they are

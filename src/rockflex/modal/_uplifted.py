@@ -1,0 +1,137 @@
+"""Vibration of a structure whose base has lifted."""
+
+import math
+from dataclasses import dataclass, fields
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex.modal._rocking import RockingProperties
+
+__all__ = ["UpliftedModes", "frequency_equation", "uplifted_modes"]
+
+Float = NDArray[np.float64]
+
+_BESIDE = 1.0 + 1e-13  # a shift beside a root, so that no pivot is zero
+
+
+@dataclass(frozen=True, eq=False)
+class UpliftedModes:
+    """Modes of free motion about one pivot. The arrays are read-only.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n,)
+        Circular frequencies ω*_n of vibration in rad/s, rising.
+    ratio : ndarray, shape (n,)
+        ω*_n/ω_n: against the same mode on a fixed base.
+    shapes : ndarray, shape (n + 1, n)
+        (θ, D_1 .. D_n) as columns, with Σ_n |D_n| = 1 m and the largest D_n positive.
+    growth_rate : float
+        Rate in 1/s at which the rigid, unstable mode grows; √(L_0^r g/I_θ) of a rigid structure.
+    growth_shape : ndarray, shape (n + 1,)
+        (θ, D_1 .. D_n) of that mode, with θ = 1 rad.
+    """
+
+    omega: Float
+    ratio: Float
+    shapes: Float
+    growth_rate: float
+    growth_shape: Float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+
+def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None = None) -> UpliftedModes:
+    """Return the modes of Eq. 23 without damping, with the first `n_modes` modes of the structure or with all.
+
+    Its matrices, the rows of D_n times m*_n, are symmetric, and the mass matrix is positive definite since
+    I_θ > Σ m*_n h*_n². One root in ω² is negative, for the rotation that gravity drives; the others are vibrations.
+
+    Parameters
+    ----------
+    properties : RockingProperties
+    n_modes : int, optional
+        Modes of the structure to keep: 1 is 2DOF-S, 2 is 3DOF-S. Default: all.
+
+    Returns
+    -------
+    UpliftedModes
+
+    Raises
+    ------
+    InputError
+        If there are not as many modes.
+
+    References
+    ----------
+    Silva & Stojadinović 2024, Eq. 23 and Section 3.4 (Fig. 10).
+    """
+    p = properties if n_modes is None else properties.truncated(n_modes)
+    # With D_n √m*_n for freedoms the lower block of the mass matrix is the identity.
+    root = np.sqrt(p.effective_mass)
+    arm = root * p.effective_height
+    # M = L L^T: the rest of the inertia, and the modes' own directions.
+    rest = math.sqrt(p.i_theta - float(arm @ arm))
+    # With y = (rest θ, √m*_n D_n + arm θ), M is the identity and K' = S^T K S, where (θ, √m* D) = S y.
+    n = p.n_modes
+    back = np.eye(n + 1)
+    back[0, 0] = 1.0 / rest
+    back[1:, 0] = -arm / rest
+    stiffness = np.concatenate([[-p.l0r * GRAVITY], p.omega**2])
+    squares, vectors = np.linalg.eigh(back.T @ (stiffness[:, None] * back))
+    mass = np.eye(n + 1)
+    mass[0, 0], mass[0, 1:], mass[1:, 0] = p.i_theta, arm, arm
+    squares, motions = _polished(stiffness, mass, squares, back @ vectors)
+    motions[1:] /= root[:, None]
+    omega = np.sqrt(squares[1:])
+    modal = motions[1:, 1:]
+    largest = modal[np.abs(modal).argmax(axis=0), np.arange(n)] if n else np.ones(0)
+    return UpliftedModes(
+        omega=omega,
+        ratio=omega / p.omega,
+        shapes=motions[:, 1:] / (np.sign(largest) * np.abs(modal).sum(axis=0)),
+        growth_rate=math.sqrt(-squares[0]),
+        growth_shape=motions[:, 0] / motions[0, 0],
+    )
+
+
+def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> tuple[Float, Float]:
+    """Give small roots back the digits that rounding of the largest took: a step of inverse iteration each."""
+    near = np.diag(stiffness) - (squares * _BESIDE)[:, None, None] * mass
+    moved = np.linalg.solve(near, (mass @ motions).T[:, :, None])[:, :, 0].T
+    moved /= np.abs(moved).max(axis=0)
+    work = np.einsum("in,in->n", moved, stiffness[:, None] * moved)
+    return work / np.einsum("in,in->n", moved, mass @ moved), moved
+
+
+def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float:
+    """Return -L_0^r g - ω² I_θ - Σ_n ω⁴ m*_n h*_n²/(ω_n² - ω²), whose zeros are the uplifted frequencies.
+
+    Parameters
+    ----------
+    properties : RockingProperties
+        `truncated` for fewer modes.
+    omega : array_like
+        Circular frequencies in rad/s, any shape.
+
+    Returns
+    -------
+    ndarray
+        In N m/rad, in the shape of `omega`; NaN at a frequency ω_n of the fixed base, where the sum has a pole.
+
+    References
+    ----------
+    Silva & Stojadinović 2024, Section 3.4 (Fig. 12).
+    """
+    square = np.asarray(omega, dtype=np.float64)[..., None] ** 2
+    inertia = properties.effective_mass * properties.effective_height**2
+    gap = properties.omega**2 - square
+    terms = np.divide(square**2 * inertia, gap, out=np.full(gap.shape, np.nan), where=gap != 0.0)
+    return -properties.l0r * GRAVITY - square[..., 0] * properties.i_theta - terms.sum(axis=-1)

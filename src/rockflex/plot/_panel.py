@@ -1,0 +1,130 @@
+"""One panel of a history: what is drawn, its curves and peaks, and where a structure falls."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError
+from rockflex.plot._curves import Curve, rotation_limit
+from rockflex.plot._style import SMALL, letter
+from rockflex.plot._units import readable, short
+
+if TYPE_CHECKING:
+    from rockflex.response import History
+
+__all__ = ["ALL", "Quantity", "draw_panel", "quantities_of", "scale_of"]
+
+_HEADROOM = 1.12
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a panel shows."""
+
+    symbol: str
+    name: str
+    unit: str
+    prefixed: bool
+    of: "Callable[[History], NDArray[np.float64]]"
+
+
+_QUANTITIES = (
+    Quantity("θ", "rotation", "rad", False, lambda h: h.rotation),
+    Quantity(r"$u_{\mathrm{top}}$", "top_displacement", "m", False, lambda h: h.top_displacement),
+    Quantity(r"$M_b$", "base_moment", "N m", True, lambda h: h.base_moment),
+    Quantity(r"$V_b$", "base_shear", "N", True, lambda h: h.base_shear),
+)
+ALL = tuple(quantity.name for quantity in _QUANTITIES)
+
+
+def quantities_of(panels: Sequence[str]) -> list[Quantity]:
+    """The quantities by their names.
+
+    Raises
+    ------
+    InputError
+        If there are none, one is unknown or stands twice.
+    """
+    names = [panels] if isinstance(panels, str) else list(panels)
+    if not names or len(set(names)) < len(names) or not set(names) <= set(ALL):
+        message = f"panels must be one or more of {', '.join(ALL)}, each once, but {panels!r} was given."
+        raise InputError(message)
+    return [next(quantity for quantity in _QUANTITIES if quantity.name == name) for name in names]
+
+
+def scale_of(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, float]:
+    """Divisor, unit and largest magnitude of an axis, with some room."""
+    largest = max(_largest(curve, quantity) for curve in curves)
+    if quantity.name == "rotation":
+        largest = rotation_limit(curves)
+    factor, unit = readable(largest, quantity.unit) if quantity.prefixed else (1.0, quantity.unit)
+    return factor, unit, _HEADROOM * largest / factor if largest > 0.0 else 1e-3
+
+
+def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -> list[Artist]:
+    """Fill one panel over time; return a line for each curve."""
+    factor, unit, limit = scale_of(quantity, curves)
+    axes.set_ylim(-limit, limit)
+    axes.set_ylabel(f"{quantity.symbol} [{unit}]")
+    letter(axes, mark)
+    lines: list[Artist] = []
+    notes = [("peaks", "#404040")]
+    for curve in curves:
+        look = curve.look
+        lines += axes.plot(
+            curve.history.time, quantity.of(curve.history) / factor, color=look.color, linestyle=look.dashes,
+            linewidth=look.width, label=curve.label, zorder=curve.order,
+        )  # fmt: skip
+        if curve.overturned:
+            axes.axvline(curve.response.end_time, color=look.color, linestyle=":", linewidth=0.8, zorder=1.5)
+        if curve.falls and quantity.name == "rotation":
+            _mark_fall(axes, curve, limit)
+        notes.append((_mark_peak(axes, quantity, curve, factor), look.color))
+    for row, (text, color) in enumerate(notes):
+        axes.annotate(
+            text, (1.0, 1.0), xytext=(5.0, -1.0 - 10.0 * row), xycoords="axes fraction", textcoords="offset points",
+            color=color, fontsize=SMALL, va="top", annotation_clip=False,
+        )  # fmt: skip
+    return lines
+
+
+def _largest(curve: Curve, quantity: Quantity) -> float:
+    """Largest magnitude that the axis must hold."""
+    if not curve.falls:
+        return float(getattr(curve.response, f"max_{quantity.name}"))
+    return float(np.max(np.abs(quantity.of(curve.history)[curve.before_fall])))
+
+
+def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> str:
+    """Circle the true peak, which may lie between two nodes of the curve; return what to write of it."""
+    if curve.overturned and quantity.name == "rotation":
+        return f"overturned, {curve.response.end_time:.2f} s"
+    peak = float(getattr(curve.response, f"max_{quantity.name}")) / factor
+    when = float(getattr(curve.response, f"time_of_max_{quantity.name}"))
+    if peak == 0.0:
+        return "0"
+    side = float(np.sign(np.interp(when, curve.history.time, quantity.of(curve.history))))
+    axes.plot(
+        [when], [side * peak], "o", color=curve.look.color, markersize=3.5, markerfacecolor="white",
+        markeredgewidth=0.9, zorder=3.0,
+    )  # fmt: skip
+    return f"{short(peak)} at {when:.2f} s"
+
+
+def _mark_fall(axes: Axes, curve: Curve, limit: float) -> None:
+    """Triangle where the rotation leaves the panel for good."""
+    rotation, time = curve.history.rotation, curve.history.time
+    inside = np.flatnonzero(np.abs(rotation) <= limit)
+    last = int(inside[-1]) if inside.size else 0
+    if last + 1 == time.size:
+        return
+    around = slice(last, last + 2)
+    when = float(np.interp(limit, np.abs(rotation[around]), time[around]))
+    side = float(np.sign(rotation[-1]))
+    marker = "^" if side > 0 else "v"
+    axes.plot([when], [side * limit], marker, color=curve.look.color, markersize=6.0, clip_on=False, zorder=5.0)

@@ -1,0 +1,147 @@
+"""Rocking spectra and overturning spectra."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from rockflex._errors import InputError
+from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, LOOKS, RED, Look, literal, new_figure, styled
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["plot_overturning_spectrum", "plot_rocking_spectrum"]
+
+_CROSSES = 0.045  # of the panel, from row to row
+_LOOKS = (Look(BLACK, "-"), Look(RED, "-."), Look(GREEN, "--"), Look(BLUE, ":"), *LOOKS)
+
+
+def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
+    """Plot θ_max/α over 2π/p, a curve for each slenderness.
+
+    Blocks that overturn have no θ_max: the curve is broken, and crosses along the top stand for them, a row a
+    slenderness.
+
+    Parameters
+    ----------
+    table
+        From `rocking_spectrum`.
+    title
+        Over the figure; the name of the motion, for instance.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; 2π/p in s.
+
+    Raises
+    ------
+    InputError
+        If the table lacks a column that it needs, has no rows, or has more slendernesses than can be told apart.
+    """
+    _check(table, ("slenderness", "period", "relative_rotation", "overturned"), "rocking_spectrum")
+    groups = list(table.groupby("slenderness"))
+    _check_number(len(groups), "slendernesses")
+    fell = table["overturned"].fillna(False).astype(bool)
+    standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
+    room = 1.0 - _CROSSES * (len(groups) + 1)
+    limit = (1.05 * max(standing, default=0.0) or 1.0) / room
+    with styled():
+        figure = new_figure(6.3, 3.6)
+        axes = figure.subplots()
+        for rank, ((slenderness, rows), look) in enumerate(zip(groups, _LOOKS, strict=False)):
+            block = rows.sort_values("period")
+            over = block["overturned"].fillna(False).to_numpy(dtype=bool)
+            values = np.where(over, np.nan, block["relative_rotation"].to_numpy(dtype=float))
+            axes.plot(
+                block["period"], values, color=look.color, linestyle=look.dashes, marker=".",
+                markersize=2.5, label=f"α = {slenderness:.3g} rad",
+            )  # fmt: skip
+            axes.plot(
+                block["period"][over], np.full(over.sum(), 1.0 - _CROSSES * (rank + 1)), "x", color=look.color,
+                markersize=3.5, transform=axes.get_xaxis_transform(), label="_overturned",
+            )  # fmt: skip
+        axes.set_ylim(0.0, limit)
+        axes.set_xlabel(r"$2π/p$ [s]")
+        axes.set_ylabel(r"$θ_{\mathrm{max}}/α$")
+        axes.set_title(literal(title))
+        cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
+        handles, _ = axes.get_legend_handles_labels()
+        figure.legend(handles=[*handles, cross], loc="outside right upper")
+    return figure
+
+
+def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]", *, title: str = "") -> Figure:
+    """Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, a curve for each table.
+
+    Where amplitudes above it stand too, the range up to the largest of them is hatched: overturning is not monotone.
+
+    Parameters
+    ----------
+    tables
+        From `overturning_spectrum`: one, or several by their names.
+    title
+        Over the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; no units.
+
+    Raises
+    ------
+    InputError
+        If a table lacks a column that it needs or has no rows, or there are more than can be told apart.
+    """
+    named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
+    if not named:
+        message = "There is no table to plot. Give at least one from overturning_spectrum."
+        raise InputError(message)
+    _check_number(len(named), "tables")
+    for table in named.values():
+        _check(table, ("frequency_ratio", "lowest", "highest_standing"), "overturning_spectrum")
+    with styled():
+        figure = new_figure(6.3, 3.6)
+        axes = figure.subplots()
+        finite = [v for table in named.values() for v in table["lowest"] if np.isfinite(v)]
+        top = [v for table in named.values() for v in table["highest_standing"] if np.isfinite(v)]
+        limit = 1.1 * max([*finite, *top, 1.0])
+        for (name, table), look in zip(named.items(), _LOOKS, strict=False):
+            rows = table.sort_values("frequency_ratio")
+            ratio, low = rows["frequency_ratio"].to_numpy(dtype=float), rows["lowest"].to_numpy(dtype=float)
+            high = np.minimum(rows["highest_standing"].to_numpy(dtype=float), limit)
+            both = high > low * (1.0 + 1e-3)
+            axes.fill_between(
+                ratio, low, high, where=both, facecolor="none", edgecolor=look.color, hatch="////", linewidth=0.0,
+                alpha=0.5,
+            )  # fmt: skip
+            axes.plot(ratio, low, color=look.color, linestyle=look.dashes, label=literal(name) or "lowest")
+        axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
+        axes.set_xlim(left=0.0)
+        axes.set_ylim(0.0, limit)
+        axes.set_xlabel(r"$ω_g/p$")
+        axes.set_ylabel(r"$a_p/(g\,α)$")
+        axes.set_title(literal(title))
+        handles, _ = axes.get_legend_handles_labels()
+        if axes.collections and any(len(area.get_paths()) for area in axes.collections):
+            handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
+        figure.legend(handles=handles, loc="outside right upper")
+    return figure
+
+
+def _check(table: "pd.DataFrame", columns: tuple[str, ...], source: str) -> None:
+    missing = [name for name in columns if name not in getattr(table, "columns", ())]
+    if missing or not len(table):
+        lacks = f"lacks {', '.join(missing)}" if missing else "has no rows"
+        message = f"The table {lacks}. Give what {source} returned."
+        raise InputError(message)
+
+
+def _check_number(given: int, what: str) -> None:
+    if given > len(_LOOKS):
+        message = f"{given} {what} are too many to be told apart in one figure; {len(_LOOKS)} can be. Plot fewer."
+        raise InputError(message)

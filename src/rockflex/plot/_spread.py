@@ -1,0 +1,116 @@
+"""What is not known of a structure, as a band around each model's response."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError
+from rockflex.plot._curves import Curve, curves_of, title_of
+from rockflex.plot._panel import Quantity, quantities_of, scale_of
+from rockflex.plot._style import BLACK, GRAY, SHADE, columns, new_figure, styled
+
+if TYPE_CHECKING:
+    from rockflex.response import Response
+
+__all__ = ["plot_spread"]
+
+Array = NDArray[np.float64]
+
+_POINTS = 2000  # across the panel, more than it has dots
+
+
+def plot_spread(
+    responses: "Sequence[Response]",
+    varied: "Sequence[Sequence[Response]]",
+    labels: Sequence[str] | None = None,
+    *,
+    panels: Sequence[str] = ("rotation", "top_displacement"),
+    title: str | None = None,
+) -> Figure:
+    """Plot each response with the band from the least to the largest value of its variations, instant by instant.
+
+    The band is no response: between its edges lie those that were run, and what others would do is not known. Once a
+    variation has ended or falls, it counts no more.
+
+    Parameters
+    ----------
+    responses
+        One response a row, with its history.
+    varied
+        For each of them, the responses of the same model to what was varied; one at least, with histories.
+    labels
+        A name for each response. Default: the models, with the motions where a model occurs twice.
+    panels
+        Which of ``"rotation"``, ``"top_displacement"``, ``"base_moment"`` and ``"base_shear"``, from the left.
+    title
+        Default: the name of the motion, if there is only one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One row of axes a response and one column a panel, over a common time axis in s.
+
+    Raises
+    ------
+    InputError
+        If there is not one group of variations a response, one is empty or without history, or a panel is unknown.
+    """
+    curves = curves_of(responses, labels)
+    if len(varied) != len(curves) or not all(len(group) for group in varied):
+        message = (
+            f"varied must hold {len(curves)} groups, one a response, each of at least one response, but groups of "
+            f"{[len(group) for group in varied]} were given."
+        )
+        raise InputError(message)
+    groups = [[_alone(response) for response in group] for group in varied]
+    quantities = quantities_of(panels)
+    everything = [*curves, *(curve for group in groups for curve in group)]
+    times = np.linspace(0.0, max(float(curve.history.time[-1]) for curve in curves), _POINTS)
+    with styled():
+        figure = new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * len(curves))
+        grid = figure.subplots(len(curves), len(quantities), sharex=True, sharey="col", squeeze=False)
+        for column, quantity in enumerate(quantities):
+            factor, unit, limit = scale_of(quantity, everything)
+            for row, (curve, group) in enumerate(zip(curves, groups, strict=True)):
+                axes: Axes = grid[row, column]
+                low, high = _band(quantity, [curve, *group], times)
+                axes.fill_between(times, low / factor, high / factor, color=SHADE, edgecolor=GRAY, linewidth=0.4)
+                drawn = curve.before_fall
+                values = quantity.of(curve.history)[drawn] / factor
+                axes.plot(curve.history.time[drawn], values, color=BLACK, linewidth=0.8, label=curve.label)
+                axes.set_ylim(-limit, limit)
+                axes.set_xlim(0.0, float(times[-1]))
+                axes.set_ylabel(f"{quantity.symbol} [{unit}]")
+                axes.set_title(curve.label, fontsize=8.0, loc="left", pad=3.0)
+            grid[-1, column].set_xlabel("time [s]")
+        figure.align_ylabels()
+        handles = [grid[0, 0].get_lines()[0], Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)]
+        names = ["nominal", "from the least to the largest of what was varied"]
+        figure.legend(
+            handles, names, loc="outside upper center", ncols=columns(names, 16 + 45 * len(quantities)),
+            title=title_of(curves, title), title_fontsize=9.0,
+        )  # fmt: skip
+    return figure
+
+
+def _alone(response: "Response") -> Curve:
+    return curves_of(response)[0]
+
+
+def _band(quantity: Quantity, curves: list[Curve], times: Array) -> tuple[Array, Array]:
+    """Least and largest value at each instant, among those that have not ended."""
+    rows = np.full((len(curves), times.size), np.nan)
+    for row, curve in zip(rows, curves, strict=True):
+        drawn = curve.before_fall
+        time = curve.history.time[drawn]
+        inside = times <= time[-1]
+        row[inside] = np.interp(times[inside], time, quantity.of(curve.history)[drawn])
+    known = ~np.isnan(rows).all(axis=0)
+    low, high = np.full(times.size, np.nan), np.full(times.size, np.nan)
+    low[known], high[known] = np.nanmin(rows[:, known], axis=0), np.nanmax(rows[:, known], axis=0)
+    return low, high

@@ -1,0 +1,128 @@
+"""Hysteresis of the superstructure, by itself and beside the histories."""
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rockflex.plot._curves import Curve, curves_of, title_of
+from rockflex.plot._history import shade_uplifts
+from rockflex.plot._panel import draw_panel, quantities_of, scale_of
+from rockflex.plot._style import columns, letter, new_figure, styled
+
+if TYPE_CHECKING:
+    from rockflex.response import Response
+
+__all__ = ["plot_hysteresis", "plot_yielding"]
+
+
+def plot_hysteresis(
+    responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None, *, title: str | None = None
+) -> Figure:
+    """Plot the restoring force V_b of the superstructure over its top displacement u_top.
+
+    For one mode V_b is Eq. 37 of Silva & Stojadinović 2024 times m*_1, and an elastic superstructure draws a line; for
+    several modes the two are not tied to each other. A fall is drawn until the weight pulls the structure over.
+
+    Parameters
+    ----------
+    responses
+        One response or several, each with its history.
+    labels
+        A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
+    title
+        Default: the name of the motion, if there is only one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; u_top in m, V_b in the unit that suits its size.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, one has no history, or there is not one label a response.
+    """
+    curves = curves_of(responses, labels)
+    with styled():
+        figure = new_figure(4.2, 3.6)
+        lines = _loops(figure.subplots(), curves)
+        _legend(figure, curves, lines, title, 58)
+    return figure
+
+
+def plot_yielding(
+    responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None, *, title: str | None = None
+) -> Figure:
+    """Plot rotation θ and top displacement u_top over time, and the hysteresis of the superstructure.
+
+    The figure is that of Silva & Stojadinović 2024, Figs. 16 and 17. Peaks and uplifts are shown as in `plot_history`,
+    loops as in `plot_hysteresis`.
+
+    Parameters
+    ----------
+    responses
+        One response or several, each with its history.
+    labels
+        A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
+    title
+        Default: the name of the motion, if there is only one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three axes: A, θ in rad over s; B, u_top in m over s; C, V_b, in the unit that suits its size, over m.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, one has no history, or there is not one label a response.
+    """
+    curves = curves_of(responses, labels)
+    with styled():
+        figure = new_figure(8.6, 2.0 * max(1.45, 0.155 * (len(curves) + 2)) + 0.9)
+        grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
+        top = figure.add_subplot(grid[0, 0])
+        histories: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
+        for axes, quantity, mark in zip(histories, quantities_of(("rotation", "top_displacement")), "AB", strict=True):
+            draw_panel(axes, quantity, curves, mark)
+        shade_uplifts(histories, curves)
+        top.tick_params(labelbottom=False)
+        histories[1].set_xlabel("time [s]")
+        histories[1].set_xlim(0.0, max(float(curve.history.time[-1]) for curve in curves))
+        loops = figure.add_subplot(grid[:, 1])
+        lines = _loops(loops, curves)
+        letter(loops, "C")
+        figure.align_ylabels(histories)
+        _legend(figure, curves, lines, title, 110)
+    return figure
+
+
+def _loops(axes: Axes, curves: list[Curve]) -> list[Artist]:
+    """Fill a panel with V_b over u_top; return a line for each curve."""
+    displacement, force = quantities_of(("top_displacement", "base_shear"))
+    _, across, right = scale_of(displacement, curves)
+    factor, unit, high = scale_of(force, curves)
+    axes.set_xlim(-right, right)
+    axes.set_ylim(-high, high)
+    axes.locator_params(axis="x", nbins=5)
+    axes.set_xlabel(f"{displacement.symbol} [{across}]")
+    axes.set_ylabel(f"{force.symbol} [{unit}]")
+    lines: list[Artist] = []
+    for curve in curves:
+        drawn = curve.before_fall
+        lines += axes.plot(
+            displacement.of(curve.history)[drawn], force.of(curve.history)[drawn] / factor, color=curve.look.color,
+            linestyle=curve.look.dashes, linewidth=curve.look.width, label=curve.label, zorder=curve.order,
+        )  # fmt: skip
+    return lines
+
+
+def _legend(figure: Figure, curves: list[Curve], lines: list[Artist], title: str | None, width: int) -> None:
+    names = [curve.label for curve in curves]
+    figure.legend(
+        lines, names, loc="outside upper center", ncols=columns(names, width), title=title_of(curves, title),
+        title_fontsize=9.0, handlelength=2.6, columnspacing=1.4,
+    )  # fmt: skip

@@ -1,0 +1,268 @@
+"""The friction that keeps a base from sliding (Silva & Stojadinović 2024, Eqs. 20-22).
+
+With u_i of the modes kept, Σ m_i u_i = Σ m*_n D_n, and the sums over the masses come down to m_tot, L_0^r and that one.
+"""
+
+import math
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import positive, real_or_nan
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.models import EXTRA, LinearModel, NonlinearModel, RockingModel
+from rockflex.response._accelerations import accelerations, acting_side
+from rockflex.response._energy import is_impact
+from rockflex.solve import ExactEngine
+
+__all__ = ["IMPACT_WINDOW", "Friction", "Reactions", "reactions"]
+
+Array = NDArray[np.float64]
+
+IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has its short spikes
+TURN = 0.2  # radians of the fastest mode from one look to the next
+FEWEST, MOST = 4, 2000  # looks at the interval from one node to the next
+
+
+class Reactions(NamedTuple):
+    """What the ground gives the base, in N, shape (n,) each."""
+
+    horizontal: Array
+    vertical: Array
+
+
+def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
+    """Σ m_i (a + x''_i) of Eq. 21 and Σ m_i (g + z''_i), Eq. 22 with the weight's sign mended.
+
+    `nodes` as in `History`, and D''_n and θ'' at each of them, shape (n, N + 1).
+    """
+    p = model.properties
+    n = p.n_modes
+    theta, spin, turn = nodes[:, 3 + 2 * n], nodes[:, 4 + 2 * n], rates[:, -1]
+    sine, cosine = np.sin(theta), np.cos(theta)
+    # Σ m_i (s B - u_i), and how fast the masses move along the base.
+    across = acting_side(nodes) * p.m_tot * p.half_width - nodes[:, 3 : 3 + n] @ p.effective_mass
+    speed, push = nodes[:, 3 + n : 3 + 2 * n] @ p.effective_mass, rates[:, :-1] @ p.effective_mass
+    x = turn * (across * sine + p.l0r * cosine) + spin**2 * (across * cosine - p.l0r * sine)
+    z = turn * (across * cosine - p.l0r * sine) - spin**2 * (across * sine + p.l0r * cosine)
+    return Reactions(
+        p.m_tot * nodes[:, 2] + x + push * cosine - 2.0 * spin * speed * sine,
+        p.m_tot * GRAVITY + z - push * sine - 2.0 * spin * speed * cosine,
+    )
+
+
+class Friction:
+    """Required friction along a history.
+
+    Parameters
+    ----------
+    model, nodes
+        As in `History`.
+    printed
+        Eq. 22 as the paper prints it, Σ m_i (-g + z''_i), of which the magnitude counts.
+    """
+
+    def __init__(self, model: RockingModel, nodes: Array, *, printed: bool = False) -> None:
+        self._model = model
+        self._nodes = nodes
+        self._printed = printed
+        self._rates = accelerations(model, nodes)
+        self._engine: ExactEngine | None = None
+        linear = model.linear if isinstance(model, NonlinearModel) else model
+        if isinstance(model, LinearModel) or model.bouc_wen is None:
+            empty = np.zeros((0, 2 * model.properties.n_modes + 4))
+            self._engine = ExactEngine(linear, empty, empty)
+        p = model.properties
+        scale = np.sqrt(p.i_theta / linear.free_inertia)  # by which the frequencies rise at most, once uplifted
+        self._fastest = self._engine.fastest if self._engine else float(p.omega.max(initial=0.0) * scale)
+
+    @cached_property
+    def reactions(self) -> Reactions:
+        """Forces at the nodes."""
+        return reactions(self._model, self._nodes, self._rates)
+
+    @cached_property
+    def demand(self) -> Array:
+        """|ΣF_x| / ΣF_z at the nodes, shape (n_nodes,); infinite where the ground would have to pull."""
+        return _coefficient(self._angle(self.reactions))
+
+    def required(self, window: float = 0.0) -> float:
+        """Largest demand of the continuous motion, without the `window` seconds after each impact.
+
+        Raises
+        ------
+        InputError
+            If the window is negative or not finite, or the model is too fast for the sampling.
+        """
+        window = positive("window", window, "s", zero=True)
+        if not self._stretches.size:
+            return float(self.demand.max())
+        start = self._after(window)
+        looks = np.where(self._places[:, None] >= start, self._looks, -1.0)
+        for k in np.flatnonzero((start > 0.0) & (start < 1.0)):
+            # The first look that counts stands in for the one before it, which lies in the window.
+            first = int(np.searchsorted(self._places, start[k]))
+            looks[first, k] = max(looks[first, k], self._angle_at(int(k), float(start[k])))
+        best = float(looks.max())
+        for k in np.flatnonzero(looks.max(axis=0) + self._rise >= best):
+            if not 0.0 < best < 0.5 * math.pi:
+                break
+            if start[k] < 1.0:
+                best = max(best, self._peak(int(k), int(np.argmax(looks[:, k])), float(start[k]))[1])
+        return float(_coefficient(np.array(max(best, 0.0))))
+
+    def sliding_time(self, mu: float) -> float | None:
+        """Time at which the demand first exceeds `mu`, in s; None if it never does.
+
+        Raises
+        ------
+        InputError
+            If `mu` is not a positive number, or the model is too fast for the sampling.
+        """
+        coefficient = real_or_nan(mu)
+        if not 0.0 < coefficient < math.inf:
+            message = f"mu must be a friction coefficient above zero, such as 0.5, but {mu!r} was given."
+            raise InputError(message)
+        limit = math.atan(coefficient)
+        if not self._stretches.size:
+            return float(self._nodes[0, 0]) if self.demand[0] > coefficient else None
+        for k in np.flatnonzero(self._looks.max(axis=0) + self._rise > limit).tolist():
+            place = self._first_above(k, limit)
+            if place is not None:
+                begin, end = self._nodes[self._stretches[k] : self._stretches[k] + 2, 0]
+                return float(begin + place * (end - begin))
+        return None
+
+    def _first_above(self, k: int, limit: float) -> float | None:
+        """Place in a stretch at which the angle first exceeds a limit."""
+        from scipy.optimize import brentq
+
+        for look in range(self._places.size):
+            below, above = float(self._places[max(look - 1, 0)]), float(self._places[look])
+            angle = self._looks[look, k]
+            if angle <= limit < angle + self._rise[k]:
+                above, angle = self._peak(k, look, 0.0)
+            if angle > limit:
+                if self._angle_at(k, below) > limit:
+                    return below
+                return float(brentq(lambda place: self._angle_at(k, place) - limit, below, above, xtol=1e-12))  # pyright: ignore[reportArgumentType]
+        return None
+
+    def _peak(self, k: int, look: int, start: float) -> tuple[float, float]:
+        """Place and angle of the peak about one look at a stretch, no earlier than `start`."""
+        from scipy.optimize import minimize_scalar
+
+        low = max(float(self._places[max(look - 1, 0)]), start)
+        high = float(self._places[min(look + 1, self._places.size - 1)])
+        if low >= high:
+            return high, self._angle_at(k, high)
+        found = minimize_scalar(
+            lambda place: -self._angle_at(k, place), bounds=(low, high), method="bounded", options={"xatol": 1e-9}
+        )
+        return float(found.x), -float(found.fun)
+
+    @cached_property
+    def _stretches(self) -> NDArray[np.intp]:
+        """First nodes of the intervals that last, for events take no time."""
+        return np.flatnonzero(np.diff(self._nodes[:, 0]) > 0.0)
+
+    @cached_property
+    def _places(self) -> Array:
+        longest = float(np.diff(self._nodes[:, 0]).max(initial=0.0))
+        pieces = max(math.ceil(self._fastest * longest / TURN), FEWEST)
+        if pieces > MOST:
+            message = (
+                f"The friction demand of {self._model.label} needs {pieces} looks a step, above the limit of {MOST}: "
+                f"the model turns or decays at up to {self._fastest:.3g} rad/s, and steps last up to {longest:.3g} s. "
+                "Keep fewer modes, damp them less, or refine the record."
+            )
+            raise InputError(message)
+        return np.linspace(0.0, 1.0, pieces + 1)
+
+    @cached_property
+    def _looks(self) -> Array:
+        """Angles at places from 0 to 1 of every stretch, shape (n_places, n_stretches)."""
+        rates = self._rates
+        return np.stack([self._angles(self._nodes, rates, float(place)) for place in self._places])
+
+    @cached_property
+    def _rise(self) -> Array:
+        """By how much a peak in each stretch may pass the looks at both of its sides: eight times a parabola's."""
+        return np.abs(np.diff(self._looks, 2, axis=0)).max(axis=0)
+
+    def _after(self, window: float) -> Array:
+        """Place in each stretch where the window after the last impact ends: 0 if before it, above 1 if beyond."""
+        time = self._nodes[:, 0]
+        begin, length = time[self._stretches], np.diff(time)[self._stretches]
+        impacts = np.append(-np.inf, time[1:][is_impact(self._model, self._nodes)])
+        last = impacts[np.searchsorted(impacts, begin, side="right") - 1]
+        return np.maximum((last + window - begin) / length, 0.0)
+
+    def _angle_at(self, k: int, place: float) -> float:
+        """Angle at a place of one stretch."""
+        pair = slice(self._stretches[k], self._stretches[k] + 2)
+        return float(self._angles(self._nodes[pair], self._rates[pair], place)[0])
+
+    def _angles(self, nodes: Array, rates: Array, place: float) -> Array:
+        """Angles at a place of every interval of positive length."""
+        lasting = np.diff(nodes[:, 0]) > 0.0
+        rows, moved = self._between(nodes, rates, place)
+        rows = rows[lasting]
+        if moved is None:
+            return self._angle(reactions(self._model, rows, accelerations(self._model, rows)))
+        return self._angle(reactions(self._model, rows, moved[lasting]))
+
+    def _between(self, nodes: Array, rates: Array, place: float) -> tuple[Array, Array | None]:
+        """States at a place of every interval, and their accelerations where no state tells (a hysteretic spring).
+
+        Exact where the model is linear; else a polynomial of fifth degree through both nodes.
+        """
+        n = self._model.properties.n_modes
+        rows = nodes[:-1].copy()
+        rows[:, 0] += place * np.diff(nodes[:, 0])
+        rows[:, 2] += place * np.diff(nodes[:, 2])
+        if self._engine:
+            rows[:, 3 : 5 + 2 * n] = self._engine.between(nodes[:, : 5 + 2 * n], place)
+            if isinstance(self._model, LinearModel):
+                return rows, None
+        turn, spin = 3 + 2 * n, 4 + 2 * n
+        where, velocity = [*range(3, 3 + n), turn], [*range(3 + n, 3 + 2 * n), spin]
+        value, slope, bend = _quintic(nodes[:, where], nodes[:, velocity], rates, np.diff(nodes[:, 0]), place)
+        integrated = (nodes[:-1, 1] != 0.0) | (self._engine is None)
+        rows[np.ix_(integrated, where)] = value[integrated]
+        rows[np.ix_(integrated, velocity)] = slope[integrated]
+        rows[:, -EXTRA:] = 0.0
+        return rows, bend if self._engine is None else None
+
+    def _angle(self, forces: Reactions) -> Array:
+        """Angle of the reaction from the vertical, from 0 to π: tan μ, and it stays finite where the base lifts off."""
+        support = forces.vertical
+        if self._printed:
+            support = np.abs(support - 2.0 * self._model.properties.m_tot * GRAVITY)
+        return np.arctan2(np.abs(forces.horizontal), support)
+
+
+def _coefficient(angle: Array) -> Array:
+    upright = angle < 0.5 * math.pi
+    return np.where(upright, np.tan(np.where(upright, angle, 0.0)), np.inf)
+
+
+def _quintic(value: Array, slope: Array, bend: Array, step: Array, place: float) -> tuple[Array, Array, Array]:
+    """Value, slope and bend between neighbouring rows, from those of the rows, (n, K) each."""
+    h = step[:, None]
+    safe = np.where(h > 0.0, h, 1.0)
+    start, end = slope[:-1] * h, slope[1:] * h
+    first, last = bend[:-1] * h**2, bend[1:] * h**2
+    rise = value[1:] - value[:-1] - start - 0.5 * first
+    tilt = end - start - first
+    curl = last - first
+    c3, c4, c5 = 10 * rise - 4 * tilt + 0.5 * curl, -15 * rise + 7 * tilt - curl, 6 * rise - 3 * tilt + 0.5 * curl
+    f = place
+    return (
+        value[:-1] + f * (start + f * (0.5 * first + f * (c3 + f * (c4 + f * c5)))),
+        (start + f * (first + f * (3 * c3 + f * (4 * c4 + f * 5 * c5)))) / safe,
+        (first + f * (6 * c3 + f * (12 * c4 + f * 20 * c5))) / safe**2,
+    )

@@ -1,0 +1,167 @@
+"""A cantilever whose mass and stiffness vary along the height."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rockflex._checks import damping_ratios, positive, whole_number
+from rockflex._errors import InputError
+from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
+from rockflex.structure._beam_fe import finite_element_modes
+from rockflex.structure._profile import Along, Profile, profile
+from rockflex.structure._ritz import RitzShapes, cosine_shapes, ritz_modes
+from rockflex.structure._sections import LumpedMasses, Sections, on_beam
+
+__all__ = ["Beam"]
+
+_N_ELEMENTS = 1000
+_RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Beam:
+    """A cantilever with distributed mass on a rigid base that can rock.
+
+    What varies along the height is a number, a function of heights (n,) in m that returns values (n,), or a table
+    ``(heights, values)`` from the base to the top, linear between its rows; two rows at one height are a jump.
+    The formulas are those of Silva & Stojadinović 2024, Table 2, with integrals for the sums, and Eq. 33 for I_θ.
+
+    Attributes
+    ----------
+    height : float
+        Height H in m.
+    mass : number, function or table
+        Mass a unit length m(z) in kg/m, positive.
+    bending_stiffness : number, function or table
+        EI(z) in N m², positive.
+    half_width : float
+        Half the width B of the base in m.
+    damping_ratio : ndarray, shape (n_modes,)
+        Damping ratio of each mode in [0, 1); one number stands for all modes.
+    shear_stiffness : number, function or table, optional
+        GA_s(z) in N, positive (Timoshenko's beam). Default: no deformation in shear.
+    rotary_inertia : number, function or table, optional
+        Rotary inertia of the section a unit length, ρI, in kg m, zero or positive. Default: none.
+    lumped_masses : LumpedMasses, optional
+        Bodies along the height.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    rotary_in_modes : bool
+        Whether the rotary inertia takes part in the modes too (the consistent choice), or in I_θ alone, as
+        the paper has it for its chimney.
+    method : {"fe", "ritz"}
+        Finite elements, or Rayleigh-Ritz. Rayleigh-Ritz has no deformation in shear.
+    n_modes : int
+        Number of modes that the structure has.
+    n_elements : int, optional
+        Equal finite elements, at least `n_modes`; cut further where needed. Default: 1000. For "fe" alone.
+    shapes : RitzShapes, optional
+        At least `n_modes` shapes. Default: those of Eq. 36, five or `n_modes`. For "ritz" alone.
+    sections : Sections
+        What was given, as profiles along the height; not an argument.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range, a table does not reach the top, or an argument does not go with the method.
+    """
+
+    height: float
+    mass: Along
+    bending_stiffness: Along
+    half_width: float
+    damping_ratio: ArrayLike
+    shear_stiffness: Along | None = None
+    rotary_inertia: Along | None = None
+    lumped_masses: LumpedMasses | None = None
+    base_mass: float = 0.0
+    rotary_in_modes: bool = True
+    method: Literal["fe", "ritz"] = "fe"
+    n_modes: int = 5
+    n_elements: int | None = None
+    shapes: RitzShapes | None = None
+    sections: Sections = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        height = positive("height", self.height, "m")
+        n_modes = whole_number("n_modes", self.n_modes, 1)
+        vars(self).update(
+            height=height,
+            half_width=positive("half_width", self.half_width, "m"),
+            base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
+            n_modes=n_modes,
+            damping_ratio=damping_ratios("damping_ratio", self.damping_ratio, n_modes),
+            sections=Sections(
+                height,
+                profile("mass", self.mass, height, "kg/m"),
+                profile("bending_stiffness", self.bending_stiffness, height, "N m²"),
+                _optional("shear_stiffness", self.shear_stiffness, height, "N"),
+                _optional("rotary_inertia", self.rotary_inertia, height, "kg m", zero=True),
+                on_beam(self.lumped_masses, height),
+                bool(self.rotary_in_modes),
+            ),
+        )
+        self._check_method()
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
+
+        The shapes are given at 20 equal steps of the height.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the structure's own.
+        """
+        modes = self._modes.modal()
+        return modes if n_modes is None else modes.truncated(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        The floors are 21 stations, base included, that carry the distributed forces with their resultants.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes.
+        """
+        zeta = np.asarray(self.damping_ratio, dtype=np.float64)
+        return self._modes.rocking(self.base_mass, self.half_width, zeta, n_modes)
+
+    @cached_property
+    def _modes(self) -> MassNormalisedModes:
+        if self.method == "fe":
+            return finite_element_modes(self.sections, self._elements, self.n_modes)
+        shapes = self.shapes
+        if shapes is None:
+            shapes = cosine_shapes(self.height, max(self.n_modes, _RITZ_SHAPES))
+        return ritz_modes(self.sections, shapes, self.n_modes)
+
+    @property
+    def _elements(self) -> int:
+        return max(_N_ELEMENTS, self.n_modes) if self.n_elements is None else self.n_elements
+
+    def _check_method(self) -> None:
+        if self.method not in ("fe", "ritz"):  # pyright: ignore[reportUnnecessaryContains]
+            message = f'method must be "fe" or "ritz", but {self.method!r} was given.'
+            raise InputError(message)
+        lacking = {"fe": {"shapes": "ritz"}, "ritz": {"n_elements": "fe", "shear_stiffness": "fe"}}
+        for name, other in lacking[self.method].items():
+            if getattr(self, name) is not None:
+                message = f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".'
+                raise InputError(message)
+        if self.n_elements is not None:
+            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes))
+        if self.shapes is not None:
+            found = self.shapes.check(self.height)
+            if found < self.n_modes:
+                message = f"shapes must hold at least n_modes = {self.n_modes} shapes, but it holds {found}."
+                raise InputError(message)
+
+
+def _optional(name: str, given: Along | None, height: float, unit: str, *, zero: bool = False) -> Profile | None:
+    return None if given is None else profile(name, given, height, unit, zero=zero)

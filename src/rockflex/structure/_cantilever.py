@@ -1,0 +1,118 @@
+"""A uniform cantilever with a body at its tip."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import SupportsIndex
+
+from numpy.typing import ArrayLike
+
+from rockflex._checks import mode_count, positive
+from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.structure._beam import Beam
+from rockflex.structure._from_matrices import ModalStructure, from_matrices
+from rockflex.structure._sections import LumpedMasses
+
+__all__ = ["CantileverWithTipMass"]
+
+_N_MODES = 5
+
+
+@dataclass(frozen=True, eq=False)
+class CantileverWithTipMass:
+    """A uniform column that carries a body at its tip, clamped to a base that can rock.
+
+    Attributes
+    ----------
+    height : float
+        Height H of the tip in m.
+    tip_mass : float
+        Mass of the body in kg.
+    bending_stiffness : float
+        EI of the column in N m².
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    half_width : float
+        Half the width B of the base in m.
+    damping_ratio : float or ndarray, shape (n_modes,)
+        Damping ratio of every mode, or of each, in [0, 1).
+    mass_per_length : float
+        Mass of the column in kg/m, zero or positive.
+    tip_inertia : float
+        Rotary inertia of the body about its own axis in kg m², zero or positive.
+    n_modes : int, optional
+        Number of modes that the structure has. Default: 5; without mass in the column all of them, one, or two with
+        `tip_inertia`.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range, or there are not as many modes.
+    """
+
+    height: float
+    tip_mass: float
+    bending_stiffness: float
+    base_mass: float
+    half_width: float
+    damping_ratio: ArrayLike
+    mass_per_length: float = 0.0
+    tip_inertia: float = 0.0
+    n_modes: int | None = None
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            height=positive("height", self.height, "m"),
+            tip_mass=positive("tip_mass", self.tip_mass, "kg"),
+            bending_stiffness=positive("bending_stiffness", self.bending_stiffness, "N m²"),
+            mass_per_length=positive("mass_per_length", self.mass_per_length, "kg/m", zero=True),
+            tip_inertia=positive("tip_inertia", self.tip_inertia, "kg m²", zero=True),
+        )
+        built = self.built
+        vars(self).update(base_mass=built.base_mass, half_width=built.half_width, damping_ratio=built.damping_ratio)
+
+    @cached_property
+    def built(self) -> Beam | ModalStructure:
+        """The beam that the column is, or the body alone on two freedoms where the column has no mass."""
+        if self.mass_per_length > 0.0:
+            return Beam(
+                height=self.height,
+                mass=self.mass_per_length,
+                bending_stiffness=self.bending_stiffness,
+                lumped_masses=LumpedMasses([self.height], [self.tip_mass], [self.tip_inertia]),
+                base_mass=self.base_mass,
+                half_width=self.half_width,
+                damping_ratio=self.damping_ratio,
+                n_modes=_N_MODES if self.n_modes is None else self.n_modes,
+            )
+        h, k = self.height, self.bending_stiffness / self.height**3
+        modes = 1 if self.tip_inertia == 0.0 else 2
+        return from_matrices(
+            [self.tip_mass, self.tip_inertia],
+            [[12.0 * k, -6.0 * k * h], [-6.0 * k * h, 4.0 * k * h**2]],
+            {0: h},
+            rotations=[1],
+            base_mass=self.base_mass,
+            half_width=self.half_width,
+            damping_ratio=self.damping_ratio,
+            n_modes=mode_count(self.n_modes, modes),
+        )
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the structure's own.
+        """
+        return self.built.modal(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes.
+        """
+        return self.built.rocking(n_modes)

@@ -1,0 +1,178 @@
+"""A frame whose stories differ."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import dimensions, finite_vector, positive
+from rockflex._errors import InputError
+from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.structure._lumped import LumpedStructure
+
+__all__ = ["FishBone"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class FishBone:
+    """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
+
+    The column stands for all columns of a story and the half beams for all beams of a floor; members are
+    inextensible, masses are lumped at the floors, and the rotations of the floors are condensed out.
+
+    Attributes
+    ----------
+    story_heights : ndarray, shape (N,)
+        Height L_i of each story in m, from the base up.
+    masses : ndarray, shape (N,)
+        Mass of each floor in kg.
+    column_stiffness : ndarray, shape (N,)
+        EI_i of each story in N m²: the sum over its columns.
+    beam_stiffness : ndarray, shape (N,)
+        Rotational stiffness of the beams of each floor in N m/rad, from zero to infinity, both included. A bay that
+        bends antisymmetrically gives 12 EI_b/L_b; half beams on rollers give the same.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    half_width : float
+        Half the width B of the base in m.
+    damping_ratio : float or ndarray, shape (N,)
+        Damping ratio of every mode, or of each, in [0, 1).
+
+    Raises
+    ------
+    InputError
+        If the lengths differ, or a value is outside its range.
+
+    Notes
+    -----
+    A number in place of an array holds for all stories. With equal stories, EI_i = 2 EI_c and
+    beam_stiffness = 12 ρ EI_i/L_i it is `Frame`.
+    """
+
+    story_heights: Float
+    masses: Float
+    column_stiffness: Float
+    beam_stiffness: Float
+    base_mass: float
+    half_width: float
+    damping_ratio: ArrayLike
+
+    def __init__(
+        self,
+        story_heights: ArrayLike,
+        masses: ArrayLike,
+        column_stiffness: ArrayLike,
+        beam_stiffness: ArrayLike,
+        *,
+        base_mass: float,
+        half_width: float,
+        damping_ratio: ArrayLike,
+    ) -> None:
+        lengths = finite_vector("story_heights", story_heights, "m")
+        n = lengths.size
+        _check_signs("story_heights", lengths, "m")
+        if n == 0:
+            message = "story_heights must hold at least one height in m, but none was given."
+            raise InputError(message)
+        vars(self).update(
+            story_heights=lengths,
+            masses=_one_a_story("masses", masses, n, "kg"),
+            column_stiffness=_one_a_story("column_stiffness", column_stiffness, n, "N m²"),
+            beam_stiffness=_beams(beam_stiffness, n),
+            base_mass=positive("base_mass", base_mass, "kg", zero=True),
+            half_width=positive("half_width", half_width, "m"),
+            damping_ratio=damping_ratio,
+        )
+        vars(self).update(damping_ratio=self.lumped.damping_ratio)
+
+    @property
+    def height(self) -> float:
+        """Height of the top floor above the base in m."""
+        return float(self.story_heights.sum())
+
+    @cached_property
+    def lumped(self) -> LumpedStructure:
+        """The structure that the frame assembles: floor masses, condensed stiffness, floor heights."""
+        return LumpedStructure(
+            self.masses,
+            self._condensed_stiffness(),
+            np.cumsum(self.story_heights),
+            base_mass=self.base_mass,
+            half_width=self.half_width,
+            damping_ratio=self.damping_ratio,
+        )
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all N.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to N.
+        """
+        return self.lumped.modal(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to N.
+        """
+        return self.lumped.rocking(n_modes)
+
+    def _condensed_stiffness(self) -> Float:
+        n = self.masses.size
+        sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
+        for i, (length, stiffness) in enumerate(zip(self.story_heights, self.column_stiffness, strict=True)):
+            ends = np.ix_([i, i + 1], [i, i + 1])
+            sway[ends] += 12.0 * stiffness / length**3 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+            coupling[ends] += 6.0 * stiffness / length**2 * np.array([[1.0, 1.0], [-1.0, -1.0]])
+            bending[ends] += 2.0 * stiffness / length * np.array([[2.0, 1.0], [1.0, 2.0]])
+        turning = np.flatnonzero(np.isfinite(self.beam_stiffness)) + 1  # a rigid beam holds its floor
+        rotational = bending[np.ix_(turning, turning)] + np.diag(self.beam_stiffness[turning - 1])
+        tied = coupling[1:, turning]
+        stiffness = sway[1:, 1:] - tied @ np.linalg.solve(rotational, tied.T)
+        return 0.5 * (stiffness + stiffness.T)
+
+
+def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:
+    if dimensions(values) == 0:
+        filled = np.full(n, positive(name, values, unit))  # pyright: ignore[reportArgumentType]
+        filled.setflags(write=False)
+        return filled
+    array = finite_vector(name, values, unit)
+    if array.size != n:
+        message = f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given."
+        raise InputError(message)
+    _check_signs(name, array, unit)
+    return array
+
+
+def _check_signs(name: str, array: Float, unit: str) -> None:
+    if array.min(initial=np.inf) <= 0.0:
+        i = int(np.argmin(array))
+        message = f"{name} must be positive, but {name}[{i}] = {array[i]:g} {unit} was given."
+        raise InputError(message)
+
+
+def _beams(values: ArrayLike, n: int) -> Float:
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.full(n, np.nan)
+    if array.ndim == 0:
+        array = np.full(n, float(array))
+    if array.shape != (n,) or not (array >= 0.0).all():
+        message = (
+            f"beam_stiffness must be one number, or one for each of the {n} stories, from 0 (no beams) to float('inf') "
+            f"(rigid beams) in N m/rad, but {values!r} was given."
+        )
+        raise InputError(message)
+    array.setflags(write=False)
+    return array

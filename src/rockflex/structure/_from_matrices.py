@@ -1,0 +1,243 @@
+"""Structures from the matrices, or from the modes, of any finite element program."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import damping_ratios, dimensions, finite_matrix, finite_vector, positive
+from rockflex._errors import InputError
+from rockflex._matrices import checked_mass, checked_stiffness
+from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties, modes_that_take_part
+from rockflex.structure._freedoms import Freedoms, Heights
+from rockflex.structure._matrix_files import Given, numbers
+
+__all__ = ["ModalStructure", "from_matrices", "from_modes"]
+
+Float = NDArray[np.float64]
+
+_ORTHOGONAL = 1e-5  # room for printed digits
+
+
+@dataclass(frozen=True, eq=False)
+class ModalStructure:
+    """A structure known by its modes; `from_matrices` and `from_modes` make it.
+
+    Attributes
+    ----------
+    modes : MassNormalisedModes
+        Its modes, without those that neither the ground nor the rotation of the base excites.
+    base_mass : float
+        Mass m_0 of the base in kg.
+    half_width : float
+        Half the width B of the base in m.
+    damping_ratio : ndarray, shape (n,)
+        Damping ratio of each mode.
+    """
+
+    modes: MassNormalisedModes
+    base_mass: float
+    half_width: float
+    damping_ratio: Float
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the structure's own.
+        """
+        modes = self.modes.modal()
+        return modes if n_modes is None else modes.truncated(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes.
+        """
+        return self.modes.rocking(self.base_mass, self.half_width, self.damping_ratio, n_modes)
+
+
+def from_matrices(
+    mass: Given,
+    stiffness: Given,
+    heights: Heights,
+    *,
+    rotations: Sequence[SupportsIndex] = (),
+    base_mass: float,
+    half_width: float,
+    damping_ratio: ArrayLike,
+    n_modes: SupportsIndex | None = None,
+) -> ModalStructure:
+    """Return a structure from its mass and stiffness matrices, base held.
+
+    A unit rotation of the base moves a freedom at height h by h, and a rotation by 1; the ground moves the freedoms
+    that translate horizontally. Others, out of the plane or vertical on the axis, are moved by neither. Freedoms
+    without mass are condensed out exactly.
+
+    Parameters
+    ----------
+    mass : array_like (N,) or (N, N), or path
+        Masses or mass matrix in kg (kg m² for rotations), without the base; rows of zeros are allowed.
+    stiffness : array_like (N, N), or path
+        Symmetric positive definite stiffness in N/m (N m/rad for rotations).
+    heights : array_like (N,), path, or mapping
+        Height of each freedom above the base in m, where all translate horizontally; else a map
+        ``{index: height}`` of those that do. The highest with mass is the top.
+    rotations : sequence of int
+        Indices of the rotations in the plane, positive as the base's: a positive one moves what is above it along
+        the positive translations.
+    base_mass, half_width : float
+        Mass m_0 of the base in kg, zero or positive, and half its width B in m.
+    damping_ratio : array_like
+        Damping ratio in [0, 1) of every mode, or one for each mode kept.
+    n_modes : int, optional
+        Number of modes that the structure has, the lowest first, counting those that take part. Default: all.
+
+    Returns
+    -------
+    ModalStructure
+        Its properties have `floors` where no rotation has mass.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, the shapes do not fit, a matrix is not symmetric positive (definite), or a mode has
+        no coordinate D_n.
+
+    Notes
+    -----
+    Paths end in ``.npz`` (an array named as the argument), ``.mtx`` or ``.csv``. The matrices are taken as dense. Mass
+    that couples a freedom to the base itself, as consistent matrices have it in the lowest elements, is not in the
+    matrices of a held base and so is not seen: use lumped masses, or short elements at the base.
+    """
+    k_given = numbers("stiffness", stiffness)
+    size = np.shape(k_given)[0] if dimensions(k_given) == 2 else 1
+    k = checked_stiffness(k_given, size)
+    m_given = numbers("mass", mass)
+    m = _mass_matrix(m_given, size)
+    freedoms = Freedoms.of(heights, rotations, size)
+    keep = np.asarray(m.any(axis=1))
+    freedoms = freedoms.kept(keep)
+    m = checked_mass(m[np.ix_(keep, keep)], freedoms.size)
+    if not keep.all():
+        tie = k[np.ix_(keep, ~keep)]
+        k = k[np.ix_(keep, keep)] - tie @ np.linalg.solve(k[np.ix_(~keep, ~keep)], tie.T)
+        k = 0.5 * (k + k.T)
+    omega, shapes = _modes(k, m)
+    return _structure(freedoms.modes(omega, shapes, m), base_mass, half_width, damping_ratio, n_modes)
+
+
+def from_modes(
+    omega: Given,
+    shapes: Given,
+    mass: Given,
+    heights: Heights,
+    *,
+    rotations: Sequence[SupportsIndex] = (),
+    base_mass: float,
+    half_width: float,
+    damping_ratio: ArrayLike,
+    n_modes: SupportsIndex | None = None,
+) -> ModalStructure:
+    """Return a structure from its modes on a fixed base, of any normalisation, and its mass.
+
+    Parameters
+    ----------
+    omega : array_like, shape (n,), or path
+        Circular frequencies in rad/s, rising.
+    shapes : array_like, shape (N, n), or path
+        Mode shapes as columns, orthogonal with respect to the mass.
+    mass, heights, rotations, base_mass, half_width, damping_ratio, n_modes
+        As for `from_matrices`.
+
+    Returns
+    -------
+    ModalStructure
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, the shapes do not fit, the frequencies fall, or two mode shapes are not orthogonal.
+    """
+    w = finite_vector("omega", numbers("omega", omega), "rad/s")
+    falls = np.flatnonzero(np.diff(w, prepend=0.0) < 0.0)
+    if w.size == 0 or w[0] <= 0.0 or falls.size:
+        message = f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes."
+        raise InputError(message)
+    given = numbers("shapes", shapes)
+    columns = np.asarray(given)[:, None] if dimensions(given) == 1 else given
+    size = np.shape(columns)[0] if dimensions(columns) == 2 else 1
+    phi = finite_matrix("shapes", columns, "any unit", (size, w.size))
+    m = _mass_matrix(numbers("mass", mass), size)
+    freedoms = Freedoms.of(heights, rotations, size)
+    products = phi.T @ m @ phi
+    own = np.diag(products)
+    if not (own > 0.0).all():
+        i = int(np.argmin(own))
+        message = f"Mode shape {i + 1} moves no mass (φ^T M φ = {own[i]:.3g}). Check the order of the freedoms in both."
+        raise InputError(message)
+    cosines = products / np.sqrt(np.outer(own, own)) - np.eye(w.size)
+    if np.abs(cosines).max() > _ORTHOGONAL:
+        i, j = sorted(int(each) for each in np.unravel_index(np.argmax(np.abs(cosines)), cosines.shape))
+        message = (
+            f"The mode shapes must be orthogonal with respect to the mass, but φ_{i + 1}^T M φ_{j + 1} is "
+            f"{cosines[i, j]:.3g} of what their norms allow. Give the mass that the modes were computed with, freedoms "
+            "in the same order, and shapes with enough digits."
+        )
+        raise InputError(message)
+    return _structure(freedoms.modes(w, phi / np.sqrt(own), m), base_mass, half_width, damping_ratio, n_modes)
+
+
+def _structure(
+    modes: MassNormalisedModes,
+    base_mass: float,
+    half_width: float,
+    damping_ratio: ArrayLike,
+    n_modes: SupportsIndex | None,
+) -> ModalStructure:
+    kept = modes_that_take_part(modes.modal(), n_modes)
+    taken = replace(
+        modes,
+        omega=modes.omega[kept],
+        shear=modes.shear[kept],
+        moment=modes.moment[kept],
+        ordinates=modes.ordinates[:, kept],
+        forces=None if modes.forces is None else modes.forces[:, kept],
+    )
+    return ModalStructure(
+        taken,
+        positive("base_mass", base_mass, "kg", zero=True),
+        positive("half_width", half_width, "m"),
+        damping_ratios("damping_ratio", damping_ratio, kept.size),
+    )
+
+
+def _mass_matrix(given: ArrayLike, size: int) -> Float:
+    if dimensions(given) == 2:
+        m = finite_matrix("mass", given, "kg", (size, size))
+    else:
+        values = finite_vector("mass", given, "kg")
+        if values.size != size:
+            message = f"mass must hold one mass for each of the {size} freedoms, but {values.size} were given."
+            raise InputError(message)
+        m = np.diag(values)
+    own = np.diag(m)
+    if own.min() < 0.0:
+        i = int(np.argmin(own))
+        message = f"mass must not be negative, but that of freedom {i} is {own[i]:g}."
+        raise InputError(message)
+    return m
+
+
+def _modes(stiffness: Float, mass: Float) -> tuple[Float, Float]:
+    """Frequencies as singular values of C^T L^-T, with K = C C^T and M = L L^T."""
+    root = np.linalg.cholesky(mass)
+    _, omega, vectors = np.linalg.svd(np.linalg.solve(root, np.linalg.cholesky(stiffness)).T)
+    return omega[::-1].copy(), np.asarray(np.linalg.solve(root.T, vectors.T)[:, ::-1], dtype=np.float64)

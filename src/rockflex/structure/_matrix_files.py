@@ -1,0 +1,75 @@
+"""Matrices from the files that finite element programs write."""
+
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._errors import InputError
+
+__all__ = ["Given", "numbers"]
+
+Float = NDArray[np.float64]
+Given: TypeAlias = ArrayLike | str | Path
+"""Numbers, or the path of a file that holds them."""
+
+_SUFFIXES = (".npz", ".mtx", ".csv")
+
+
+def numbers(name: str, given: Given) -> ArrayLike:
+    """Return what was given, read from its file if it is a path.
+
+    Files are told by their suffix: ``.npz`` (the array of that name, the only one, or a sparse matrix as SciPy saves
+    it), ``.mtx`` (Matrix Market) and ``.csv`` (rows of numbers between commas; one row or column is a vector).
+
+    Raises
+    ------
+    InputError
+        If the file is missing, of another kind, or does not hold such numbers.
+    """
+    if not isinstance(given, str | Path):
+        return given
+    path = Path(given)
+    if path.suffix.lower() not in _SUFFIXES:
+        message = f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix."
+        raise InputError(message)
+    if not path.is_file():
+        message = f"{name}: the file {path} does not exist (working directory: {Path.cwd()})."
+        raise InputError(message)
+    try:
+        array = _READERS[path.suffix.lower()](name, path)
+    except InputError:
+        raise
+    except Exception as error:  # the readers of damaged files raise many kinds
+        message = f"{name}: {path} does not hold a matrix of numbers that can be read: {error}."
+        raise InputError(message) from error
+    return array.ravel() if 1 in array.shape and array.shape != (1, 1) else array
+
+
+def _from_npz(name: str, path: Path) -> Float:
+    with np.load(path, allow_pickle=False) as content:
+        keys = content.files
+        if "format" in keys and "data" in keys:
+            from scipy.sparse import load_npz
+
+            return np.asarray(load_npz(path).toarray(), dtype=np.float64)
+        if name not in keys and len(keys) != 1:
+            message = f'{name}: {path} must hold an array "{name}", or one array alone, but it holds {keys}.'
+            raise InputError(message)
+        return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
+
+
+def _from_mtx(_: str, path: Path) -> Float:
+    from scipy.io import mmread
+    from scipy.sparse import issparse
+
+    matrix = mmread(path)
+    return np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=np.float64)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def _from_csv(_: str, path: Path) -> Float:
+    return np.loadtxt(path, delimiter=",", ndmin=2)
+
+
+_READERS = {".npz": _from_npz, ".mtx": _from_mtx, ".csv": _from_csv}

@@ -1,0 +1,128 @@
+"""A quantity that varies along the height, given as a number, a function or a table."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector, positive
+from rockflex._errors import InputError
+
+__all__ = ["Along", "Profile", "profile"]
+
+Float = NDArray[np.float64]
+
+Along: TypeAlias = float | Callable[[Float], ArrayLike] | tuple[ArrayLike, ArrayLike]
+"""A number, a function of heights (n,) that returns values (n,), or a table (heights, values), linear between."""
+
+_LOOKS = 65
+_ROOM = 1e-9  # of the height: printed digits of a table's last row
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Values along the height, checked whenever they are read.
+
+    Attributes
+    ----------
+    name, unit : str
+        What it is, for messages.
+    function : callable
+        Values at heights.
+    kinks : ndarray
+        Heights in m where the values are not smooth.
+    zero : bool
+        Whether zero is allowed.
+    """
+
+    name: str
+    unit: str
+    function: Callable[[Float], ArrayLike]
+    kinks: Float
+    zero: bool
+
+    def at(self, z: Float) -> Float:
+        """Return the values at heights `z`, in the shape of `z`.
+
+        Raises
+        ------
+        InputError
+            If a value is missing, not finite, or not positive.
+        """
+        flat = z.ravel()
+        try:
+            values = np.broadcast_to(np.asarray(self.function(flat), dtype=np.float64), flat.shape)
+        except (TypeError, ValueError) as error:
+            message = (
+                f"{self.name} must return one number for each of the heights it is given, an array of shape "
+                f"{flat.shape}, but it did not: {error}."
+            )
+            raise InputError(message) from error
+        allowed = (values >= 0.0) if self.zero else (values > 0.0)
+        bad = np.flatnonzero(~(allowed & np.isfinite(values)))
+        if bad.size:
+            i = int(bad[0])
+            kind = "zero or positive" if self.zero else "positive"
+            message = (
+                f"{self.name} must be {kind} and finite along the whole height, but it is {values[i]:g} "
+                f"{self.unit} at {flat[i]:.6g} m."
+            )
+            raise InputError(message)
+        return values.reshape(z.shape)
+
+
+def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = False) -> Profile:
+    """Return what was given as a profile from the base to `height`.
+
+    Raises
+    ------
+    InputError
+        If a table does not run from the base to the top or its heights fall, or a value is not positive.
+    """
+    if callable(given):
+        result = Profile(name, unit, given, np.zeros(0), zero)
+    elif isinstance(given, tuple):
+        result = _table(name, given, height, unit, zero)
+    else:
+        constant = positive(name, given, unit, zero=zero)
+        result = Profile(name, unit, lambda z: np.full(z.shape, constant), np.zeros(0), zero)
+    result.at(np.linspace(0.0, height, _LOOKS))
+    return result
+
+
+def _table(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool) -> Profile:
+    if len(given) != 2:  # pyright: ignore[reportUnnecessaryComparison]
+        message = f"{name} must be a table (heights, values), but {len(given)} columns were given."
+        raise InputError(message)
+    z = finite_vector(f"{name}, heights", given[0], "m")
+    values = finite_vector(f"{name}, values", given[1], unit)
+    if z.size != values.size or z.size < 2:
+        message = (
+            f"{name} must hold one value for each height of its table, and two rows or more, but {z.size} heights and "
+            f"{values.size} values were given."
+        )
+        raise InputError(message)
+    falls = np.flatnonzero(z[1:] < z[:-1])
+    if falls.size:
+        i = int(falls[0])
+        message = (
+            f"{name}: the heights of a table must not fall, but {z[i + 1]:g} m follows {z[i]:g} m. Sort the rows; "
+            "two rows at one height are a jump."
+        )
+        raise InputError(message)
+    if z[0] > _ROOM * height or z[-1] < height * (1.0 - _ROOM):
+        message = (
+            f"{name}: a table must run from the base (0 m) to the top ({height:g} m), but it runs from {z[0]:g} m to "
+            f"{z[-1]:g} m. Add the rows that are missing."
+        )
+        raise InputError(message)
+    low = values < 0.0 if zero else values <= 0.0
+    if low.any():
+        i = int(np.flatnonzero(low)[0])
+        kind = "zero or positive" if zero else "positive"
+        message = f"{name} must be {kind}, but its table holds {values[i]:g} {unit} at {z[i]:g} m."
+        raise InputError(message)
+    inside = z[(z > 0.0) & (z < height)]
+    return Profile(name, unit, lambda at: np.interp(at, z, values), np.unique(inside), zero)

@@ -1,0 +1,162 @@
+"""Modes of a beam by Rayleigh-Ritz."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import eigh
+
+from rockflex._checks import positive, whole_number
+from rockflex._errors import InputError
+from rockflex.modal import MassNormalisedModes
+from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
+from rockflex.structure._sections import Sections
+
+__all__ = ["RitzShapes", "cosine_shapes", "ritz_modes"]
+
+Float = NDArray[np.float64]
+
+_PANELS, _POINTS = 64, 8
+_CLOSE = 1e-6  # of the largest ordinate
+_INDEPENDENT = 1e-13  # smallest eigenvalue of the mass matrix of shapes of unit mass
+
+
+@dataclass(frozen=True, eq=False)
+class RitzShapes:
+    """Shape functions ψ_j(z) of a cantilever with their first two derivatives.
+
+    Each is a function of heights (P,) in m and returns (P, n), one column a shape. A shape and its slope vanish at the
+    base; the forces at the top need not.
+
+    Attributes
+    ----------
+    value, slope, curvature : callable
+        ψ_j, ψ_j' and ψ_j''.
+    """
+
+    value: Callable[[Float], ArrayLike]
+    slope: Callable[[Float], ArrayLike]
+    curvature: Callable[[Float], ArrayLike]
+
+    def at(self, z: Float) -> tuple[Float, Float, Float]:
+        """Return ψ, ψ' and ψ'' at heights (P,), shape (P, n) each.
+
+        Raises
+        ------
+        InputError
+            If a shape is not such an array of finite numbers.
+        """
+        rows: list[Float] = []
+        for name in ("value", "slope", "curvature"):
+            array = np.asarray(getattr(self, name)(z), dtype=np.float64)
+            if array.ndim != 2 or array.shape[0] != z.size or (rows and array.shape != rows[0].shape):
+                expected = rows[0].shape if rows else f"({z.size}, n_shapes)"
+                message = (
+                    f"shapes.{name} must return one row a height and one column a shape, {expected}, but it returned "
+                    f"an array of shape {array.shape}."
+                )
+                raise InputError(message)
+            if not np.isfinite(array).all():
+                message = f"shapes.{name} must be finite along the height, but it is not."
+                raise InputError(message)
+            rows.append(array)
+        return rows[0], rows[1], rows[2]
+
+    def check(self, height: float) -> int:
+        """Return the number of shapes.
+
+        Raises
+        ------
+        InputError
+            If a shape moves or turns at the base, or its derivatives are not those of the shape.
+        """
+        ends = np.array([0.0, height])
+        z, w = gauss(np.linspace(0.0, height, _PANELS + 1), _POINTS)
+        value, slope, _ = self.at(ends)
+        _, slopes, curvatures = self.at(z.ravel())
+        weights = w.ravel()
+        size = np.abs(value[1]) + height * np.abs(slope[1])
+        tests = (
+            (value[0], "must vanish at the base, where the structure is clamped"),
+            (height * slope[0], "must have no slope at the base, where the structure is clamped"),
+            (value[1] - value[0] - weights @ slopes, "is not the integral of its slope: check shapes.slope"),
+            (height * (slope[1] - slope[0] - weights @ curvatures), "has a slope that is not the integral of its "
+             "curvature: check shapes.curvature"),
+        )  # fmt: skip
+        for misses, words in tests:
+            bad = np.flatnonzero(np.abs(misses) > _CLOSE * np.maximum(size, np.abs(misses).max() * _CLOSE))
+            if bad.size:
+                message = f"Shape {bad[0] + 1} {words}."
+                raise InputError(message)
+        return value.shape[1]
+
+
+def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
+    """Return the shapes 1 - cos((2j - 1) π z/(2 H)), j = 1..n (Silva & Stojadinović 2024, Eq. 36).
+
+    Raises
+    ------
+    InputError
+        If the height or the number is not positive.
+    """
+    h = positive("height", height, "m")
+    rates = (2.0 * np.arange(1, whole_number("n_shapes", n_shapes, 1) + 1) - 1.0) * math.pi / (2.0 * h)
+    return RitzShapes(
+        lambda z: 1.0 - np.cos(np.outer(z, rates)),
+        lambda z: rates * np.sin(np.outer(z, rates)),
+        lambda z: rates**2 * np.cos(np.outer(z, rates)),
+    )
+
+
+def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalisedModes:
+    """Return the first modes of the beam in the space of the shapes, by Gauss quadrature.
+
+    Raises
+    ------
+    InputError
+        If the shapes are linearly dependent.
+    """
+    stations = np.linspace(0.0, beam.height, N_STATIONS)
+    lumped = beam.lumped
+    points, weights = gauss(mesh(beam.height, _PANELS, beam.kinks), _POINTS)
+    z, w = points.ravel(), weights.ravel()
+    value, slope, curvature = shapes.at(z)
+    stiffness = curvature.T @ ((w * beam.bending_stiffness.at(z))[:, None] * curvature)
+    # Lumped masses are points of their own.
+    at_lumped, slope_lumped, _ = shapes.at(lumped.heights)
+    z_all = np.concatenate([z, lumped.heights])
+    value, slope = np.vstack([value, at_lumped]), np.vstack([slope, slope_lumped])
+    masses = np.concatenate([w * beam.mass.at(z), lumped.masses])
+    rotary = np.concatenate([w * beam.rotary_at(z), lumped.rotary])
+    in_modes = rotary if beam.rotary_in_modes else np.zeros_like(rotary)
+    mass = value.T @ (masses[:, None] * value) + slope.T @ (in_modes[:, None] * slope)
+    _check_independent(mass)
+    squares, vectors = eigh(stiffness, mass)
+    vectors = vectors[:, :n_modes]
+    phi, turn = value @ vectors, slope @ vectors
+    forces, moments = masses[:, None] * phi, in_modes[:, None] * turn
+    return MassNormalisedModes(
+        omega=np.sqrt(squares[:n_modes]),
+        shear=forces.sum(axis=0),
+        moment=z_all @ forces + moments.sum(axis=0),
+        heights=stations,
+        ordinates=shapes.at(stations)[0] @ vectors,
+        forces=gathered(stations, z_all, forces, moments),
+        mass=float(masses.sum()),
+        first_moment=float(masses @ z_all),
+        inertia=float(masses @ z_all**2 + in_modes.sum()),
+        rotary=float(rotary.sum() - in_modes.sum()),
+    )
+
+
+def _check_independent(mass: Float) -> None:
+    size = np.sqrt(np.diag(mass))
+    smallest = float(np.linalg.eigvalsh(mass / np.outer(size, size))[0]) if size.all() else 0.0
+    if smallest < _INDEPENDENT:
+        message = (
+            f"The {size.size} Ritz shapes are linearly dependent (smallest eigenvalue of their mass matrix, each of "
+            f"unit mass: {smallest:.2g}). Leave out those that the others can form, or take shapes further apart."
+        )
+        raise InputError(message)

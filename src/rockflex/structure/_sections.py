@@ -1,0 +1,121 @@
+"""What a beam is made of along its height."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector
+from rockflex._errors import InputError
+from rockflex.structure._profile import Profile
+
+__all__ = ["LumpedMasses", "Sections", "on_beam"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class LumpedMasses:
+    """Bodies fixed to a beam.
+
+    Attributes
+    ----------
+    heights : ndarray, shape (P,)
+        Heights above the base in m, from above 0 to the height of the beam.
+    masses : ndarray, shape (P,)
+        Masses in kg, positive.
+    rotary : ndarray, shape (P,)
+        Rotary inertia of each body about its own axis in kg m², zero or positive. Default: none.
+
+    Raises
+    ------
+    InputError
+        If the lengths differ, or a value is not finite or outside its range.
+    """
+
+    heights: Float
+    masses: Float
+    rotary: Float
+
+    def __init__(self, heights: ArrayLike, masses: ArrayLike, rotary: ArrayLike | None = None) -> None:
+        z = finite_vector("lumped_masses.heights", heights, "m")
+        m = finite_vector("lumped_masses.masses", masses, "kg")
+        j = finite_vector("lumped_masses.rotary", np.zeros(z.size) if rotary is None else rotary, "kg m²")
+        if not z.size == m.size == j.size:
+            message = (
+                f"lumped_masses must hold one mass, and one rotary inertia, for each of its {z.size} heights, but "
+                f"{m.size} and {j.size} were given."
+            )
+            raise InputError(message)
+        for name, values, bad, kind, unit in (
+            ("heights", z, z <= 0.0, "positive", "m"),
+            ("masses", m, m <= 0.0, "positive", "kg"),
+            ("rotary", j, j < 0.0, "zero or positive", "kg m²"),
+        ):
+            if bad.any():
+                i = int(np.flatnonzero(bad)[0])
+                hint = " A mass at the base belongs to base_mass." if name == "heights" else ""
+                message = (
+                    f"lumped_masses.{name} must be {kind}, but {name}[{i}] = {values[i]:g} {unit} was given.{hint}"
+                )
+                raise InputError(message)
+        vars(self).update(heights=z, masses=m, rotary=j)
+
+
+@dataclass(frozen=True, eq=False)
+class Sections:
+    """Profiles and bodies of a beam.
+
+    Attributes
+    ----------
+    height : float
+        Height H in m.
+    mass, bending_stiffness : Profile
+        m in kg/m and EI in N m².
+    shear_stiffness, rotary_inertia : Profile or None
+        GA_s in N and the rotary inertia in kg m; None for no deformation in shear, and none at all.
+    lumped : LumpedMasses
+        Bodies, perhaps none.
+    rotary_in_modes : bool
+        Whether rotary inertia takes part in the modes.
+    """
+
+    height: float
+    mass: Profile
+    bending_stiffness: Profile
+    shear_stiffness: Profile | None
+    rotary_inertia: Profile | None
+    lumped: LumpedMasses
+    rotary_in_modes: bool
+
+    @property
+    def kinks(self) -> Float:
+        """Heights in m at which a table has a row."""
+        each = (self.mass, self.bending_stiffness, self.shear_stiffness, self.rotary_inertia)
+        return np.concatenate([profile.kinks for profile in each if profile is not None])
+
+    def rotary_at(self, z: Float) -> Float:
+        """Return the rotary inertia in kg m at heights in m."""
+        return np.zeros_like(z) if self.rotary_inertia is None else self.rotary_inertia.at(z)
+
+
+def on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
+    """Return the bodies given, or none, that lie on a beam.
+
+    Raises
+    ------
+    InputError
+        If one lies above the top.
+    """
+    bodies: Any = LumpedMasses([], []) if given is None else given
+    if not isinstance(bodies, LumpedMasses):
+        message = f"lumped_masses must be LumpedMasses(heights, masses), but {type(bodies).__name__} was given."
+        raise InputError(message)
+    if bodies.heights.max(initial=0.0) > height * (1.0 + 1e-12):
+        message = (
+            f"lumped_masses must lie on the beam, at most {height:g} m above the base, but one lies at "
+            f"{bodies.heights.max():g} m."
+        )
+        raise InputError(message)
+    return bodies

@@ -1,0 +1,135 @@
+"""A tower in the form of a hollow truncated cone."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.structure._beam import Beam
+
+__all__ = ["TaperedTower"]
+
+Float = NDArray[np.float64]
+
+_N_ELEMENTS = 2000  # as many as the paper takes
+
+
+@dataclass(frozen=True, eq=False)
+class TaperedTower:
+    """A hollow truncated cone with a wall of one thickness (Silva & Stojadinović 2024, Section 4.1.1).
+
+    Attributes
+    ----------
+    height : float
+        Height in m.
+    base_radius, top_radius : float
+        Outer radius at the base and at the top in m, linear between. Half the width B of the base is `base_radius`.
+    wall : float
+        Thickness of the wall in m, at most the smaller radius.
+    density : float
+        Density in kg/m³.
+    elastic_modulus : float
+        Young's modulus in N/m².
+    damping_ratio : float or ndarray, shape (n_modes,)
+        Damping ratio of every mode, or of each, in [0, 1).
+    method : {"ritz", "fe"}
+        Rayleigh-Ritz with the shapes of Eq. 36 (five, or `n_modes` if more), or 2000 finite elements.
+    n_modes : int
+        Number of modes that the structure has.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range, or the wall is thicker than a radius.
+
+    Notes
+    -----
+    The rotary inertia of the sections is part of I_θ (Eq. 33), and takes no part in the modes.
+    """
+
+    height: float
+    base_radius: float
+    top_radius: float
+    wall: float
+    density: float
+    elastic_modulus: float
+    damping_ratio: ArrayLike
+    method: Literal["ritz", "fe"] = "ritz"
+    n_modes: int = 5
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            height=positive("height", self.height, "m"),
+            base_radius=positive("base_radius", self.base_radius, "m"),
+            top_radius=positive("top_radius", self.top_radius, "m"),
+            wall=positive("wall", self.wall, "m"),
+            density=positive("density", self.density, "kg/m³"),
+            elastic_modulus=positive("elastic_modulus", self.elastic_modulus, "N/m²"),
+        )
+        name, radius = min(("top_radius", self.top_radius), ("base_radius", self.base_radius), key=lambda r: r[1])
+        if self.wall > radius:
+            message = (
+                f"wall must be at most the smaller radius, {name} = {radius:g} m, but {self.wall:g} m was given. "
+                "It is the thickness of the wall, not a diameter; a solid tower has a wall of its radius."
+            )
+            raise InputError(message)
+        vars(self).update(n_modes=self.beam.n_modes, damping_ratio=self.beam.damping_ratio)
+
+    @cached_property
+    def beam(self) -> Beam:
+        """The cantilever that the tower is."""
+        return Beam(
+            height=self.height,
+            mass=lambda z: self.density * self._area(z),
+            bending_stiffness=lambda z: self.elastic_modulus * self._area(z) * self._gyration(z),
+            half_width=self.base_radius,
+            damping_ratio=self.damping_ratio,
+            rotary_inertia=lambda z: self.density * self._area(z) * self._gyration(z),
+            rotary_in_modes=False,
+            method=self.method,
+            n_modes=self.n_modes,
+            n_elements=max(_N_ELEMENTS, self.n_modes) if self.method == "fe" else None,
+        )
+
+    @property
+    def half_width(self) -> float:
+        """Half the width B of the base in m."""
+        return self.base_radius
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the structure's own.
+        """
+        return self.beam.modal(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes.
+        """
+        return self.beam.rocking(n_modes)
+
+    def _radii(self, z: Float) -> tuple[Float, Float]:
+        outer = self.base_radius + (self.top_radius - self.base_radius) * z / self.height
+        return outer, np.maximum(outer - self.wall, 0.0)
+
+    def _area(self, z: Float) -> Float:
+        outer, inner = self._radii(z)
+        return math.pi * (outer**2 - inner**2)
+
+    def _gyration(self, z: Float) -> Float:
+        outer, inner = self._radii(z)
+        return (outer**2 + inner**2) / 4.0

@@ -1,0 +1,226 @@
+"""Which scales of a motion, and which amplitudes of a pulse, overturn a structure."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, SupportsIndex
+
+import numpy as np
+
+from rockflex._checks import in_range
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.models import ImpactLaw, Model, parse_model
+from rockflex.motion import GroundMotion
+from rockflex.parallel import map_threads
+from rockflex.response import Response, respond
+from rockflex.study._arguments import Structure, check_options, described, positive_numbers, properties_of
+from rockflex.study._simulate import make_engine
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["OverturningScales", "overturning_scales", "overturning_spectrum"]
+
+SCAN = tuple(float(scale) for scale in np.arange(1.0, 30.01, 0.1))  # a_p/(g α)
+
+
+@dataclass(frozen=True)
+class OverturningScales:
+    """Two boundaries of the scales that overturn; overturning is not monotone, and between them both may happen.
+
+    Parameters
+    ----------
+    lowest
+        Least scale found to overturn; NaN if none does.
+    highest_standing
+        Largest scale found to stand below one that overturns; NaN if none does, and infinite if the largest of the
+        scan stands after one overturned. Equal to `lowest`, within the tolerance, where they part at one boundary.
+    impacts
+        Impacts before the fall at `lowest`: 0 for one without.
+    """
+
+    lowest: float
+    highest_standing: float
+    impacts: int
+
+
+def overturning_scales(
+    structure: Structure | RockingProperties,
+    motion: GroundMotion,
+    scales: Sequence[float],
+    model: str | Model = "rigid",
+    impact: ImpactLaw | None = None,
+    tolerance: float = 1e-6,
+) -> OverturningScales:
+    """Find the scales at which a motion begins to overturn a structure.
+
+    The scales given are tried one by one. Where the first of them overturns, the boundary below it is narrowed by
+    bisection; so is that above the last that stands. **An island of scales narrower than the step of the scan can be
+    missed**, one below `lowest` too: refine the scan where it matters. Nothing is said of scales beyond the largest. A
+    run ends when it has overturned, or can do so no more.
+
+    Parameters
+    ----------
+    structure, model, impact
+        As in `simulate`; a rigid block from `rigid_block`, for instance.
+    motion
+        The ground motion at the scale 1.
+    scales
+        Scales to try, positive and rising, two at least.
+    tolerance
+        Relative width of the boundaries, from 1e-12 to below 0.1.
+
+    Raises
+    ------
+    InputError
+        If the scales do not rise, a value is out of range, or the model has a base that cannot lift.
+    SolverError
+        If a run cannot be solved.
+    """
+    tried = _scan(scales)
+    width = in_range("tolerance", tolerance, 1e-12, 0.1)
+    if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
+        message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
+        raise InputError(message)
+    return _search(_runner(structure, model, impact), motion, tried, width)
+
+
+def overturning_spectrum(
+    structure: Structure | RockingProperties,
+    pulse: Callable[[float, float], GroundMotion],
+    frequency_ratios: Sequence[float],
+    model: str | Model = "rigid",
+    impact: ImpactLaw | None = None,
+    relative_amplitudes: Sequence[float] = SCAN,
+    tolerance: float = 1e-6,
+    workers: SupportsIndex | None = None,
+) -> "pd.DataFrame":
+    """Smallest amplitude at which a pulse overturns a structure, over the pulse's frequency.
+
+    With p² = L_0^r g/I_θ and α = m_tot B/L_0^r, a rigid block's answer in ω_g/p and a_p/(g α) is the same for all
+    sizes and slendernesses as far as its impact is (Zhang & Makris 2001, J. Struct. Eng. 127(5), 501-511).
+
+    Parameters
+    ----------
+    structure, model, impact
+        As in `simulate`.
+    pulse
+        Makes a pulse of an amplitude in m/s² and a period 2π/ω_g in s, such as `one_sine_pulse`; for half a sine
+        ``lambda amplitude, period: half_sine_pulse(amplitude, period / 2)``. The step is the pulse's to choose: some
+        thousandth of the period.
+    frequency_ratios
+        ω_g/p, positive.
+    relative_amplitudes
+        a_p/(g α) to try, rising; see `overturning_scales` for what the scan can miss.
+    tolerance
+        Relative width of the boundaries.
+    workers
+        Number of threads; None for one a core.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a frequency: `frequency_ratio`, `period` (s), `lowest` (a_p/(g α), NaN if nothing overturns),
+        `amplitude` (the same in m/s²), `highest_standing` (a_p/(g α)) and `impacts` before the fall at `lowest`.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or `pulse` makes no ground motion.
+    SolverError
+        If a run cannot be solved.
+    """
+    ratios = positive_numbers("frequency_ratios", frequency_ratios, "")
+    tried = _scan(relative_amplitudes)
+    width = in_range("tolerance", tolerance, 1e-12, 0.1)
+    properties = properties_of(structure)
+    rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
+    unit = properties.resisting_moment / properties.l0r  # g α
+    run = _runner(properties, model, impact)
+    periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
+    pulses = [pulse(unit, period) for period in periods]
+    for made in pulses:
+        if not isinstance(made, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = (
+                f"pulse must make a GroundMotion of an amplitude and a period, but it made {described(made)}. "
+                "Give one_sine_pulse, for instance."
+            )
+            raise InputError(message)
+    found: list[OverturningScales | None] = [None] * len(pulses)
+
+    def work(row: int) -> None:
+        found[row] = _search(run, pulses[row], tried, width)
+
+    for _ in map_threads(work, range(len(pulses)), workers):
+        pass
+    import pandas as pd
+
+    rows = [row for row in found if row is not None]
+    return pd.DataFrame(
+        {
+            "frequency_ratio": ratios,
+            "period": periods,
+            "lowest": [row.lowest for row in rows],
+            "amplitude": [row.lowest * unit for row in rows],
+            "highest_standing": [row.highest_standing for row in rows],
+            "impacts": [row.impacts for row in rows],
+        }
+    )
+
+
+Run = Callable[[GroundMotion, float], Response]
+
+
+def _runner(structure: Structure | RockingProperties, model: str | Model, impact: ImpactLaw | None) -> Run:
+    check_options(None, impact)
+    tied = parse_model(model).of(properties_of(structure), impact)
+    if not tied.lifts:
+        message = f"{tied.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks."
+        raise InputError(message)
+    engine = make_engine(tied, "peaks")
+
+    def run(motion: GroundMotion, scale: float) -> Response:
+        solution = engine.run(motion.acceleration * scale, motion.dt, free_vibration=None, state=None, history=False)
+        return respond(tied, motion.name, solution)
+
+    return run
+
+
+def _search(run: Run, motion: GroundMotion, scales: list[float], width: float) -> OverturningScales:
+    runs = [run(motion, scale) for scale in scales]
+    falls = [response.status == "overturned" for response in runs]
+    if not any(falls):
+        return OverturningScales(math.nan, math.nan, 0)
+    first = falls.index(True)
+    _, lowest, impacts = _bisect(run, motion, scales[first - 1] if first else 0.0, scales[first], width)
+    standing = [place for place, fell in enumerate(falls) if not fell]
+    if standing and standing[-1] == len(scales) - 1:
+        return OverturningScales(lowest, math.inf, impacts)
+    last = standing[-1] if standing else -1
+    if last <= first - 1:
+        return OverturningScales(lowest, lowest, impacts)
+    return OverturningScales(lowest, _bisect(run, motion, scales[last], scales[last + 1], width)[0], impacts)
+
+
+def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: float) -> tuple[float, float, int]:
+    """Neighbours at a boundary, one that stands and one that overturns, and the impacts of the latter."""
+    impacts = run(motion, falls).n_impacts
+    while falls - stands > width * falls:
+        middle = 0.5 * (stands + falls)
+        response = run(motion, middle)
+        if response.status == "overturned":
+            falls, impacts = middle, response.n_impacts
+        else:
+            stands = middle
+    return stands, falls, impacts
+
+
+def _scan(scales: Sequence[float]) -> list[float]:
+    numbers = positive_numbers("scales", scales, "")
+    if len(numbers) < 2 or any(b <= a for a, b in pairwise(numbers)):
+        message = f"scales must rise, two at least, but {scales!r} was given. They are the grid that is searched."
+        raise InputError(message)
+    return numbers

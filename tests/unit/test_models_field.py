@@ -1,0 +1,165 @@
+"""The vector field of the nonlinear models and their guards, against the twin's, at random states."""
+
+import numpy as np
+import pytest
+
+from rockflex import BoucWen
+from rockflex.modal import RockingProperties
+from rockflex.models import EXTRA, Model, field_rates, inertia_left
+from twins import complete_model as twin
+from twins.complete import complete_frame
+
+FRAME = {
+    "n_stories": 4,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 60e3,
+    "stiffness_ratio": 0.125,
+    "period": 0.6,
+    "aspect_ratio": 6.0,
+    "damping_ratio": 0.04,
+}
+NO_MODES = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
+SPRING = (0.03, 0.05, 0.7, 0.3, 2.5)
+
+
+def pair(n, *, complete, spring=None):
+    """The model and its twin."""
+    given = complete_frame(**FRAME, n_modes=max(n, 1)) | (NO_MODES if n == 0 else {})
+    choice = Model(None if n else 0, complete=complete, closure="SI" if complete and n else None)
+    model = choice.of(RockingProperties(**given), bouc_wen=BoucWen(*spring) if spring else None)
+    other = twin.CompleteModel(
+        twin.Structure.of(**given), complete=complete, bouc_wen=twin.BoucWen(*spring) if spring else None
+    )
+    return model, other
+
+
+def states(n, count=20):
+    """[D, D', θ, θ', z] and ground accelerations, of all signs."""
+    rng = np.random.default_rng(n)
+    for _ in range(count):
+        motion = np.concatenate((rng.normal(0.0, 0.2, n), rng.normal(0.0, 2.0, n), rng.normal(0.0, 0.5, 3)))
+        yield motion, rng.normal(0.0, 8.0)
+
+
+def rates_of(model, side, acceleration, motion):
+    n = model.properties.n_modes
+    full = np.concatenate((motion, np.zeros(EXTRA - 1)))
+    rates = np.full(full.size, np.nan)
+    branch = 1.0 if n == 0 or motion[n] >= 0.0 else -1.0
+    field_rates(model.field(), side, branch, acceleration, full, rates)
+    return rates
+
+
+CASES = [(n, True, None) for n in (0, 1, 2, 4)] + [(1, True, SPRING), (1, False, SPRING)]
+
+
+@pytest.mark.parametrize(("n", "complete", "spring"), CASES)
+@pytest.mark.parametrize("side", [1, -1, 0])
+def test_rates(n, complete, spring, side):
+    model, other = pair(n, complete=complete, spring=spring)
+    for motion, a in states(n):
+        if side == 0:
+            motion[2 * n : 2 * n + 2] = 0.0
+        rates = rates_of(model, float(side), a, motion)
+        state = np.concatenate((motion[2 * n : 2 * n + 2], motion[: 2 * n], motion[-1:] if spring else []))
+        expected = other.field(state, a, side)
+        size = np.abs(expected).max()
+        np.testing.assert_allclose(rates[: 2 * n], expected[2 : 2 + 2 * n], rtol=1e-11, atol=1e-12 * size)
+        np.testing.assert_allclose(rates[2 * n : 2 * n + 2], expected[:2], rtol=1e-11, atol=1e-12 * size)
+        if spring:
+            assert rates[2 * n + 2] == pytest.approx(expected[-1], rel=1e-12)
+        else:
+            assert rates[2 * n + 2] == 0.0
+        p = model.properties
+        if side:
+            left = other.inertia(motion[:n], side) - float(p.effective_mass @ p.effective_height**2)
+            assert inertia_left(model.field(), float(side), motion) == pytest.approx(left, rel=1e-12)
+
+
+@pytest.mark.parametrize(("n", "complete", "spring"), CASES)
+@pytest.mark.parametrize("side", [1, -1, 0])
+def test_energies_are_counted(n, complete, spring, side):
+    """What is stored grows by what is put in, less what is damped and what the hysteretic spring takes."""
+    model, other = pair(n, complete=complete, spring=spring)
+    p = model.properties
+
+    def stored(state):
+        energy = other.kinetic_energy(state, side) + other.potential_energy(state, side)
+        if spring:  # the elastic share alone
+            d = other.modal(state)[0]
+            energy -= 0.5 * (1.0 - spring[1]) * float(p.effective_mass @ (p.omega * d) ** 2)
+        return energy
+
+    for motion, a in states(n, 10):
+        if side == 0:
+            motion[2 * n : 2 * n + 2] = 0.0
+        rates = rates_of(model, float(side), a, motion)
+        v = motion[n : 2 * n]
+        damped = float((2.0 * p.zeta * p.omega * p.effective_mass) @ v**2)
+        yielded = 0.0
+        if spring:
+            force = p.effective_mass[0] * p.omega[0] ** 2 * (1.0 - spring[1]) * spring[0] * motion[-1]
+            yielded = force * v[0]
+        assert rates[2 * n + 3] == pytest.approx(damped, rel=1e-12)
+        assert rates[2 * n + 5] == pytest.approx(yielded, rel=1e-12)
+        state = np.concatenate((motion[2 * n : 2 * n + 2], motion[: 2 * n], motion[-1:] if spring else []))
+        direction = other.field(state, a, side)
+        step = 1e-6
+        growth = (stored(state + step * direction) - stored(state - step * direction)) / (2.0 * step)
+        terms = abs(rates[2 * n + 4]) + damped + abs(yielded) + abs(growth)
+        assert growth == pytest.approx(rates[2 * n + 4] - damped - yielded, abs=1e-6 * terms)
+
+
+@pytest.mark.parametrize(("n", "complete", "spring"), CASES)
+def test_guards_are_equations_16_and_24(n, complete, spring):
+    model, other = pair(n, complete=complete, spring=spring)
+    contact, rocking = model.guards()
+    for motion, a in states(n):
+        state = np.concatenate(([0.0, 0.0], motion[: 2 * n], motion[-1:] if spring else []))
+        vector = np.concatenate((motion, [a, 0.0]))
+        vector[2 * n : 2 * n + 2] = 0.0
+        expected = other.overturning(state, a)
+        assert contact @ vector == pytest.approx(expected, rel=1e-11, abs=1e-12 * other.resisting)
+        vector[2 * n] = 0.3
+        assert rocking @ vector == 0.3
+
+
+def test_at_uplift_the_complete_rotation_starts_from_the_excess():
+    """θ'' (I + ...) = s (|M| - m_tot g B) where the base leaves the ground."""
+    model, other = pair(2, complete=True)
+    for motion, a in states(2):
+        motion[4:6] = 0.0
+        for side in (1, -1):
+            moment = other.overturning(np.concatenate(([0.0, 0.0], motion[:4])), a)
+            excess = -moment - side * model.linear.resistance
+            rates = rates_of(model, float(side), a, motion)
+            left = inertia_left(model.field(), float(side), motion)
+            assert rates[5] * left == pytest.approx(excess, rel=1e-10, abs=1e-10 * abs(moment))
+
+
+def test_the_simplified_field_is_the_linear_model():
+    """With a spring that does not yield, Eq. 23's rows."""
+    model, _ = pair(1, complete=False, spring=(1e9, 0.5, 0.5, 0.5, 2.0))
+    linear = model.linear
+    rng = np.random.default_rng(2)
+    for side in (1.0, -1.0, 0.0):
+        motion = rng.normal(0.0, 0.1, 5)
+        a = rng.normal()
+        if side == 0.0:
+            motion[2:4] = 0.0
+        motion[4] = motion[0] / 1e9  # z while elastic
+        rates = rates_of(model, side, a, motion)
+        vector = np.concatenate((motion[:4], [a, side]))
+        assert rates[1] == pytest.approx(float((linear.modal_accelerations(rocking=side != 0.0) @ vector)[0]), rel=1e-9)
+        if side:
+            assert rates[3] == pytest.approx(float(linear.angular_acceleration() @ vector), rel=1e-9)
+
+
+def test_a_model_made_of_its_own_is_complete():
+    from rockflex.models import NonlinearModel
+
+    model = NonlinearModel("mine", pair(1, complete=True)[0].properties)
+    assert (model.lifts, model.complete, model.bouc_wen, model.law.keeps[:3]) == (True, True, None, "the")
+    assert model.field().whole == 8
+    assert pair(1, complete=True, spring=SPRING)[0].field().whole == 0

@@ -1,0 +1,215 @@
+"""A choice of model, tied to a structure: which model it becomes, with which impact law."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from rockflex import (
+    BoucWen,
+    Frame,
+    InputError,
+    Restitution,
+    RockingProperties,
+    VVELComplete,
+    VVELSimplified,
+    simulate,
+)
+from rockflex.models import LinearModel, Model, NonlinearModel, housner, parse_model
+from rockflex.motion import quiet_motion
+
+FRAME = Frame(
+    n_stories=3,
+    story_height=3.0,
+    story_mass=40e3,
+    base_mass=40e3,
+    stiffness_ratio=0.125,
+    period=0.5,
+    aspect_ratio=8.0,
+    damping_ratio=0.02,
+)
+PROPERTIES = FRAME.rocking()
+BLOCK = PROPERTIES.truncated(0)
+SPRING = BoucWen(0.05)
+
+
+@pytest.mark.parametrize(
+    ("label", "kind", "law", "n_modes"),
+    [
+        ("2DOF-S", LinearModel, VVELSimplified(), 1),
+        ("MDOF-S", LinearModel, VVELSimplified(), 3),
+        ("fixed", LinearModel, VVELSimplified(), 3),
+        ("rigid", LinearModel, housner(BLOCK), 0),
+        ("rigid-C", NonlinearModel, housner(BLOCK), 0),
+        ("2DOF-C", NonlinearModel, VVELComplete(), 1),
+        ("2DOF-C-SI", NonlinearModel, VVELSimplified(), 1),
+        ("2DOF-C-E", NonlinearModel, VVELComplete(), 1),
+        ("3DOF-C-SI", NonlinearModel, VVELSimplified(), 2),
+        ("3DOF-C-E", NonlinearModel, VVELComplete(), 2),
+        ("MDOF-C", NonlinearModel, VVELComplete(), 3),
+        ("MDOF-C-SI", NonlinearModel, VVELSimplified(), 3),
+    ],
+)
+def test_models_and_their_own_laws(label, kind, law, n_modes):
+    tied = parse_model(label).of(PROPERTIES)
+    assert type(tied) is kind
+    assert (tied.label, tied.law, tied.properties.n_modes) == (label, law, n_modes)
+    assert tied.lifts == (label != "fixed")
+    if kind is NonlinearModel:
+        assert tied.complete
+        assert tied.bouc_wen is None
+    mine = Restitution(0.3)
+    assert parse_model(label).of(PROPERTIES, mine).law is mine
+
+
+@pytest.mark.parametrize(
+    ("label", "named", "complete"),
+    [
+        ("2DOF-S", "2DOF-S-BW", False),
+        ("2DOF-S-BW", "2DOF-S-BW", False),
+        ("2DOF-C", "2DOF-C-BW", True),
+        ("2DOF-C-SI", "2DOF-C-SI-BW", True),
+        ("1DOF-fixed", "1DOF-fixed-BW", False),
+    ],
+)
+def test_a_spring_makes_any_model_of_one_mode_yield(label, named, complete):
+    tied = parse_model(label).of(PROPERTIES, bouc_wen=SPRING)
+    assert type(tied) is NonlinearModel
+    assert (tied.label, tied.complete, tied.bouc_wen) == (named, complete, SPRING)
+    assert parse_model("MDOF-S").of(PROPERTIES.truncated(1), bouc_wen=SPRING).label == "MDOF-S-BW"
+    assert parse_model("fixed").of(PROPERTIES.truncated(1), bouc_wen=SPRING).label == "fixed-BW"
+
+
+@pytest.mark.parametrize(
+    ("model", "properties", "options", "text"),
+    [
+        (
+            Model(4),
+            PROPERTIES,
+            {},
+            "Model 5DOF-S needs 4 modes, but the structure has 3. Give more modes, or use MDOF-S for all there are.",
+        ),
+        (
+            Model(4, lifts=False),
+            PROPERTIES,
+            {},
+            "Model 4DOF-fixed needs 4 modes, but the structure has 3. Give more modes, or use fixed for all there are.",
+        ),
+        (
+            parse_model("5DOF-C-SI"),
+            PROPERTIES,
+            {},
+            "Model 5DOF-C-SI needs 4 modes, but the structure has 3. Give more modes, or use MDOF-C-SI for all there "
+            "are.",
+        ),
+        (
+            Model(1, complete=True),
+            BLOCK,
+            {},
+            "Model 2DOF-C needs 1 mode, but the structure has 0. Give more modes, or use MDOF-C for all there are.",
+        ),
+        (
+            Model(),
+            BLOCK,
+            {},
+            'Model MDOF-S needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".',
+        ),
+        (
+            Model(lifts=False),
+            BLOCK,
+            {},
+            'Model fixed needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".',
+        ),
+        (
+            Model(complete=True),
+            PROPERTIES.truncated(2),
+            {},
+            "MDOF-C needs all modes, but those given carry 99.75% of Σ m_i h_i²: Eq. 19 is one equation for many "
+            "velocities. Use MDOF-C-SI or MDOF-C-E.",
+        ),
+        (
+            parse_model("2DOF-S-BW"),
+            PROPERTIES,
+            {},
+            "2DOF-S-BW needs its hysteresis. Give bouc_wen=BoucWen(yield_displacement=...).",
+        ),
+        (
+            parse_model("MDOF-S"),
+            PROPERTIES,
+            {"bouc_wen": SPRING},
+            "bouc_wen goes with models of one mode, but MDOF-S has 3. Use 2DOF-S, or leave it out.",
+        ),
+        (
+            parse_model("rigid"),
+            PROPERTIES,
+            {"bouc_wen": SPRING},
+            "bouc_wen goes with models of one mode, but rigid has 0. Use 2DOF-S, or leave it out.",
+        ),
+        (
+            parse_model("fixed"),
+            PROPERTIES,
+            {"bouc_wen": SPRING},
+            "bouc_wen goes with models of one mode, but fixed has 3. Use 1DOF-fixed, or leave it out.",
+        ),
+    ],
+)
+def test_structures_that_a_model_cannot_have(model, properties, options, text):
+    with pytest.raises(InputError) as caught:
+        model.of(properties, **options)
+    assert str(caught.value) == text
+
+
+def test_truncated_modes_have_a_closure_or_a_law_of_their_own():
+    two = PROPERTIES.truncated(2)
+    assert parse_model("MDOF-C-SI").of(two).law == VVELSimplified()
+    assert parse_model("MDOF-C-E").of(two).law == VVELComplete()
+    assert Model(complete=True).of(two, VVELSimplified()).law == VVELSimplified()
+    assert Model(complete=True).of(PROPERTIES.truncated(1)).law == VVELComplete()  # Eq. 29: one velocity, one equation
+
+
+def squat(**changes):
+    """A block with the inertia of one lumped mass 3 m up on a base."""
+    given = {"i_theta": 3000.0 + 1500.0, "l0r": 1000.0, "m_tot": 1500.0, "half_width": 1.0, **changes}
+    return RockingProperties([], [], [], [], zeta=[], **given)
+
+
+def test_housner_keeps_the_angular_momentum_about_the_new_pivot():
+    """Masses at (±B, h) from the pivots: before, each moves at θ' times its lever about the old one."""
+    rng = np.random.default_rng(3)
+    masses, heights, half = rng.uniform(1.0, 5.0, 6), rng.uniform(2.0, 9.0, 6), 0.7
+    block = squat(
+        i_theta=float(masses @ (heights**2 + half**2)),
+        l0r=float(masses @ heights),
+        m_tot=float(masses.sum()),
+        half_width=half,
+    )
+    # About the right pivot the masses stand at (-B, h); the velocity of rotation 1 there is (h, B).
+    momentum = masses @ (heights * heights + half * -half)
+    assert housner(block).e == pytest.approx(momentum / block.i_theta, rel=1e-14)
+    assert housner(block).shortest_excursion == Restitution(0.0).shortest_excursion
+
+
+def test_a_block_too_squat_for_housner():
+    block = squat(i_theta=2000.0)
+    text = (
+        "Housner's coefficient 1 - 2 m_tot B²/I_θ is -0.5: a block this squat stops at its first impact. "
+        "Give impact=VVELSimplified()."
+    )
+    with pytest.raises(InputError) as caught:
+        housner(block)
+    assert str(caught.value) == text
+    with pytest.raises(InputError) as caught:
+        simulate(block, quiet_motion(0.1), "rigid")
+    assert str(caught.value) == text
+    assert simulate(block, quiet_motion(0.1), "rigid", impact=VVELSimplified()).status == "no_uplift"
+    edge = squat(i_theta=3000.0)
+    assert housner(edge).e == 0.0
+
+
+def test_without_modes_there_are_no_floors():
+    assert BLOCK.floors is None
+    assert BLOCK.n_modes == 0
+    assert BLOCK.nominal_overturning_rotation == pytest.approx(
+        0.7 * np.arctan(BLOCK.half_width * BLOCK.m_tot / BLOCK.l0r)
+    )
+    assert dataclasses.replace(BLOCK).i_theta == BLOCK.i_theta
