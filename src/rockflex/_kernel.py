@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 
 from numba import njit, types
 
-__all__ = ["Callback", "kernel"]
+__all__ = ["Callback", "Entry", "kernel"]
 
 importlib.import_module("numba.experimental.function_type")  # lets numba's typeof know first-class functions
 
@@ -45,6 +45,26 @@ def kernel(function: F) -> F:
     return cast("F", compiled)
 
 
+class Entry:
+    """A kernel that is always given the same types, called without a look at them.
+
+    numba looks at every argument of every call, which for nested tuples takes longer than a short run.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+        self._entry: Callable[..., Any] | None = None
+
+    def __call__(self, *arguments: Any) -> Any:
+        if self._entry is not None:
+            return self._entry(*arguments)
+        result = self._function(*arguments)
+        overloads = getattr(self._function, "overloads", {})
+        if len(overloads) == 1:  # compiled for one set of types; without compilation there is none
+            self._entry = next(iter(overloads.values())).entry_point
+        return result
+
+
 class Callback(types.WrapperAddressProtocol):
     """A Python function of an address and a count, as a value that kernels can be given and call.
 
@@ -53,12 +73,13 @@ class Callback(types.WrapperAddressProtocol):
 
     def __init__(self, function: Callable[[int, int], int]) -> None:
         self._function = _C_CALLBACK(function)
+        self._address = int(ctypes.cast(self._function, ctypes.c_void_p).value or 0)
 
     def __call__(self, address: int, count: int) -> int:
         return int(self._function(address, count))
 
     def __wrapper_address__(self) -> int:
-        return int(ctypes.cast(self._function, ctypes.c_void_p).value or 0)
+        return self._address
 
     def signature(self) -> Any:
         return CALLBACK

@@ -146,11 +146,11 @@ def test_undamped_modes_may_add_up_for_ever():
     ],
 )
 def test_a_run_that_cannot_be_solved_says_where(monkeypatch, status, value, texts):
-    def run(system, record, quiet, dt, free, settle, side, log, room, nodes):
+    def run(system, impact, record, quiet, dt, free, settle, side, log, room, nodes):
         room.state[:] = value
         return status, 7, 0
 
-    monkeypatch.setattr(engine, "run", run)
+    monkeypatch.setattr(engine, "compiled_run", run)
     with pytest.raises(SolverError) as caught:
         simulate(Frame(**frame()), EL_CENTRO, "2DOF-S")
     assert str(caught.value).startswith(texts[0])

@@ -42,6 +42,12 @@ def test_equal_stories_are_a_frame(ratio):
     for name in ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "zeta"):
         np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-10)
     np.testing.assert_allclose(found.floors.force, expected.floors.force, rtol=1e-9)
+    motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
+    responses = [rf.simulate(each, motion, "MDOF-S", output="peaks") for each in (found, expected)]
+    assert responses[1].status == "rocking"
+    for name in ("rotation", "top_displacement", "base_moment", "base_shear"):
+        values = [getattr(each, f"max_{name}") for each in responses]
+        assert values[0] == pytest.approx(values[1], rel=1e-10)
 
 
 def test_no_beams_is_a_stepped_cantilever():

@@ -137,13 +137,13 @@ def test_threads_change_nothing(output):
 
 
 def test_work_is_done_by_the_threads_asked_for(monkeypatch):
-    seen, real = set(), engine.run
+    seen, real = set(), engine.compiled_run
 
     def run(*arguments):
         seen.add(threading.current_thread())
         return real(*arguments)
 
-    monkeypatch.setattr(engine, "run", run)
+    monkeypatch.setattr(engine, "compiled_run", run)
     simulate_many(STRUCTURES, MOTIONS, workers=1)
     assert seen == {threading.current_thread()}
     simulate_many(STRUCTURES, MOTIONS, workers=3)

@@ -170,3 +170,12 @@ def test_rayleigh_quotient_by_hand():
     assert props.effective_height[0] == pytest.approx(turned / moved, rel=1e-12)
     assert props.l0r == pytest.approx(MASS * LENGTH**2 / 2.0 + 6e3 * LENGTH / 2.0, rel=1e-12)
     assert props.translational_inertia == pytest.approx(MASS * LENGTH**3 / 3.0 + 6e3 * LENGTH**2 / 4.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("shear_stiffness", [None, 2e7])
+def test_few_elements_are_exact_under_a_force_at_the_tip(shear_stiffness):
+    # A column of nearly no mass: 1/k = H³/(3 EI) + H/(GA_s).
+    tip = rf.LumpedMasses([LENGTH], [1e6])
+    light = beam(mass=1e-4, n_modes=1, n_elements=1, shear_stiffness=shear_stiffness, lumped_masses=tip)
+    softness = LENGTH**3 / (3.0 * EI) + (LENGTH / shear_stiffness if shear_stiffness else 0.0)
+    assert light.modal().omega[0] == pytest.approx(1.0 / math.sqrt(softness * 1e6), rel=1e-8)

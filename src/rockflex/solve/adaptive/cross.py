@@ -7,7 +7,7 @@ control ends it. Guards, jumps and peaks are those of the exact engine, on the p
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.models import field_rates, inertia_left, kinetic_energy, stick, strike
+from rockflex.models import Impact, field_rates, inertia_left, kinetic_energy, stick, strike
 from rockflex.solve.adaptive.glance import nothing_hides
 from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
 from rockflex.solve.adaptive.step import FAILED, expand_nested, extend, row_poly, settle_on, step_over, take_step
@@ -47,6 +47,7 @@ STALLED = -5  # the error control found no step short enough
 def cross(
     system: System,
     flow: Flow,
+    impact: Impact,
     side: float,
     acceleration: float,
     last: float,
@@ -167,7 +168,7 @@ def cross(
         stages.motion[2 * n] = 0.0
         if side != 0.0:
             count = append(nodes, count, now, side, here, stages.motion)
-            status, next_side = land(flow, side, here, stages)
+            status, next_side = land(flow, impact, side, here, stages)
             if status != CROSSED:
                 return status, side, count
             count = append(nodes, count, now, next_side, here, stages.motion)
@@ -187,34 +188,34 @@ def cross(
 
 
 @kernel
-def land(flow: Flow, side: float, acceleration: float, stages: Stages) -> tuple[int, float]:
+def land(flow: Flow, impact: Impact, side: float, acceleration: float, stages: Stages) -> tuple[int, float]:
     """Apply the impact law; return status and the side to which the rotation goes on, 0 for contact."""
     n = flow.field.omega2.size
     motion = stages.motion
-    before = energy_of_motion(flow, side, motion)
-    if not strike(flow.impact, motion):
+    before = energy_of_motion(flow, impact, side, motion)
+    if not strike(impact, motion):
         return BROKEN, side
     spin = motion[2 * n + 1]
     next_side = 0.0
     if spin != 0.0:
         next_side = 1.0 if spin > 0.0 else -1.0
-        if energy_of_motion(flow, next_side, motion) > before * (1.0 + GAIN):
+        if energy_of_motion(flow, impact, next_side, motion) > before * (1.0 + GAIN):
             return GAINED, side
         field_rates(flow.field, next_side, 1.0, acceleration, motion, stages.rates[0])
         back = -next_side * stages.rates[0, 2 * n + 1]
-        if 2.0 * abs(spin) < back * flow.impact.shortest:
-            stick(flow.impact, motion)
+        if 2.0 * abs(spin) < back * impact.shortest:
+            stick(impact, motion)
             next_side = 0.0
-    if energy_of_motion(flow, next_side, motion) > before * (1.0 + GAIN):
+    if energy_of_motion(flow, impact, next_side, motion) > before * (1.0 + GAIN):
         return GAINED, side
     return CROSSED, next_side
 
 
 @kernel
-def energy_of_motion(flow: Flow, side: float, motion: Array) -> float:
+def energy_of_motion(flow: Flow, impact: Impact, side: float, motion: Array) -> float:
     """Kinetic energy at θ = 0, with what D adds to the inertia about the pivot of this side."""
     free = flow.free_inertia if side == 0.0 else inertia_left(flow.field, side, motion)
-    return kinetic_energy(flow.impact, free, motion)
+    return kinetic_energy(impact, free, motion)
 
 
 @kernel

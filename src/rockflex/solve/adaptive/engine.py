@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockflex._constants import GRAVITY
+from rockflex._kernel import Entry
 from rockflex.models import EXTRA, NonlinearModel, impact_of
 from rockflex.solve._engine import QUIET, Engine
 from rockflex.solve.adaptive.layout import Flow, stages
@@ -16,6 +17,7 @@ from rockflex.solve.exact.tables import tabulate
 
 __all__ = ["AdaptiveEngine"]
 
+compiled_run = Entry(run)
 TOLERANCE = 1e-10  # relative, of a step
 TREMOR = 0.01  # m/s²
 
@@ -41,14 +43,13 @@ class AdaptiveEngine(Engine):
         both = np.stack((np.vstack((guards[0], rows)), np.vstack((guards[1], rows))))
         self._flow = Flow(
             field=model.field(),
-            impact=impact,
             resistance=linear.resistance,
             free_inertia=linear.free_inertia,
             rows=both,
             scale=_scale(model),
             tolerance=tolerance,
         )
-        self._physics = physics_of(linear, impact)
+        self._impact, self._physics = impact, physics_of(linear)
         n = model.properties.n_modes
         self._plain_rows = np.delete(both, 2 * n + 2, axis=2)
         self._contact = contact_basis(self._physics, self._plain_rows[0])
@@ -71,7 +72,9 @@ class AdaptiveEngine(Engine):
         system = self.system(dt)
         room = scratch(motion[:-EXTRA], self._n_rows, system.order)
         work = stages(motion, self._n_rows)
-        return run(system, self._flow, record, QUIET, dt, free, settle, side, log, room, work, nodes)
+        return compiled_run(
+            system, self._flow, self._impact, record, QUIET, dt, free, settle, side, log, room, work, nodes
+        )
 
 
 def _scale(model: NonlinearModel) -> Array:

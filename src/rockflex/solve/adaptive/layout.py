@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.models import EXTRA, Field, Impact
+from rockflex.models import EXTRA, Field
 from rockflex.solve.adaptive.tableau import STAGES
 from rockflex.solve.exact.layout import Array
 
@@ -22,7 +22,6 @@ class Flow(NamedTuple):
     """A nonlinear model made ready."""
 
     field: Field
-    impact: Impact
     resistance: float  # m_tot g B; infinite on a base that cannot lift
     free_inertia: float  # I_θ - Σ m* h*²
     rows: Array  # (2, F, 2N + 5)

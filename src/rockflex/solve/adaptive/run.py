@@ -3,6 +3,7 @@
 import numpy as np
 
 from rockflex._kernel import kernel
+from rockflex.models import Impact
 from rockflex.solve.adaptive.cross import cross
 from rockflex.solve.adaptive.glide import glide
 from rockflex.solve.adaptive.layout import Flow, Stages
@@ -21,6 +22,7 @@ __all__ = ["run"]
 def run(
     system: System,
     flow: Flow,
+    impact: Impact,
     record: Array,
     quiet: Array,
     dt: float,
@@ -47,7 +49,7 @@ def run(
             stages.known[0] = False
             raise_to_motion(flow, side, piece[0], offset * dt, log, stages)
         status, reached, side, count = cross_piece(
-            system, flow, piece, dt, offset, side, log, room, stages, nodes, count
+            system, flow, impact, piece, dt, offset, side, log, room, stages, nodes, count
         )
         offset += reached
         if status != CROSSED:
@@ -63,6 +65,7 @@ def run(
 def cross_piece(
     system: System,
     flow: Flow,
+    impact: Impact,
     piece: Array,
     dt: float,
     offset: int,
@@ -99,6 +102,7 @@ def cross_piece(
             status, side, count = cross(
                 system,
                 flow,
+                impact,
                 side,
                 piece[i],
                 piece[i + 1],
@@ -118,7 +122,20 @@ def cross_piece(
                 return status, i + 1, side, count
         else:
             _, side, _, count = cross_sample(
-                system, side, False, finding, piece[i], piece[i + 1], slope, time, until, log, room, nodes, count
+                system,
+                impact,
+                side,
+                False,
+                finding,
+                piece[i],
+                piece[i + 1],
+                slope,
+                time,
+                until,
+                log,
+                room,
+                nodes,
+                count,
             )
             to_state(system, CONTACT, piece[i + 1], slope, side, room)
         i += 1

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from rockflex._constants import GRAVITY
-from rockflex.models import Impact, LinearModel, impact_of
+from rockflex._kernel import Entry
+from rockflex.models import LinearModel, impact_of
 from rockflex.solve._engine import QUIET, Engine
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
@@ -14,6 +15,8 @@ from rockflex.solve.exact.run import run
 from rockflex.solve.exact.tables import propagate, tabulate
 
 __all__ = ["ExactEngine", "physics_of"]
+
+compiled_run = Entry(run)
 
 
 class ExactEngine(Engine):
@@ -30,7 +33,7 @@ class ExactEngine(Engine):
     def __init__(self, model: LinearModel, contact_rows: Array, rocking_rows: Array) -> None:
         impact, failures = impact_of(model.law, model.properties)
         super().__init__(model, 1 + contact_rows.shape[0], failures)
-        self._physics = physics_of(model, impact)
+        self._impact, self._physics = impact, physics_of(model)
         rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
         self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
@@ -58,7 +61,7 @@ class ExactEngine(Engine):
     ) -> tuple[int, int, int]:
         system = self.system(dt)
         room = scratch(motion, self._n_rows, system.order)
-        return run(system, record, QUIET, dt, free, settle, side, log, room, nodes)
+        return compiled_run(system, self._impact, record, QUIET, dt, free, settle, side, log, room, nodes)
 
     @property
     def fastest(self) -> float:
@@ -84,7 +87,7 @@ class ExactEngine(Engine):
         return states
 
 
-def physics_of(model: LinearModel, impact: Impact) -> Physics:
+def physics_of(model: LinearModel) -> Physics:
     """The model's coefficients as kernels take them."""
     p = model.properties
     return Physics(
@@ -96,5 +99,4 @@ def physics_of(model: LinearModel, impact: Impact) -> Physics:
         gravity=p.l0r * GRAVITY,
         resistance=model.resistance,
         drive_arm=float(np.sum(p.effective_mass * p.effective_height)) - p.l0r,
-        impact=impact,
     )

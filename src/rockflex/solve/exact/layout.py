@@ -14,8 +14,6 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.models import Impact
-
 __all__ = ["CONTACT", "ROCKING", "ZERO", "Array", "Log", "Physics", "Scratch", "System", "scratch"]
 
 CONTACT, ROCKING = 0, 1  # the phases, which lead the arrays of `System`
@@ -37,7 +35,6 @@ class Physics(NamedTuple):
     gravity: float  # L_0^r g
     resistance: float  # m_tot g B; infinite on a base that cannot lift
     drive_arm: float  # Σ m* h* - L_0^r
-    impact: Impact
 
 
 class System(NamedTuple):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockflex._kernel import kernel
+from rockflex.models import Impact
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
@@ -33,6 +34,7 @@ def settled(system: System, room: Scratch, log: Log) -> bool:
 @kernel
 def run(
     system: System,
+    impact: Impact,
     record: Array,
     quiet: Array,
     dt: float,
@@ -55,7 +57,7 @@ def run(
         if piece[0] != last:  # the start, or a jump of the acceleration at the record's end
             count = append(nodes, count, offset * dt, side, piece[0], room.state)
             raise_to_state(system, side, piece[0], offset * dt, log, room)
-        status, reached, side, count = cross_piece(system, piece, dt, offset, side, log, room, nodes, count)
+        status, reached, side, count = cross_piece(system, impact, piece, dt, offset, side, log, room, nodes, count)
         offset += reached
         if status != CROSSED:
             return status, offset, count
@@ -69,6 +71,7 @@ def run(
 @kernel
 def cross_piece(
     system: System,
+    impact: Impact,
     piece: Array,
     dt: float,
     offset: int,
@@ -87,7 +90,20 @@ def cross_piece(
         if i < last:
             time, until = (offset + i) * dt, (offset + i + 1) * dt
             status, side, fresh, count = cross_sample(
-                system, side, fresh, finding, piece[i], piece[i + 1], slope, time, until, log, room, nodes, count
+                system,
+                impact,
+                side,
+                fresh,
+                finding,
+                piece[i],
+                piece[i + 1],
+                slope,
+                time,
+                until,
+                log,
+                room,
+                nodes,
+                count,
             )
             i += 1
             if status != CROSSED:

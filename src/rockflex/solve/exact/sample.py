@@ -1,6 +1,7 @@
 """The closer look: one sample walked on a dyadic grid, in the largest steps in which nothing can hide."""
 
 from rockflex._kernel import kernel
+from rockflex.models import Impact
 from rockflex.solve.exact.grid import largest_step
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
@@ -16,6 +17,7 @@ __all__ = ["cross_sample"]
 @kernel
 def cross_sample(
     system: System,
+    impact: Impact,
     side: float,
     fresh: bool,
     finding: int,
@@ -63,7 +65,9 @@ def cross_sample(
             if not fresh:
                 to_state(system, phase, here, slope, side, room)
             ending = until if place + 1 == grid else time + unit * (place + 1)
-            status, side, count = cross_unit(system, side, here, slope, unit, now, ending, log, room, nodes, count)
+            status, side, count = cross_unit(
+                system, impact, side, here, slope, unit, now, ending, log, room, nodes, count
+            )
             if status != CROSSED:
                 return status, side, True, count
             fresh, tuned = True, False

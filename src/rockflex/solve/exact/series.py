@@ -14,6 +14,7 @@ from rockflex.solve.exact.layout import Array, Physics
 
 __all__ = ["advance", "bend", "evaluate", "expand", "first_descent", "row_series"]
 
+SHIFT = 40  # steps after which a polynomial is developed anew
 MOST_STEPS = 10_000  # a few do; only a root touched to a high order takes more, and then this close is close enough
 
 
@@ -142,25 +143,41 @@ def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
     """First point of [start, stop] where a polynomial, not negative at `start`, falls to zero; inf if none.
 
     Each step is the longest over which the bound of the second derivative forbids a root. Near a simple root
-    that is Newton's step, always from the safe side, so no root can be passed over.
+    that is Newton's step, always from the safe side, so no root can be passed over. Where that is slow, roots or turns
+    crowd ahead, and the bound has lost touch with the polynomial: `polys[row]` is then developed anew about the point
+    reached.
     """
     curvature = bend(polys, row, stop)
-    u = start
-    for _ in range(MOST_STEPS):
+    base, u = 0.0, start
+    for count in range(1, MOST_STEPS + 1):
         value, slope = evaluate(polys, row, u)
         if value <= 0.0 and slope <= 0.0:
-            return u
+            return base + u
         step = rootless(value, slope, curvature)
         if u + step >= stop:
             return np.inf
-        if step < u:
-            # Where a polynomial is flat at first, the bound over what lies just ahead is much the lesser one.
-            ahead = min(2.0 * u, stop)
-            near = rootless(value, slope, bend(polys, row, ahead))
-            if u + near >= stop and ahead == stop:
-                return np.inf
-            step = max(step, min(near, ahead - u))
+        # Where a polynomial is flat at first, the bound over what lies just ahead is much the lesser one.
+        ahead = min(max(2.0 * u, u + 8.0 * step), stop)
+        near = rootless(value, slope, bend(polys, row, ahead))
+        if u + near >= stop and ahead == stop:
+            return np.inf
+        step = max(step, min(near, ahead - u))
         if step <= 2e-16:
-            return u
+            return base + u
         u += step
-    return u
+        if count % SHIFT == 0:
+            develop_about(polys, row, u)
+            base += u
+            stop -= u
+            u = 0.0
+            curvature = bend(polys, row, stop)
+    return base + u
+
+
+@kernel
+def develop_about(polys: Array, row: int, u: float) -> None:
+    """Shift the polynomial's origin to `u`, in place."""
+    last = polys.shape[1] - 1
+    for k in range(last):
+        for j in range(last - 1, k - 1, -1):
+            polys[row, j] += u * polys[row, j + 1]

@@ -7,7 +7,7 @@ root of the guard's polynomial; after the jump the series starts anew, until the
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.models import kinetic_energy, stick, strike
+from rockflex.models import Impact, kinetic_energy, stick, strike
 from rockflex.solve.exact.exits import contact_exit, overturning, rocking_exit
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Physics, Scratch, System
@@ -33,6 +33,7 @@ RESUME = 1e-7  # where contact is searched again after a guard that was touched 
 @kernel
 def cross_unit(
     system: System,
+    impact: Impact,
     side: float,
     acceleration: float,
     slope: float,
@@ -109,13 +110,13 @@ def cross_unit(
         room.state[2 * n] = 0.0
         if side != 0.0:
             count = append(nodes, count, now, side, here, room.state)
-            energy = kinetic_energy(system.physics.impact, inertia, room.state)
-            if not strike(system.physics.impact, room.state):
+            energy = kinetic_energy(impact, inertia, room.state)
+            if not strike(impact, room.state):
                 return BROKEN, side, count
-            if kinetic_energy(system.physics.impact, inertia, room.state) > energy * (1.0 + GAIN):
+            if kinetic_energy(impact, inertia, room.state) > energy * (1.0 + GAIN):
                 return GAINED, side, count
             log.tally[EVENTS] += 1
-            next_side = outward(system.physics, here, room.state)
+            next_side = outward(system.physics, impact, here, room.state)
             count = append(nodes, count, now, next_side, here, room.state)
             log.tally[IMPACTS] += 1
             lift, start, resume = np.nan, PASSING if next_side != 0.0 else INSIDE, 0.0
@@ -131,7 +132,7 @@ def cross_unit(
 
 
 @kernel
-def outward(physics: Physics, acceleration: float, state: Array) -> float:
+def outward(physics: Physics, impact: Impact, acceleration: float, state: Array) -> float:
     """Side to which the rotation goes on after an impact; 0 once its next excursion would be too short to count."""
     n = physics.omega2.size
     spin = state[2 * n + 1]
@@ -143,7 +144,7 @@ def outward(physics: Physics, acceleration: float, state: Array) -> float:
         restoring = physics.damping[i] * state[n + i] + physics.omega2[i] * state[i]
         moment += physics.mass[i] * physics.height[i] * restoring
     back = -side * moment / physics.inertia
-    if 2.0 * abs(spin) < back * physics.impact.shortest:
-        stick(physics.impact, state)
+    if 2.0 * abs(spin) < back * impact.shortest:
+        stick(impact, state)
         return 0.0
     return side
