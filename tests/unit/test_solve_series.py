@@ -141,7 +141,7 @@ def least(poly, start, stop):
 def check_descent(poly, start, stop):
     poly = np.array(poly)
     size = np.abs(poly).sum()
-    u = first_descent(poly[None], 0, start, stop)
+    u = first_descent(poly[None].copy(), 0, start, stop)
     if np.isinf(u):
         assert least(poly, start, stop) >= -1e-13 * size
         return u
