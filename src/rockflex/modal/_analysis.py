@@ -10,12 +10,12 @@ from rockflex._checks import mode_count
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
 
-__all__ = ["ModalProperties", "modal_properties"]
+__all__ = ["NO_PARTICIPATION", "ModalProperties", "modal_properties", "normalising_ordinates"]
 
 Float = NDArray[np.float64]
 
 # A participation below this share of the largest one possible is rounding of the eigenvectors.
-_NO_PARTICIPATION = 1e-10
+NO_PARTICIPATION = 1e-10
 _NO_TOP_ORDINATE = 1e-8
 
 
@@ -126,13 +126,13 @@ def modal_properties(
     omega, shapes = omega[:n], shapes[:, :n]
     moved = mass_times(m, shapes)
     shear, moment = moved.sum(axis=0), h @ moved
-    no_shear = np.abs(shear) <= _NO_PARTICIPATION * np.sqrt(mass_times(m, np.ones_like(h)).sum())
-    no_moment = np.abs(moment) <= _NO_PARTICIPATION * np.sqrt(h @ mass_times(m, h))
+    no_shear = np.abs(shear) <= NO_PARTICIPATION * np.sqrt(mass_times(m, np.ones_like(h)).sum())
+    no_moment = np.abs(moment) <= NO_PARTICIPATION * np.sqrt(h @ mass_times(m, h))
     shear[no_shear] = 0.0
     height = np.where(no_moment, np.nan, np.copysign(np.inf, moment))
     np.divide(moment, shear, out=height, where=~no_shear)
 
-    scale = _normalising_ordinates(shapes)
+    scale = normalising_ordinates(shapes)
     return ModalProperties(
         omega=omega,
         effective_mass=shear**2,
@@ -162,7 +162,9 @@ def _mass_normalised_modes(mass: Float, stiffness: Float) -> tuple[Float, Float]
     return omega[::-1].copy(), shapes[:, ::-1]
 
 
-def _normalising_ordinates(shapes: Float) -> Float:
+def normalising_ordinates(shapes: Float) -> Float:
+    """What each mode is divided by to have the top ordinate 1, or the largest one where the top hardly moves."""
     magnitude = np.abs(shapes)
     largest = shapes[magnitude.argmax(axis=0), np.arange(shapes.shape[1])]
-    return np.where(magnitude[-1] > _NO_TOP_ORDINATE * np.abs(largest), shapes[-1], largest)
+    scale = np.where(magnitude[-1] > _NO_TOP_ORDINATE * np.abs(largest), shapes[-1], largest)
+    return np.where(scale == 0.0, 1.0, scale)  # a mode may leave all stations where they are

@@ -3,13 +3,14 @@
 from typing import SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from rockflex._checks import damping_ratios, mode_count, positive
+from rockflex._checks import damping_ratios, positive
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, mass_times
 from rockflex.modal._analysis import ModalProperties
 from rockflex.modal._floors import FloorModes
+from rockflex.modal._participation import modes_that_take_part
 from rockflex.modal._rocking import RockingProperties
 
 __all__ = ["rocking_properties"]
@@ -75,7 +76,7 @@ def rocking_properties(
     base = positive("base_mass", base_mass, "kg", zero=True)
     b = positive("half_width", half_width, "m")
     zeta = damping_ratios("damping_ratio", damping_ratio, modal.n_modes)
-    kept = _modes_that_take_part(modal, n_modes)
+    kept = modes_that_take_part(modal, n_modes)
 
     m_tot = float(mass_times(m, np.ones_like(h)).sum()) + base
     moved_by_rotation = mass_times(m, h)
@@ -95,20 +96,3 @@ def rocking_properties(
         translational_inertia=inertia,
         floors=FloorModes(h, displacement, mass_times(m, displacement) * omega**2),
     )
-
-
-def _modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
-    take_part = np.flatnonzero(~np.isnan(modal.effective_height))
-    kept = take_part[: mode_count(n_modes, take_part.size)]
-    rotation_only = kept[np.isinf(modal.effective_height[kept])]
-    if rotation_only.size:
-        mode = int(rotation_only[0])
-        below = int(np.sum(kept < mode))
-        remedy = f", or keep only the modes below it (n_modes={below})." if below else "."
-        message = (
-            f"Mode {mode + 1} ({modal.omega[mode]:.6g} rad/s) takes part in the base moment but not in the "
-            "base shear, so it has no modal coordinate D_n. Change a mass or a stiffness slightly"
-            f"{remedy}"
-        )
-        raise InputError(message)
-    return kept

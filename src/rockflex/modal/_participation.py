@@ -8,17 +8,13 @@ from numpy.typing import NDArray
 
 from rockflex._checks import mode_count
 from rockflex._errors import InputError
-from rockflex.modal._analysis import ModalProperties
+from rockflex.modal._analysis import NO_PARTICIPATION, ModalProperties, normalising_ordinates
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._rocking import RockingProperties
 
 __all__ = ["MassNormalisedModes", "modes_that_take_part"]
 
 Float = NDArray[np.float64]
-
-# A participation below this share of the largest one possible is rounding of the eigenvectors.
-_NO_PARTICIPATION = 1e-10
-_NO_TOP_ORDINATE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,14 +63,14 @@ class MassNormalisedModes:
     def modal(self) -> ModalProperties:
         """Return the modes with the top ordinate 1."""
         shear, moment = self.shear.copy(), self.moment
-        no_shear = np.abs(shear) <= _NO_PARTICIPATION * np.sqrt(self.mass)
-        no_moment = np.abs(moment) <= _NO_PARTICIPATION * np.sqrt(self.inertia)
+        no_shear = np.abs(shear) <= NO_PARTICIPATION * np.sqrt(self.mass)
+        no_moment = np.abs(moment) <= NO_PARTICIPATION * np.sqrt(self.inertia)
         shear[no_shear] = 0.0
         height = np.where(no_moment, np.nan, np.copysign(np.inf, moment))
         np.divide(moment, shear, out=height, where=~no_shear)
         above = self.heights > 0.0
         shapes = self.ordinates[above]
-        scale = _normalising_ordinates(shapes)
+        scale = normalising_ordinates(shapes)
         return ModalProperties(
             omega=self.omega.copy(),
             effective_mass=shear**2,
@@ -139,10 +135,3 @@ def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) 
         )
         raise InputError(message)
     return kept
-
-
-def _normalising_ordinates(shapes: Float) -> Float:
-    magnitude = np.abs(shapes)
-    largest = shapes[magnitude.argmax(axis=0), np.arange(shapes.shape[1])]
-    scale = np.where(magnitude[-1] > _NO_TOP_ORDINATE * np.abs(largest), shapes[-1], largest)
-    return np.where(scale == 0.0, 1.0, scale)  # a mode may leave all stations where they are
