@@ -81,8 +81,8 @@ def cross(
             # Up to one unit and a half, or what is left over might be a stretch of no length.
             step = longest if longest <= 1.5 * unit else unit
             polys = room.polys
-            expand(system.physics, False, room.state, here, slope, side, np.nan, step, room.series)
-            row_series(system.plain_rows, CONTACT, GUARD, room.series, here, slope, side, step, polys)
+            expand(system.physics, side != 0.0, room.state, here, slope, side, np.nan, step, room.series)
+            row_series(system.plain_rows, phase, GUARD, room.series, here, slope, side, step, polys)
         else:
             step = take_step(flow, side, here, slope, longest, stages)
             if step == FAILED:
@@ -136,7 +136,7 @@ def cross(
             raise_peak(polys, GUARD, stop, now, step, log)
         for f in range(1, log.peaks.size):
             if linear:
-                row_series(system.plain_rows, CONTACT, f, room.series, here, slope, side, step, polys)
+                row_series(system.plain_rows, phase, f, room.series, here, slope, side, step, polys)
             else:
                 row_poly(f, flow.rows[phase, f], here, slope, side, step, stages)
             raise_peak(polys, f, stop, now, step, log)

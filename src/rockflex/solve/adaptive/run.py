@@ -17,6 +17,8 @@ from rockflex.solve.exact.unit import CROSSED
 
 __all__ = ["run"]
 
+IN_CONTACT = ZERO  # a bare CONTACT would have its callees compiled once more
+
 
 @kernel
 def run(
@@ -41,7 +43,7 @@ def run(
     piece, offset, count, last = record, ZERO, ZERO, np.nan
     while True:
         if offset > 0 and settle and side == 0.0 and not flow.field.hysteretic:
-            to_coordinates(system, CONTACT, piece[0], 0.0, side, room)
+            to_coordinates(system, IN_CONTACT, piece[0], 0.0, side, room)
             if settled(system, room, log):
                 return SETTLED, offset, count
         if piece[0] != last:  # the start, or a jump of the acceleration at the record's end
@@ -85,12 +87,12 @@ def cross_piece(
         if side == 0.0 and not flow.field.hysteretic:
             if not tuned:
                 slope = 0.0
-                to_coordinates(system, CONTACT, piece[i], slope, side, room)
+                to_coordinates(system, IN_CONTACT, piece[i], slope, side, room)
             before = i
             i, slope, finding, count = march(system, piece, dt, i, offset, side, slope, log, room, nodes, count)
             # A motion that was not marched is truer than its coordinates.
             if i > before or tuned:
-                to_state(system, CONTACT, piece[i], slope, side, room)
+                to_state(system, IN_CONTACT, piece[i], slope, side, room)
             tuned = True
         else:
             i, begun, count = glide(flow, piece, dt, i, offset, side, log, stages, nodes, count)
@@ -125,7 +127,7 @@ def cross_piece(
                 system,
                 impact,
                 side,
-                False,
+                not tuned,
                 finding,
                 piece[i],
                 piece[i + 1],
@@ -137,7 +139,7 @@ def cross_piece(
                 nodes,
                 count,
             )
-            to_state(system, CONTACT, piece[i + 1], slope, side, room)
+            to_state(system, IN_CONTACT, piece[i + 1], slope, side, room)
         i += 1
     return CROSSED, last, side, count
 
