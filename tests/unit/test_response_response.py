@@ -46,7 +46,7 @@ QUANTITIES = (
     "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
     "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
-    "vertical_reaction", "friction_demand", "required_friction", "energy",
+    "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force",
 )  # fmt: skip
 KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float"}
 METHODS = ("required_friction_excluding_impacts", "sliding_time")

@@ -90,7 +90,7 @@ def test_one_start_for_models_of_several_lengths():
     assert table["max_rotation"][1] == pytest.approx(alone.max_rotation, rel=1e-12)
 
 
-STRUCTURE = "a Frame, a LumpedStructure or RockingProperties"
+STRUCTURE = "a structure such as a Frame, or RockingProperties"
 LABEL = 'a label such as "2DOF-S", or a Model'
 
 

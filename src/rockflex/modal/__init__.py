@@ -6,6 +6,7 @@ from rockflex.modal._floors import FloorModes
 from rockflex.modal._participation import MassNormalisedModes, modes_that_take_part
 from rockflex.modal._pinned_beam import PinnedBeam, pinned_beam
 from rockflex.modal._rocking import RockingProperties
+from rockflex.modal._tendons import Tendon, tendon_set
 from rockflex.modal._uplifted import UpliftedModes, frequency_equation, uplifted_modes
 
 __all__ = [
@@ -14,11 +15,13 @@ __all__ = [
     "ModalProperties",
     "PinnedBeam",
     "RockingProperties",
+    "Tendon",
     "UpliftedModes",
     "frequency_equation",
     "modal_properties",
     "modes_that_take_part",
     "pinned_beam",
     "rocking_properties",
+    "tendon_set",
     "uplifted_modes",
 ]

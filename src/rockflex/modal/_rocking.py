@@ -1,6 +1,7 @@
 """The parameters of a flexible rocking structure."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import SupportsIndex
 
@@ -11,6 +12,7 @@ from rockflex._checks import damping_ratios, finite_vector, positive, whole_numb
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal._floors import FloorModes
+from rockflex.modal._tendons import Tendon, tendon_set
 
 __all__ = ["RockingProperties"]
 
@@ -54,6 +56,8 @@ class RockingProperties:
         I_θ - m_tot B², which is exact for lumped masses without rotary inertia.
     floors : FloorModes or None
         Floor displacements and forces of the same n modes, for quantities above the base.
+    tendons : tuple of Tendon
+        What holds the base down beside its weight; within the base, and symmetric about its centre.
 
     Raises
     ------
@@ -72,6 +76,7 @@ class RockingProperties:
     zeta: Float
     translational_inertia: float
     floors: FloorModes | None = field(repr=False)
+    tendons: tuple[Tendon, ...]
 
     def __init__(
         self,
@@ -86,6 +91,7 @@ class RockingProperties:
         zeta: ArrayLike,
         translational_inertia: float | None = None,
         floors: FloorModes | None = None,
+        tendons: Tendon | Iterable[Tendon] = (),
     ) -> None:
         modes = {
             "omega": finite_vector("omega", omega, "rad/s"),
@@ -106,7 +112,8 @@ class RockingProperties:
             message = f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}."
             raise InputError(message)
         damping = damping_ratios("zeta", zeta, n_modes)
-        vars(self).update(modes, **scalars, zeta=damping, translational_inertia=inertia, floors=floors)
+        held = _tendons_within(tendon_set(tendons), scalars["half_width"])
+        vars(self).update(modes, **scalars, zeta=damping, translational_inertia=inertia, floors=floors, tendons=held)
 
     @property
     def n_modes(self) -> int:
@@ -114,9 +121,29 @@ class RockingProperties:
         return self.omega.size
 
     @property
-    def resisting_moment(self) -> float:
-        """M_r = m_tot g B in N m: the base lifts when the overturning moment exceeds it (Eq. 24)."""
+    def weight_moment(self) -> float:
+        """Part m_tot g B of the resisting moment that the weight gives, in N m."""
         return self.m_tot * GRAVITY * self.half_width
+
+    @property
+    def prestress(self) -> float:
+        """Sum of the tendons' initial forces in N."""
+        return sum((tendon.initial_force for tendon in self.tendons), 0.0)
+
+    @property
+    def resisting_moment(self) -> float:
+        """M_r = (m_tot g + prestress) B in N m: the base lifts when the overturning moment exceeds it (Eq. 24)."""
+        return self.weight_moment + self.prestress * self.half_width
+
+    @property
+    def tendon_stiffness(self) -> float:
+        """Sum of k (B - x)² in N m/rad: rotational stiffness that the tendons add while the base rocks."""
+        return sum((each.stiffness * (self.half_width - each.position) ** 2 for each in self.tendons), 0.0)
+
+    @property
+    def rocking_stiffness(self) -> float:
+        """Slope of the static moment over the rotation while rocking, in N m/rad: `tendon_stiffness` - L_0^r g."""
+        return self.tendon_stiffness - self.l0r * GRAVITY
 
     @property
     def nominal_overturning_rotation(self) -> float:
@@ -170,6 +197,17 @@ def _check_modes(modes: dict[str, Float]) -> None:
             f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency."
         )
         raise InputError(message)
+
+
+def _tendons_within(tendons: tuple[Tendon, ...], half_width: float) -> tuple[Tendon, ...]:
+    for tendon in tendons:
+        if abs(tendon.position) > half_width * (1.0 + _SLACK):
+            message = (
+                f"Tendons must pass through the base, {half_width:g} m to each side of its centre, but one stands at "
+                f"{tendon.position:g} m. Positions are measured from the centre."
+            )
+            raise InputError(message)
+    return tendons
 
 
 def _translational_inertia(modes: dict[str, Float], scalars: dict[str, float], given: float | None) -> float:

@@ -7,7 +7,6 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._constants import GRAVITY
 from rockflex.modal._rocking import RockingProperties
 
 __all__ = ["UpliftedModes", "frequency_equation", "uplifted_modes"]
@@ -30,7 +29,10 @@ class UpliftedModes:
     shapes : ndarray, shape (n + 1, n)
         (θ, D_1 .. D_n) as columns, with Σ_n |D_n| = 1 m and the largest D_n positive.
     growth_rate : float
-        Rate in 1/s at which the rigid, unstable mode grows; √(L_0^r g/I_θ) of a rigid structure.
+        Rate in 1/s at which the rigid, unstable mode grows; √(L_0^r g/I_θ) of a rigid structure. Zero where tendons
+        hold it.
+    sway_rate : float
+        Circular frequency in rad/s of that mode where tendons hold it, else zero.
     growth_shape : ndarray, shape (n + 1,)
         (θ, D_1 .. D_n) of that mode, with θ = 1 rad.
     """
@@ -39,6 +41,7 @@ class UpliftedModes:
     ratio: Float
     shapes: Float
     growth_rate: float
+    sway_rate: float
     growth_shape: Float
 
     def __post_init__(self) -> None:
@@ -52,7 +55,8 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     """Return the modes of Eq. 23 without damping, with the first `n_modes` modes of the structure or with all.
 
     Its matrices, the rows of D_n times m*_n, are symmetric, and the mass matrix is positive definite since
-    I_θ > Σ m*_n h*_n². One root in ω² is negative, for the rotation that gravity drives; the others are vibrations.
+    I_θ > Σ m*_n h*_n². The lowest root in ω² is that of the rotation, negative where gravity drives it (and tendons do
+    not outdo it); the others are vibrations.
 
     Parameters
     ----------
@@ -84,7 +88,7 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     back = np.eye(n + 1)
     back[0, 0] = 1.0 / rest
     back[1:, 0] = -arm / rest
-    stiffness = np.concatenate([[-p.l0r * GRAVITY], p.omega**2])
+    stiffness = np.concatenate([[p.rocking_stiffness], p.omega**2])
     squares, vectors = np.linalg.eigh(back.T @ (stiffness[:, None] * back))
     mass = np.eye(n + 1)
     mass[0, 0], mass[0, 1:], mass[1:, 0] = p.i_theta, arm, arm
@@ -97,7 +101,8 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
         omega=omega,
         ratio=omega / p.omega,
         shapes=motions[:, 1:] / (np.sign(largest) * np.abs(modal).sum(axis=0)),
-        growth_rate=math.sqrt(-squares[0]),
+        growth_rate=math.sqrt(max(-squares[0], 0.0)),
+        sway_rate=math.sqrt(max(squares[0], 0.0)),
         growth_shape=motions[:, 0] / motions[0, 0],
     )
 
@@ -112,7 +117,9 @@ def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> 
 
 
 def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float:
-    """Return -L_0^r g - ω² I_θ - Σ_n ω⁴ m*_n h*_n²/(ω_n² - ω²), whose zeros are the uplifted frequencies.
+    """Return k_r - ω² I_θ - Σ_n ω⁴ m*_n h*_n²/(ω_n² - ω²), whose zeros are the uplifted frequencies.
+
+    k_r is `RockingProperties.rocking_stiffness`, which is -L_0^r g without tendons.
 
     Parameters
     ----------
@@ -134,4 +141,4 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float
     inertia = properties.effective_mass * properties.effective_height**2
     gap = properties.omega**2 - square
     terms = np.divide(square**2 * inertia, gap, out=np.full(gap.shape, np.nan), where=gap != 0.0)
-    return -properties.l0r * GRAVITY - square[..., 0] * properties.i_theta - terms.sum(axis=-1)
+    return properties.rocking_stiffness - square[..., 0] * properties.i_theta - terms.sum(axis=-1)

@@ -32,6 +32,8 @@ class Field(NamedTuple):
     weight_arm: float  # L_0^r
     total_mass: float
     half_width: float
+    prestress_moment: float  # B times the tendons' initial force
+    tendon_stiffness: float  # Σ k (B - x)²
     gravity: float  # g
     yield_displacement: float
     post_yield_ratio: float
@@ -94,9 +96,12 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
         if field.complete:
             arm = weight * sine + field.weight_arm * cosine - displaced * sine
             moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
+            # Tendons are stretched by 2 r sin(|θ|/2) and pull at the arm r cos(θ/2), r being their distance B - s x.
+            moment += side * field.prestress_moment * math.sqrt(0.5 + 0.5 * cosine) + field.tendon_stiffness * sine
         else:
             arm = field.weight_arm
             moment += field.gravity * (weight - field.weight_arm * theta)
+            moment += side * field.prestress_moment + field.tendon_stiffness * theta
         moment += acceleration * arm
         angular = -moment / inertia_left(field, side, motion)
         drive = arm * spin

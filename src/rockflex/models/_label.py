@@ -130,9 +130,10 @@ class Model:
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         label = self._check_yielding(kept, bouc_wen)
         law = impact if impact is not None else self._law(kept)
-        if self.complete or bouc_wen is not None:
+        linear = LinearModel(label, kept, self.lifts, law)
+        if self.complete or bouc_wen is not None or linear.neutral:
             return NonlinearModel(label, kept, self.lifts, law, self.complete, bouc_wen)
-        return LinearModel(label, kept, self.lifts, law)
+        return linear
 
     def _check_yielding(self, kept: RockingProperties, bouc_wen: BoucWen | None) -> str:
         """The label with its -BW."""

@@ -13,6 +13,8 @@ __all__ = ["LinearModel"]
 
 Array = NDArray[np.float64]
 
+NEUTRAL = 0.01  # of L_0^r g: nearer to balance the steady rotation, ∝ 1/`rocking_stiffness`, drowns the motion
+
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
@@ -46,8 +48,14 @@ class LinearModel:
 
     @property
     def resistance(self) -> float:
-        """Overturning moment at which the base lifts, m_tot g B (Eq. 24), in N m; infinite where it cannot."""
+        """Overturning moment at which the base lifts, M_r (Eq. 24), in N m; infinite where it cannot."""
         return self.properties.resisting_moment if self.lifts else np.inf
+
+    @property
+    def neutral(self) -> bool:
+        """Whether tendons balance the weight so closely that a rocking base has no steady rotation to speak of."""
+        p = self.properties
+        return self.lifts and abs(p.rocking_stiffness) < NEUTRAL * p.l0r * GRAVITY
 
     def contact_moment(self) -> Array:
         """Overturning moment in contact, the left-hand side of Eq. 24, in N m: a row, shape (2N + 4,)."""
@@ -59,7 +67,7 @@ class LinearModel:
     def angular_acceleration(self) -> Array:
         """θ'' while rocking, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (2N + 4,)."""
         row = -self.contact_moment()
-        row[-4] = self.properties.l0r * GRAVITY
+        row[-4] = -self.properties.rocking_stiffness
         row[-1] = -self.properties.resisting_moment
         return row / self.free_inertia
 

@@ -92,6 +92,8 @@ class NonlinearModel:
             weight_arm=p.l0r,
             total_mass=p.m_tot,
             half_width=p.half_width,
+            prestress_moment=p.prestress * p.half_width,
+            tendon_stiffness=p.tendon_stiffness,
             gravity=GRAVITY,
             yield_displacement=b.yield_displacement,
             post_yield_ratio=b.post_yield_ratio,

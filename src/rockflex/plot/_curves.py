@@ -1,5 +1,6 @@
 """Responses made ready to be drawn: checked, named, each with its own look, and what of an overturning run counts."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -7,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal
 
@@ -46,9 +46,9 @@ class Curve:
 
     @property
     def balance_rotation(self) -> float:
-        """Rotation α = m_tot g B / (L_0^r g) in rad at which the static resisting moment vanishes."""
+        """Rotation α in rad at which the static resisting moment vanishes; infinite where tendons keep it from it."""
         p = self.history.model.properties
-        return p.resisting_moment / (p.l0r * GRAVITY)
+        return -p.resisting_moment / p.rocking_stiffness if p.rocking_stiffness < 0.0 else math.inf
 
     @property
     def uplifts(self) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex.plot._curves import curves_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, RED, SKY, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, literal, new_figure, styled
 from rockflex.plot._units import readable
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ _LAYERS = (
     ("damped", "damped", GRAY),
     ("lost", "lost in impacts", RED),
     ("gravity", "raised weight", GREEN),
+    ("tendons", "tendons", PURPLE),
     ("strain", "strain", SKY),
     ("kinetic", "kinetic", ORANGE),
 )
@@ -52,7 +53,7 @@ def plot_energy(response: "Response") -> Figure:
     ledger, drawn = history.energy, curve.before_fall
     layers = [(label, color, np.asarray(getattr(ledger, name))[drawn]) for name, label, color in _LAYERS]
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
-    start = float(ledger.kinetic[0] + ledger.strain[0] + ledger.gravity[0])
+    start = float(ledger.stored[0])
     supply = ledger.input[drawn] + start
     factor, unit = readable(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]

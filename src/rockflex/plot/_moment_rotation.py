@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._style import BLUE, new_figure, styled
@@ -22,12 +21,15 @@ __all__ = ["plot_moment_rotation"]
 
 _HEADROOM = 1.1
 _PER_ROW = 3
+_FREE = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
+_HELD = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
 
 
 def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> Figure:
     """Plot the base moment M_b over the rotation θ, and the static resisting moment of the simplified models.
 
-    The resisting moment is ±(m_tot g B - L_0^r g |θ|) (Silva & Stojadinović 2024, Fig. 11 and Eq. 23); M_b is that of
+    The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
+    tendons add their prestress to M_r and their stiffness k_t to the slope. M_b is that of
     the elastic forces, and departs from it by the inertia of the rotation and by damping. Responses of a base that
     cannot lift have no rotation and are left out. The phase in which a structure overturns does not stretch the axes.
 
@@ -56,7 +58,8 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
         raise InputError(message)
-    rotation = _HEADROOM * (rotation_limit(curves) or max(curve.balance_rotation for curve in curves))
+    nominal = max(curve.history.model.properties.nominal_overturning_rotation for curve in curves)
+    rotation = _HEADROOM * (rotation_limit(curves) or nominal)
     largest = max(_largest_moment(curve) for curve in curves)
     factor, unit = readable(largest, "N m")
     columns = min(len(curves), _PER_ROW)
@@ -92,8 +95,8 @@ def _largest_moment(curve: Curve) -> float:
 
 def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
     p = curve.history.model.properties
-    start, end = p.resisting_moment / factor, (p.resisting_moment - p.l0r * GRAVITY * rotation) / factor
+    start, end = p.resisting_moment / factor, (p.resisting_moment + p.rocking_stiffness * rotation) / factor
     return Line2D(
         [-rotation, 0.0, 0.0, rotation], [-end, -start, start, end], color=BLUE, linestyle=(0, (4, 2)), linewidth=1.1,
-        label=r"static, $\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$", zorder=3.0,
+        label="static, " + (_HELD if p.tendons else _FREE), zorder=3.0,
     )  # fmt: skip

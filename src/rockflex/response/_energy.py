@@ -2,8 +2,8 @@
 
 The simplified equations (Eqs. 15, 23 and 25) are those of a system with the energy
 ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'² + ½ Σ m* ω² D² + s m_tot g B θ - ½ L_0^r g θ²
-relative to the moving ground, on which the ground does the work -∫ a (L_0^r θ' + Σ m* D') dt. The complete ones have
-that of Eqs. 6-8.
+relative to the moving ground (and that of tendons), on which the ground does the work -∫ a (L_0^r θ' + Σ m* D') dt. The
+complete ones have that of Eqs. 6-8.
 """
 
 import math
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.models import LinearModel, NonlinearModel, RockingModel
+from rockflex.response._tendons import stretch_per_arm
 from rockflex.solve import ExactEngine
 
 __all__ = ["EnergyLedger", "energy_ledger", "is_impact"]
@@ -29,13 +30,15 @@ MOST_PIECES = 10_000  # of an interval: a minute of quadrature for a record of a
 class EnergyLedger:
     """Energies in J at every node of a history, shape (n_nodes,) each, relative to the moving ground; read-only.
 
-    ``kinetic + strain + gravity + damped + yielded + lost - input`` keeps its first value; `residual` is what it
-    strays.
+    ``kinetic + strain + gravity + tendons + damped + yielded + lost - input`` keeps its first value; `residual` is what
+    it strays.
 
     Parameters
     ----------
     kinetic, strain, gravity
         Energy of motion, of flexure, and of the raised weight (zero in contact).
+    tendons
+        What the tendons have taken up since the base stood on the ground.
     damped, input
         Dissipated by modal damping, and put in by the ground, up to each node: quadratures of the exact states, or
         integrated with the motion.
@@ -50,6 +53,7 @@ class EnergyLedger:
     kinetic: Array
     strain: Array
     gravity: Array
+    tendons: Array
     damped: Array
     yielded: Array
     input: Array
@@ -59,13 +63,18 @@ class EnergyLedger:
     @property
     def residual(self) -> Array:
         """Energy that the ledger cannot account for at each node, in J."""
-        total = self.kinetic + self.strain + self.gravity + self.damped + self.yielded + self.lost - self.input
+        total = self.stored + self.damped + self.yielded + self.lost - self.input
         return total - total[0]
+
+    @property
+    def stored(self) -> Array:
+        """Energy that may still come back: kinetic, strain, gravity and tendons, in J."""
+        return self.kinetic + self.strain + self.gravity + self.tendons
 
     @property
     def closing_error(self) -> float:
         """Largest residual over the largest energy that went through: input, or what was there at the start."""
-        start = abs(self.kinetic[0] + self.strain[0] + self.gravity[0])
+        start = abs(float(self.stored[0]))
         scale = max(float(np.max(np.abs(self.input))), start)
         return float(np.max(np.abs(self.residual))) / scale if scale > 0.0 else 0.0
 
@@ -96,6 +105,7 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
         kinetic=kinetic,
         strain=strain,
         gravity=gravity,
+        tendons=_stretched(model, nodes),
         damped=np.concatenate(([0.0], np.cumsum(damped))),
         yielded=np.concatenate(([0.0], np.cumsum(yielded))),
         input=np.concatenate(([0.0], np.cumsum(work))),
@@ -130,7 +140,15 @@ def _stored(model: RockingModel, nodes: Array) -> tuple[Array, Array, Array]:
         kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
         raised = (p.m_tot * offset - displaced) * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
         return kinetic, strain, GRAVITY * raised
-    return kinetic, strain, side * p.resisting_moment * rotation - 0.5 * p.l0r * GRAVITY * rotation**2
+    return kinetic, strain, side * p.weight_moment * rotation - 0.5 * p.l0r * GRAVITY * rotation**2
+
+
+def _stretched(model: RockingModel, nodes: Array) -> Array:
+    """Energy of the tendons at every node, less what they hold in contact."""
+    p = model.properties
+    rotation = nodes[:, 3 + 2 * p.n_modes]
+    stretch = stretch_per_arm(model, np.abs(rotation))
+    return p.prestress * p.half_width * stretch + 0.5 * p.tendon_stiffness * stretch**2
 
 
 def _work(model: LinearModel, nodes: Array) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import write_whole
-from rockflex.modal import FloorModes, RockingProperties
+from rockflex.modal import FloorModes, RockingProperties, Tendon
 from rockflex.models import (
     BoucWen,
     ForgottenLaw,
@@ -59,6 +59,7 @@ def save(response: Response, path: Path) -> Path:
         if isinstance(model, NonlinearModel):
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
+        scalars["tendons"] = [asdict(tendon) for tendon in model.properties.tendons]
         arrays["nodes"] = response.history.nodes
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
         if model.properties.floors is not None:
@@ -129,7 +130,8 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     floors = None
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
-    properties = RockingProperties(**values, floors=floors)
+    tendons = [Tendon(**each) for each in _typed(scalars, "tendons", list)]
+    properties = RockingProperties(**values, floors=floors, tendons=tendons)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     law = LAWS[parameters.pop("law")](**parameters)
     if "complete" not in scalars:

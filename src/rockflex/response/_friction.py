@@ -16,6 +16,7 @@ from rockflex._errors import InputError
 from rockflex.models import EXTRA, LinearModel, NonlinearModel, RockingModel
 from rockflex.response._accelerations import accelerations, acting_side
 from rockflex.response._energy import is_impact
+from rockflex.response._tendons import tendon_forces
 from rockflex.solve import ExactEngine
 
 __all__ = ["IMPACT_WINDOW", "Friction", "Reactions", "reactions"]
@@ -35,7 +36,9 @@ class Reactions(NamedTuple):
 
 
 def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
-    """Σ m_i (a + x''_i) of Eq. 21 and Σ m_i (g + z''_i), Eq. 22 with the weight's sign mended.
+    """Σ m_i (a + x''_i) of Eq. 21 and Σ m_i (g + z''_i), Eq. 22 with the weight's sign mended, and the tendons' pull.
+
+    A tendon's force points from where it leaves the base to where it left it in contact: at θ/2 from the vertical.
 
     `nodes` as in `History`, and D''_n and θ'' at each of them, shape (n, N + 1).
     """
@@ -48,9 +51,10 @@ def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
     speed, push = nodes[:, 3 + n : 3 + 2 * n] @ p.effective_mass, rates[:, :-1] @ p.effective_mass
     x = turn * (across * sine + p.l0r * cosine) + spin**2 * (across * cosine - p.l0r * sine)
     z = turn * (across * cosine - p.l0r * sine) - spin**2 * (across * sine + p.l0r * cosine)
+    force = tendon_forces(model, nodes).sum(axis=1)
     return Reactions(
-        p.m_tot * nodes[:, 2] + x + push * cosine - 2.0 * spin * speed * sine,
-        p.m_tot * GRAVITY + z - push * sine - 2.0 * spin * speed * cosine,
+        p.m_tot * nodes[:, 2] + x + push * cosine - 2.0 * spin * speed * sine + force * np.sin(0.5 * theta),
+        p.m_tot * GRAVITY + z - push * sine - 2.0 * spin * speed * cosine + force * np.cos(0.5 * theta),
     )
 
 

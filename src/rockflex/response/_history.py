@@ -16,6 +16,7 @@ from rockflex.response._floors import floor_histories
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._observables import global_observables
+from rockflex.response._tendons import tendon_forces
 
 __all__ = ["History"]
 
@@ -155,6 +156,11 @@ class History:
         return self._floors[2]
 
     @property
+    def tendon_force(self) -> Array:
+        """Force of each tendon in N, in the order of `RockingProperties.tendons`, shape (n_nodes, n_tendons)."""
+        return tendon_forces(self.model, self.nodes)
+
+    @property
     def horizontal_reaction(self) -> Array:
         """What the ground gives the base across, Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_nodes,)."""
         return self._friction.reactions.horizontal
@@ -163,7 +169,7 @@ class History:
     def vertical_reaction(self) -> Array:
         """What the ground gives the base upward, Σ m_i (g + z''_i), in N, shape (n_nodes,).
 
-        Eq. 22 with the sign of the weight mended; as printed, it is less by 2 m_tot g.
+        Eq. 22 with the sign of the weight mended; as printed, it is less by 2 m_tot g. Tendons add their pull.
         """
         return self._friction.reactions.vertical
 

@@ -15,6 +15,7 @@ from rockflex.response._floors import floor_accelerations
 from rockflex.response._history import History
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._observables import GLOBAL
+from rockflex.response._tendons import largest_tendon_force
 from rockflex.solve import Solution
 
 __all__ = ["PEAKS", "Response", "respond"]
@@ -51,9 +52,9 @@ class Response:
     history has the history's quantities as its own: `time`, `side`, `ground_acceleration`, `modal_displacement`,
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
     `top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`, `story_drift`, `story_shear`,
-    `floor_acceleration`, `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
-    `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. One that keeps peaks only has
-    none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
+    `floor_acceleration`, `tendon_force`, `horizontal_reaction`, `vertical_reaction`, `friction_demand`,
+    `required_friction`, `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. One that
+    keeps peaks only has none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
 
     Parameters
     ----------
@@ -72,6 +73,11 @@ class Response:
         Largest |M_b| of the elastic forces in N m, and when; zero for a rigid block, which has none.
     max_base_shear, time_of_max_base_shear
         Largest |V_b| of the elastic forces in N, and when; zero for a rigid block.
+    max_tendon_force
+        Largest force of any tendon in N; zero without tendons.
+    tendon_utilisation
+        Largest force over yield force of any tendon; zero without tendons, NaN where no yield force is known. Tendons
+        stay elastic, so a run with more than 1 is not to be trusted.
     n_uplifts, n_impacts
         How often the base left the ground, and how often it came back, during the run. A start off the ground is no
         uplift, so there may then be one impact more than there are uplifts.
@@ -98,6 +104,8 @@ class Response:
     time_of_max_base_moment: float
     max_base_shear: float
     time_of_max_base_shear: float
+    max_tendon_force: float
+    tendon_utilisation: float
     n_uplifts: int
     n_impacts: int
     nominal_overturning: bool
@@ -124,6 +132,7 @@ class Response:
     story_drift = _OfHistory[Array]()
     story_shear = _OfHistory[Array]()
     floor_acceleration = _OfHistory[Array]()
+    tendon_force = _OfHistory[Array]()
     horizontal_reaction = _OfHistory[Array]()
     vertical_reaction = _OfHistory[Array]()
     friction_demand = _OfHistory[Array]()
@@ -177,6 +186,7 @@ def respond(model: RockingModel, motion: str, solution: Solution) -> Response:
     tracked = slice(1, globals_end)
     peaks = {f"max_{name}": float(value) for name, value in zip(GLOBAL, solution.peaks[tracked], strict=True)}
     times = {f"time_of_max_{name}": float(t) for name, t in zip(GLOBAL, solution.peak_times[tracked], strict=True)}
+    force, utilisation = largest_tendon_force(model, rotation)
     return Response(
         model=model.label,
         motion=motion,
@@ -185,6 +195,8 @@ def respond(model: RockingModel, motion: str, solution: Solution) -> Response:
         time_of_max_rotation=float(solution.peak_times[0]),
         **peaks,
         **times,
+        max_tendon_force=force,
+        tendon_utilisation=utilisation,
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
         nominal_overturning=rotation > model.properties.nominal_overturning_rotation,

@@ -8,6 +8,7 @@ from rockflex.structure._fish_bone import FishBone
 from rockflex.structure._frame import Frame
 from rockflex.structure._from_matrices import ModalStructure, from_matrices, from_modes
 from rockflex.structure._lumped import LumpedStructure
+from rockflex.structure._restrained import Restrained
 from rockflex.structure._ritz import RitzShapes, cosine_shapes
 from rockflex.structure._sections import LumpedMasses
 from rockflex.structure._tapered_tower import TaperedTower
@@ -21,6 +22,7 @@ __all__ = [
     "LumpedMasses",
     "LumpedStructure",
     "ModalStructure",
+    "Restrained",
     "RitzShapes",
     "TaperedTower",
     "WallFrame",

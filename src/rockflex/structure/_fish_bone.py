@@ -12,7 +12,7 @@ from rockflex._errors import InputError
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._lumped import LumpedStructure
 
-__all__ = ["FishBone"]
+__all__ = ["FishBone", "condensed_stiffness"]
 
 Float = NDArray[np.float64]
 
@@ -99,7 +99,7 @@ class FishBone:
         """The structure that the frame assembles: floor masses, condensed stiffness, floor heights."""
         return LumpedStructure(
             self.masses,
-            self._condensed_stiffness(),
+            condensed_stiffness(self.story_heights, self.column_stiffness, self.beam_stiffness),
             np.cumsum(self.story_heights),
             base_mass=self.base_mass,
             half_width=self.half_width,
@@ -126,19 +126,21 @@ class FishBone:
         """
         return self.lumped.rocking(n_modes)
 
-    def _condensed_stiffness(self) -> Float:
-        n = self.masses.size
-        sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
-        for i, (length, stiffness) in enumerate(zip(self.story_heights, self.column_stiffness, strict=True)):
-            ends = np.ix_([i, i + 1], [i, i + 1])
-            sway[ends] += 12.0 * stiffness / length**3 * np.array([[1.0, -1.0], [-1.0, 1.0]])
-            coupling[ends] += 6.0 * stiffness / length**2 * np.array([[1.0, 1.0], [-1.0, -1.0]])
-            bending[ends] += 2.0 * stiffness / length * np.array([[2.0, 1.0], [1.0, 2.0]])
-        turning = np.flatnonzero(np.isfinite(self.beam_stiffness)) + 1  # a rigid beam holds its floor
-        rotational = bending[np.ix_(turning, turning)] + np.diag(self.beam_stiffness[turning - 1])
-        tied = coupling[1:, turning]
-        stiffness = sway[1:, 1:] - tied @ np.linalg.solve(rotational, tied.T)
-        return 0.5 * (stiffness + stiffness.T)
+
+def condensed_stiffness(story_heights: Float, column_stiffness: Float, beam_stiffness: Float) -> Float:
+    """Lateral stiffness of the floors in N/m, shape (N, N), rotations condensed out; arguments as in `FishBone`."""
+    n = story_heights.size
+    sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
+    for i, (length, stiffness) in enumerate(zip(story_heights, column_stiffness, strict=True)):
+        ends = np.ix_([i, i + 1], [i, i + 1])
+        sway[ends] += 12.0 * stiffness / length**3 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        coupling[ends] += 6.0 * stiffness / length**2 * np.array([[1.0, 1.0], [-1.0, -1.0]])
+        bending[ends] += 2.0 * stiffness / length * np.array([[2.0, 1.0], [1.0, 2.0]])
+    turning = np.flatnonzero(np.isfinite(beam_stiffness)) + 1  # a rigid beam holds its floor
+    rotational = bending[np.ix_(turning, turning)] + np.diag(beam_stiffness[turning - 1])
+    tied = coupling[1:, turning]
+    stiffness = sway[1:, 1:] - tied @ np.linalg.solve(rotational, tied.T)
+    return 0.5 * (stiffness + stiffness.T)
 
 
 def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:

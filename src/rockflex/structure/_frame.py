@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockflex._checks import in_range, positive, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties
+from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
 
 __all__ = ["Frame"]
@@ -135,21 +136,10 @@ class Frame:
 @lru_cache(maxsize=128)
 def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Float, ModalProperties]:
     """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
-    n = n_stories
-    below = np.eye(n, k=-1)
-    drift = np.eye(n) - below
-    sway = 12.0 * drift.T @ drift
-    # The last floor has a column below it alone.
-    coupling = 6.0 * (below.T - below)
-    bending = 8.0 * np.eye(n) + 2.0 * (below + below.T)
-    coupling[-1, -1], bending[-1, -1] = -6.0, 4.0
-    # Divided by 1 + ρ, the rotational stiffness stays finite up to the rigid beam, which needs no limit.
-    softness = 1.0 / (1.0 + stiffness_ratio)
-    rotational = softness * bending + 12.0 * (1.0 - softness) * np.eye(n)
-    stiffness = sway - softness * coupling @ np.linalg.solve(rotational, coupling.T)
-    stiffness = 0.5 * (stiffness + stiffness.T)
+    one = np.ones(n_stories)
+    stiffness = condensed_stiffness(one, one, 12.0 * stiffness_ratio * one)
     stiffness.setflags(write=False)
-    return stiffness, modal_properties(np.ones(n), stiffness, np.arange(1.0, n + 1.0))
+    return stiffness, modal_properties(one, stiffness, np.cumsum(one))
 
 
 def _checked_stiffness_ratio(value: float) -> float:

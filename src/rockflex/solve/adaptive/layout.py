@@ -22,7 +22,7 @@ class Flow(NamedTuple):
     """A nonlinear model made ready."""
 
     field: Field
-    resistance: float  # m_tot g B; infinite on a base that cannot lift
+    resistance: float  # M_r; infinite on a base that cannot lift
     free_inertia: float  # I_θ - Σ m* h*²
     rows: Array  # (2, F, 2N + 5)
     scale: Array  # (2N + 3,): sizes below which a component's error does not matter

@@ -144,7 +144,7 @@ def _energy_scale(physics: Physics) -> Array:
     speed = np.sqrt(physics.mass)
     spin = math.sqrt(physics.inertia)
     omega = np.sqrt(physics.omega2)
-    slowest = omega[0] if omega.size else math.sqrt(physics.gravity / physics.inertia)
+    slowest = omega[0] if omega.size else math.sqrt(abs(physics.gravity) / physics.inertia)
     return np.concatenate((speed * omega, speed, [spin * slowest, spin]))
 
 

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from rockflex._constants import GRAVITY
 from rockflex._kernel import Entry
 from rockflex.models import LinearModel, impact_of
 from rockflex.solve._engine import QUIET, Engine
@@ -38,9 +37,9 @@ class ExactEngine(Engine):
         rotation[-4] = 1.0
         self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
         self._contact = contact_basis(self._physics, self._rows[0])
-        # A base that cannot lift never rocks; its second phase only fills the place.
+        # A base that cannot lift never rocks, and a neutral one is integrated: the second phase only fills the place.
         self._rocking = self._contact
-        if model.lifts:
+        if model.lifts and not model.neutral:
             accelerations = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
             self._rocking = rocking_basis(self._physics, accelerations, self._rows[1])
         self._systems: dict[float, System] = {}
@@ -96,7 +95,7 @@ def physics_of(model: LinearModel) -> Physics:
         height=p.effective_height.copy(),  # writable, as the kernels are compiled for
         mass=p.effective_mass.copy(),
         inertia=model.free_inertia,
-        gravity=p.l0r * GRAVITY,
+        gravity=-p.rocking_stiffness,
         resistance=model.resistance,
         drive_arm=float(np.sum(p.effective_mass * p.effective_height)) - p.l0r,
     )

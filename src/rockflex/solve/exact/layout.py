@@ -32,8 +32,8 @@ class Physics(NamedTuple):
     height: Array  # h*
     mass: Array  # m*
     inertia: float  # I_θ - Σ m* h*²
-    gravity: float  # L_0^r g
-    resistance: float  # m_tot g B; infinite on a base that cannot lift
+    gravity: float  # L_0^r g, less the stiffness of tendons
+    resistance: float  # M_r; infinite on a base that cannot lift
     drive_arm: float  # Σ m* h* - L_0^r
 
 

@@ -1,0 +1,85 @@
+"""Tendons that hold a base down."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from rockflex._checks import finite, positive
+from rockflex._errors import InputError
+
+__all__ = ["Tendon", "tendon_set"]
+
+
+@dataclass(frozen=True)
+class Tendon:
+    """An unbonded, elastic, vertical tendon from the structure through the base into the ground.
+
+    While the base rocks about a pivot at the distance r the tendon is stretched by 2 r sin(|θ|/2), to first order by
+    r |θ|, and its force rises from the initial one in proportion (Vassiliou & Makris 2015, doi
+    10.1061/(ASCE)EM.1943-7889.0000953). It never goes slack, since every rotation stretches it.
+
+    Attributes
+    ----------
+    initial_force : float
+        In N, when the base stands on the ground; zero or positive.
+    stiffness : float
+        Axial stiffness EA/L over the unbonded length in N/m; zero or positive.
+    position : float
+        Distance from the centre of the base in m, positive to the right.
+    yield_force : float or None
+        In N, positive: against which the force is held. The tendon itself stays elastic.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+    """
+
+    initial_force: float
+    stiffness: float
+    position: float = 0.0
+    yield_force: float | None = None
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            initial_force=positive("initial_force", self.initial_force, "N", zero=True),
+            stiffness=positive("stiffness", self.stiffness, "N/m", zero=True),
+            position=finite("position", self.position, "m"),
+        )
+        if self.yield_force is not None:
+            limit = positive("yield_force", self.yield_force, "N")
+            vars(self).update(yield_force=limit)
+            if self.initial_force > limit:
+                message = (
+                    f"initial_force must not exceed yield_force, {limit:g} N, but {self.initial_force:g} N was given. "
+                    "A tendon that has yielded is not elastic; check the units too."
+                )
+                raise InputError(message)
+
+
+def tendon_set(given: Any) -> tuple[Tendon, ...]:
+    """One tendon or several, as a tuple in which every tendon off the centre has its mirror image.
+
+    Raises
+    ------
+    InputError
+        If something is no tendon, or the set is not symmetric.
+    """
+    items = (given,) if isinstance(given, Tendon) else tuple(given) if isinstance(given, Iterable) else (given,)
+    for item in items:
+        if not isinstance(item, Tendon):
+            message = f"tendons must be Tendon objects, but {item!r} was given. Write Tendon(initial_force, stiffness)."
+            raise InputError(message)
+    left = sorted((-t.position, t.initial_force, t.stiffness) for t in items if t.position < 0.0)
+    right = sorted((t.position, t.initial_force, t.stiffness) for t in items if t.position > 0.0)
+    pairs = [pair for ours, theirs in zip(left, right, strict=False) for pair in zip(ours, theirs, strict=True)]
+    if len(left) != len(right) or not all(math.isclose(one, other, rel_tol=1e-9) for one, other in pairs):
+        places = ", ".join(f"{t.position:g} m ({t.initial_force:g} N, {t.stiffness:g} N/m)" for t in items)
+        message = (
+            f"The tendons must be symmetric about the centre of the base, but they stand at {places}. The models have "
+            "the same properties about both pivots: give each tendon off the centre a mirror image of equal force and "
+            "stiffness."
+        )
+        raise InputError(message)
+    return items

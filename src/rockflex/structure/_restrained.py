@@ -1,0 +1,61 @@
+"""A structure whose base is held down by tendons."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Protocol, SupportsIndex
+
+from rockflex._errors import InputError
+from rockflex.modal import ModalProperties, RockingProperties, Tendon, tendon_set
+
+__all__ = ["Restrained"]
+
+
+class Unrestrained(Protocol):
+    """Any structure."""
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties: ...
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties: ...
+
+
+@dataclass(frozen=True, init=False)
+class Restrained:
+    """A structure whose base is held down by unbonded post-tensioned tendons.
+
+    They raise the resisting moment and give the rotation a restoring stiffness (Silva & Stojadinović 2024, Section
+    4.1); modes on a fixed base stay as they are. A structure known by its `RockingProperties` alone takes `tendons`
+    there.
+
+    Attributes
+    ----------
+    structure
+        Any structure: a `Frame`, a `TaperedTower`, ...
+    tendons : tuple of Tendon
+        One in the centre, symmetric pairs, or both.
+
+    Raises
+    ------
+    InputError
+        If the tendons are not symmetric or stand outside the base, or `structure` is none.
+    """
+
+    structure: Unrestrained
+    tendons: tuple[Tendon, ...]
+
+    def __init__(self, structure: Unrestrained, tendons: Tendon | Iterable[Tendon]) -> None:
+        if isinstance(structure, type) or not (hasattr(structure, "rocking") and hasattr(structure, "modal")):
+            message = (
+                f"structure must be a structure such as a Frame, but {structure!r} was given. RockingProperties take "
+                "their tendons themselves: RockingProperties(..., tendons=...)."
+            )
+            raise InputError(message)
+        vars(self).update(structure=structure, tendons=tendon_set(tendons))
+        self.rocking(1)  # whether they stand within the base
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all of them."""
+        return self.structure.modal(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all."""
+        return replace(self.structure.rocking(n_modes), tendons=self.tendons)
