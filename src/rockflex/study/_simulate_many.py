@@ -86,7 +86,9 @@ def simulate_many(
     check_output(output)
     check_options(bouc_wen, impact)
     check_initial(initial)
-    everything = sequence_of("structures", structures, is_structure, "a structure such as a Frame, or RockingProperties")
+    everything = sequence_of(
+        "structures", structures, is_structure, "a structure such as a Frame, or RockingProperties"
+    )
     records = sequence_of("motions", motions, lambda given: isinstance(given, GroundMotion), "a GroundMotion")
     labels = sequence_of(
         "models", models, lambda given: isinstance(given, str | Model), 'a label such as "2DOF-S", or a Model'

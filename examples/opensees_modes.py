@@ -1,0 +1,149 @@
+"""A frame modelled in OpenSeesPy, set on a base that can rock.
+
+`matrices_of` takes mass, stiffness and freedoms out of any plane model with three freedoms a node; `structure_of` makes
+a rockflex structure of them. OpenSeesPy has a licence of its own and comes from https://pypi.org/project/openseespy.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+import rockflex as rf
+
+Float = NDArray[np.float64]
+
+N_STORIES, STORY_HEIGHT, BAY = 5, 3.0, 4.0  # m
+FLOOR_MASS, BASE_MASS, HALF_WIDTH, DAMPING_RATIO = 40e3, 40e3, 2.2, 0.02  # kg, kg, m
+ELASTIC_MODULUS = 30e9  # N/m²
+COLUMN, BEAM = (0.16, 0.16 * 0.4**2 / 12.0), (0.15, 0.15 * 0.5**2 / 12.0)  # area in m², second moment in m⁴
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """What one equation of the model moves: a node horizontally, vertically, or turning it."""
+
+    kind: Literal["x", "y", "turn"]
+    x: float  # m from the axis of the structure
+    height: float  # m above the base
+
+
+def structure_of(
+    mass: Float, stiffness: Float, freedoms: list[Freedom], base_mass: float, half_width: float, damping_ratio: float
+) -> rf.ModalStructure:
+    """Structure of the matrices of a held base, in the order of `freedoms`.
+
+    OpenSees turns counterclockwise, which moves what is above a node against x; rockflex turns the other way, so
+    rotations change their sign. Vertical freedoms may have no mass beside the axis: the base's rotation would lift it,
+    and `from_matrices` has no place for that. Give the floors horizontal mass alone, as the paper does.
+    """
+    if not len(freedoms) == len(mass) == len(stiffness):
+        message = f"{len(freedoms)} freedoms were given for matrices of {len(mass)} and {len(stiffness)} rows."
+        raise ValueError(message)
+    for i, freedom in enumerate(freedoms):
+        if freedom.kind == "y" and freedom.x != 0.0 and np.any(mass[i]):
+            message = (
+                f"Vertical mass stands {freedom.x:g} m beside the axis, {freedom.height:g} m high. Give nodes mass in "
+                "the horizontal direction alone: ops.mass(node, m, 0.0, 0.0)."
+            )
+            raise ValueError(message)
+    sign = np.array([-1.0 if freedom.kind == "turn" else 1.0 for freedom in freedoms])
+    signs = np.outer(sign, sign)
+    return rf.from_matrices(
+        signs * mass,
+        signs * stiffness,
+        {i: freedom.height for i, freedom in enumerate(freedoms) if freedom.kind == "x"},
+        rotations=[i for i, freedom in enumerate(freedoms) if freedom.kind == "turn"],
+        base_mass=base_mass,
+        half_width=half_width,
+        damping_ratio=damping_ratio,
+    )
+
+
+def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, Float, list[Freedom]]:
+    """Mass, stiffness and freedoms of the plane model in memory, whose base is held.
+
+    `axis` is the x of its axis and `base` the y of its base in m. OpenSees warns that the mass matrix is singular
+    where freedoms have no mass: the step that makes it form the matrix cannot be solved, nor need it be. Multi-point
+    constraints (equalDOF, rigidLink) merge equations, and are refused.
+    """
+    ops.wipeAnalysis()
+    ops.constraints("Plain")
+    ops.numberer("Plain")
+    ops.system("FullGeneral")  # the one that printA can print
+    ops.algorithm("Linear")
+    ops.analysis("Transient")
+    found: list[Float] = []
+    for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):  # of mass, damping and stiffness in what is printed
+        ops.integrator("GimmeMCK", *factors)
+        ops.analyze(1, 0.0)
+        size = ops.systemSize()
+        found.append(np.array(ops.printA("-ret"), dtype=np.float64).reshape(size, size))
+    stiffness, mass = found
+    freedoms: dict[int, Freedom] = {}
+    for node in ops.getNodeTags():
+        x, y = ops.nodeCoord(node)
+        for kind, equation in zip(("x", "y", "turn"), ops.nodeDOFs(node), strict=True):
+            if equation in freedoms:
+                message = f"Node {node} shares an equation with another. Model floors without multi-point constraints."
+                raise ValueError(message)
+            if equation >= 0:  # held freedoms have a negative one
+                freedoms[equation] = Freedom(kind, x - axis, y - base)
+    return mass, stiffness, [freedoms[i] for i in range(len(mass))]
+
+
+def build_frame(ops: Any) -> None:
+    """One bay, five stories, elastic members, mass at the joints in the horizontal direction."""
+    ops.wipe()
+    ops.model("basic", "-ndm", 2, "-ndf", 3)
+    ops.geomTransf("Linear", 1)
+    members = 0
+    for floor in range(N_STORIES + 1):
+        left, right = 2 * floor + 1, 2 * floor + 2
+        for node, x in ((left, -0.5 * BAY), (right, 0.5 * BAY)):
+            ops.node(node, x, floor * STORY_HEIGHT)
+            if floor == 0:
+                ops.fix(node, 1, 1, 1)
+                continue
+            ops.mass(node, 0.5 * FLOOR_MASS, 0.0, 0.0)
+            members += 1
+            ops.element("elasticBeamColumn", members, node - 2, node, COLUMN[0], ELASTIC_MODULUS, COLUMN[1], 1)
+        if floor > 0:
+            members += 1
+            ops.element("elasticBeamColumn", members, left, right, BEAM[0], ELASTIC_MODULUS, BEAM[1], 1)
+
+
+def run(ops: Any) -> rf.ModalStructure:
+    """Build the frame, take its matrices, and print its modes and its response beside OpenSees' own frequencies."""
+    build_frame(ops)
+    mass, stiffness, freedoms = matrices_of(ops)
+    structure = structure_of(mass, stiffness, freedoms, BASE_MASS, HALF_WIDTH, DAMPING_RATIO)
+    modes = structure.modal()
+    ops.wipeAnalysis()
+    squares = ops.eigen(3)
+    print("Frequencies in rad/s: OpenSees' eigen, rockflex")
+    for n, square in enumerate(squares):
+        print(f"  {n + 1} {square**0.5:12.6f} {modes.omega[n]:12.6f}")
+    motion = rf.load_suite("el-centro-1940")[0]
+    for model in ("2DOF-S", "MDOF-S"):
+        response = rf.simulate(structure, motion, model, output="peaks")
+        print(
+            f"{model}: {response.status}, θ_max {response.max_rotation:.3e} rad, "
+            f"u_top {response.max_top_displacement:.4f} m, {response.n_impacts} impacts"
+        )
+    return structure
+
+
+def main() -> None:
+    """Run the example, where OpenSeesPy is installed."""
+    try:
+        import openseespy.opensees as ops  # pyright: ignore[reportMissingImports]
+    except ImportError as error:
+        message = f"This example needs OpenSeesPy: pip install openseespy ({error})."
+        raise SystemExit(message) from error
+    run(ops)
+
+
+if __name__ == "__main__":
+    main()

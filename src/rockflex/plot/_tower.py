@@ -1,0 +1,152 @@
+"""The geometry of a tapered tower."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Wedge
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, letter, new_figure, styled
+from rockflex.plot._units import short
+
+if TYPE_CHECKING:
+    from rockflex.structure import TaperedTower
+
+__all__ = ["plot_tower"]
+
+_EDGE = "#404040"
+_SLICE = 0.015  # height of the slice over that of the tower
+
+
+def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
+    """Plot a tower's elevation, and one of its sections with what it adds to I_θ.
+
+    The figure is that of Silva & Stojadinović 2024, Fig. 14. A slice of mass m at the height z turns about the pivot O
+    with m((R² + r²)/4 + Δ²), where Δ² = z² + B² (Eq. 33).
+
+    Parameters
+    ----------
+    tower
+        A `TaperedTower`.
+    section
+        Height z of the section in m, at most that of the tower. Default: half of it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two axes, elevation and section, in m. Widths and heights of the elevation have scales of their own.
+
+    Raises
+    ------
+    InputError
+        If no tower is given, or the section is outside it.
+    """
+    if not hasattr(tower, "top_radius"):
+        message = f"tower must be a TaperedTower, but {type(tower).__name__} was given."
+        raise InputError(message)
+    z = 0.5 * tower.height if section is None else positive("section", section, "m")
+    if z > tower.height:
+        message = f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given."
+        raise InputError(message)
+    with styled():
+        figure = new_figure(6.3, 4.6)
+        left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+        _draw_elevation(left, tower, z)
+        _draw_section(right, tower, z)
+        letter(left, "A")
+        letter(right, "B")
+    return figure
+
+
+def _outer(tower: "TaperedTower", z: float) -> float:
+    return tower.base_radius + (tower.top_radius - tower.base_radius) * z / tower.height
+
+
+def _draw_elevation(axes: Axes, tower: "TaperedTower", z: float) -> None:
+    height, base, top = tower.height, tower.base_radius, tower.top_radius
+    levels = np.array([0.0, height])
+    outer = np.array([base, top])
+    inner = np.maximum(outer - tower.wall, 0.0)
+    for side in (-1.0, 1.0):
+        axes.fill_betweenx(
+            levels, side * inner, side * outer, facecolor=SHADE, edgecolor=_EDGE, linewidth=0.9, label="_wall"
+        )
+    radius = _outer(tower, z)
+    slab = z + 0.5 * _SLICE * height * np.array([-1.0, 1.0])
+    axes.fill_betweenx(slab, -radius, radius, facecolor=BLUE, alpha=0.5, linewidth=0.0, label="_slice")
+    axes.axvline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
+    axes.axhline(0.0, color=_EDGE, linewidth=1.2, label="_ground")
+    axes.plot([base, 0.0], [0.0, z], color=RED, linewidth=1.0, label="_arm")
+    axes.plot([base], [0.0], "o", color=RED, markersize=4.5, clip_on=False, zorder=4.0, label="_pivot")
+    _say(axes, "O", (base, 0.0), (5, 4), RED)
+    arm = float(np.hypot(z, base))
+    _say(axes, rf"$Δ$ = {arm:.4g} m", (0.5 * base, 0.5 * z), (3, 6), RED, boxed=True)
+    reach = 1.5 * max(base, top)
+    axes.set_xlim(-reach, 1.75 * max(base, top))
+    axes.set_ylim(-0.12 * height, 1.09 * height)
+    _measure(axes, (-1.25 * max(base, top), 0.0), (-1.25 * max(base, top), height))
+    _say(axes, rf"$H$ = {height:g} m", (-1.25 * max(base, top), 0.5 * height), (-3, 0), _EDGE, turned=True)
+    _measure(axes, (0.0, -0.045 * height), (base, -0.045 * height))
+    _say(axes, rf"$B$ = $R_c$ = {base:g} m", (0.5 * base, -0.045 * height), (0, -4), _EDGE, below=True)
+    _measure(axes, (0.0, 1.03 * height), (top, 1.03 * height))
+    _say(axes, rf"$R_{{\mathrm{{top}}}}$ = {top:g} m", (top, 1.03 * height), (4, -3), _EDGE)
+    _say(axes, rf"$t_c$ = {tower.wall:g} m", (_outer(tower, 0.78 * height), 0.78 * height), (4, -3), _EDGE)
+    _say(axes, rf"$z$ = {z:g} m", (radius, z), (4, -3), BLUE)
+    axes.set_xlabel("width [m]")
+    axes.set_ylabel("height [m]")
+    axes.grid(visible=False)
+    axes.set_title("elevation, widths enlarged")
+
+
+def _draw_section(axes: Axes, tower: "TaperedTower", z: float) -> None:
+    outer = _outer(tower, z)
+    inner = max(outer - tower.wall, 0.0)
+    axes.add_patch(Wedge((0.0, 0.0), outer, 0.0, 360.0, width=outer - inner, facecolor=SHADE, edgecolor="none"))
+    for radius in (outer, inner):
+        axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=_EDGE, linewidth=0.9))
+    reach = 1.25 * outer
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal")
+    axes.axhline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
+    axes.axvline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
+    for radius, degrees, name in ((outer, 40.0, "R"), (inner, 140.0, "r")):
+        angle = np.deg2rad(degrees)
+        end = (radius * float(np.cos(angle)), radius * float(np.sin(angle)))
+        axes.annotate("", end, (0.0, 0.0), arrowprops={"arrowstyle": "-|>", "color": BLUE, "linewidth": 1.0})
+        middle = (0.5 * end[0], 0.5 * end[1])
+        _say(axes, f"${name}$ = {short(radius)} m", middle, (0, 0), BLUE, boxed=True)
+    axes.set_xlabel(r"$I = m\,[(R^2 + r^2)/4 + Δ^2]$, $Δ^2 = z^2 + B^2$")
+    axes.grid(visible=False)
+    axes.set_ylabel("[m]")
+    axes.set_anchor("N")
+    axes.set_title(f"section at {z:g} m")
+
+
+def _measure(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
+    axes.annotate(
+        "", end, start, arrowprops={"arrowstyle": "<|-|>", "color": _EDGE, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+    )
+
+
+def _say(
+    axes: Axes,
+    text: str,
+    at: tuple[float, float],
+    offset: tuple[float, float],
+    color: str,
+    *,
+    turned: bool = False,
+    below: bool = False,
+    boxed: bool = False,
+) -> None:
+    """Write beside a point, `offset` points away."""
+    axes.annotate(
+        text, at, xytext=offset, textcoords="offset points", color=color, fontsize=SMALL, annotation_clip=False,
+        ha="right" if turned else "center" if below or boxed else "left",
+        va="center" if turned or boxed else "top" if below else "bottom", rotation=90.0 if turned else 0.0,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0} if boxed else None,
+    )  # fmt: skip

@@ -1,0 +1,105 @@
+"""Uplifted frequencies over the slenderness of a structure."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, SupportsIndex
+
+import numpy as np
+
+from rockflex._checks import whole_number
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties, uplifted_modes
+from rockflex.study._arguments import Structure, positive_numbers, properties_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["frequency_ratios"]
+
+
+def frequency_ratios(
+    structure: Structure | RockingProperties,
+    aspect_ratios: Sequence[float],
+    n_modes: SupportsIndex | Sequence[SupportsIndex | None] | None = (1, 2, None),
+) -> "pd.DataFrame":
+    """Frequencies of a structure about its pivot over those on a fixed base, for bases of many widths.
+
+    The structure above the base, its mass and that of the base stay; the half width is B = h*_1/(aspect ratio), and
+    I_θ changes with m_tot B². Where B is large the ratios tend to 1. Where it is small those with all modes come close
+    to the pinned beam's (`pinned_beam`), the closer the more evenly the mass is spread; fewer modes go beyond them.
+
+    Parameters
+    ----------
+    structure
+        A structure, or its `RockingProperties`, on a base of any width. Tendons stay where they are, so a base must not
+        be narrower than they stand apart.
+    aspect_ratios
+        h*_1/B, positive.
+    n_modes
+        Modes to keep: 1 for 2DOF-S, 2 for 3DOF-S, None for all; or a sequence of these.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a model, aspect ratio and mode, models outermost: `model` ("2DOF-S", ..., "MDOF-S" for all), `n_modes`,
+        `aspect_ratio`, `half_width` (m), `mode` (from 1), `omega` and `uplifted_omega` (ω_n and ω*_n in rad/s) and
+        `ratio` (ω*_n/ω_n).
+
+    Raises
+    ------
+    InputError
+        If an aspect ratio is not positive, there are not as many modes, or h*_1 is not positive.
+
+    References
+    ----------
+    Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
+    """
+    ratios = positive_numbers("aspect_ratios", aspect_ratios, "")
+    properties = properties_of(structure)
+    if properties.n_modes == 0 or properties.effective_height[0] <= 0.0:
+        height = f"h*_1 = {properties.effective_height[0]:g} m" if properties.n_modes else "no modes"
+        message = f"An aspect ratio h*_1/B needs a structure whose h*_1 is positive, but one with {height} was given."
+        raise InputError(message)
+    kept = [_kept(each, properties.n_modes) for each in _several(n_modes)]
+    rows: list[dict[str, Any]] = []
+    for label, count in kept:
+        for aspect_ratio in ratios:
+            based = _on_base(properties, float(properties.effective_height[0]) / aspect_ratio)
+            found = uplifted_modes(based, count)
+            rows += [
+                {
+                    "model": label,
+                    "n_modes": count,
+                    "aspect_ratio": aspect_ratio,
+                    "half_width": based.half_width,
+                    "mode": n + 1,
+                    "omega": float(properties.omega[n]),
+                    "uplifted_omega": float(found.omega[n]),
+                    "ratio": float(found.ratio[n]),
+                }
+                for n in range(count)
+            ]
+    import pandas as pd
+
+    return pd.DataFrame(rows)
+
+
+def _several(n_modes: Any) -> list[Any]:
+    given = list(n_modes) if np.ndim(n_modes) == 1 else [n_modes]
+    if not given:
+        message = "n_modes is empty. Give at least one number of modes, or None for all."
+        raise InputError(message)
+    return given
+
+
+def _kept(given: SupportsIndex | None, available: int) -> tuple[str, int]:
+    if given is None:
+        return "MDOF-S", available
+    count = whole_number("n_modes", given, 1, available)
+    return f"{count + 1}DOF-S", count
+
+
+def _on_base(properties: RockingProperties, half_width: float) -> RockingProperties:
+    """The same structure on a base of another width; what rotary inertia its bodies have stays."""
+    wider = properties.m_tot * (half_width**2 - properties.half_width**2)
+    return replace(properties, half_width=half_width, i_theta=properties.i_theta + wider)

@@ -1,0 +1,79 @@
+"""Uplifted frequencies over the width of the base: against frames built with that width, and against eigenvalues."""
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+import rockflex as rf
+
+FRAME = rf.Frame(5, 3.0, 40e3, 30e3, 0.5, 0.8, 7.0, 0.02)
+TOWER = rf.TaperedTower(200.0, 8.0, 4.0, 1.0, 2400.0, 25e9, 0.02)
+
+
+def test_every_width_is_the_frame_built_with_it():
+    table = rf.frequency_ratios(FRAME, (0.5, 7.0, 40.0))
+    assert list(table["model"].unique()) == ["2DOF-S", "3DOF-S", "MDOF-S"]
+    assert len(table) == 3 * (1 + 2 + 5)
+    for (count, aspect_ratio), rows in table.groupby(["n_modes", "aspect_ratio"]):
+        frame = rf.Frame(5, 3.0, 40e3, 30e3, 0.5, 0.8, aspect_ratio, 0.02)
+        modes = rf.uplifted_modes(frame.rocking(), count)
+        assert list(rows["mode"]) == list(range(1, count + 1))
+        np.testing.assert_allclose(rows["half_width"], frame.half_width, rtol=1e-12)
+        np.testing.assert_allclose(rows["omega"], frame.modal().omega[:count], rtol=1e-12)
+        np.testing.assert_allclose(rows["uplifted_omega"], modes.omega, rtol=1e-11)
+        np.testing.assert_allclose(rows["ratio"], modes.ratio, rtol=1e-11)
+
+
+def test_rotary_inertia_stays_as_the_base_narrows():
+    p = TOWER.rocking()
+    (row,) = rf.frequency_ratios(p, [50.0], 1).to_dict("records")
+    half_width = p.effective_height[0] / 50.0
+    rotary = p.i_theta - p.translational_inertia - p.m_tot * 64.0
+    assert rotary > 0.0
+    inertia = p.translational_inertia + rotary + p.m_tot * half_width**2
+    lever = p.effective_mass[0] * p.effective_height[0]
+    mass = np.array([[inertia, lever], [lever, p.effective_mass[0]]])
+    stiffness = np.diag([-p.l0r * 9.81, p.effective_mass[0] * p.omega[0] ** 2])
+    squares = scipy.linalg.eigh(stiffness, mass, eigvals_only=True)
+    assert row["half_width"] == pytest.approx(half_width)
+    assert row["uplifted_omega"] == pytest.approx(squares[1] ** 0.5, rel=1e-9)
+    assert row["ratio"] == row["uplifted_omega"] / p.omega[0]
+
+
+def test_models_by_name_and_tendons_stay():
+    table = rf.frequency_ratios(FRAME, [3.0], (None, 5))
+    assert list(table["model"].unique()) == ["MDOF-S", "6DOF-S"]
+    np.testing.assert_array_equal(*(rows["ratio"] for _, rows in table.groupby("model")))
+    held = rf.Restrained(FRAME, rf.Tendon(1e5, 1e8))
+    stiff, free = (rf.frequency_ratios(each, [5.0], None)["ratio"] for each in (held, FRAME))
+    assert (stiff.to_numpy() > free.to_numpy()).all()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda: rf.frequency_ratios(FRAME, [1.0, 0.0]),
+            "aspect_ratios must be one or more positive numbers, but [1.0, 0.0] was given.",
+        ),
+        (lambda: rf.frequency_ratios(FRAME, [1.0], 6), "n_modes must be a whole number from 1 to 5, but 6 was given."),
+        (
+            lambda: rf.frequency_ratios(FRAME, [1.0], ()),
+            "n_modes is empty. Give at least one number of modes, or None for all.",
+        ),
+        (
+            lambda: rf.frequency_ratios(rf.rigid_block(0.2, 2.0), [1.0]),
+            "An aspect ratio h*_1/B needs a structure whose h*_1 is positive, but one with no modes was given.",
+        ),
+        (
+            lambda: rf.frequency_ratios(
+                rf.RockingProperties([1.0], [1.0], [-1.0], [1.0], 9.0, 3.0, 2.0, 1.0, 0.0), [1.0]
+            ),
+            "An aspect ratio h*_1/B needs a structure whose h*_1 is positive, but one with h*_1 = -1 m was given.",
+        ),
+    ],
+)
+def test_what_has_no_ratio_is_named(call, message):
+    with pytest.raises(rf.InputError) as caught:
+        call()
+    assert str(caught.value) == message
