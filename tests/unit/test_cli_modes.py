@@ -46,10 +46,21 @@ def test_printed_table():
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
-@pytest.mark.parametrize("name", ["structure_1", "structure_lumped", "structure_properties"])
-def test_examples(name):
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("bridge_pier", "cantilever"),
+        ("chimney", "tapered_tower"),
+        ("restrained_pier", "cantilever"),
+        ("structure_1", "frame"),
+        ("structure_lumped", "lumped"),
+        ("structure_properties", "properties"),
+        ("wall", "wall_frame"),
+    ],
+)
+def test_examples(name, kind):
     found = json.loads(invoke(EXAMPLES / f"{name}.toml", "--json").stdout)
-    assert found["structure"]["kind"] in ("frame", "lumped", "properties")
+    assert found["structure"]["kind"] == kind
     for row in found["modes"]:
         assert row["period"] * row["omega"] == pytest.approx(2.0 * math.pi, rel=1e-14)
 
@@ -59,6 +70,83 @@ def test_properties_by_hand_are_shares_of_all_mass():
     assert "m*_n/m_tot" in result.stdout
     assert "0.5113" in result.stdout  # m*_1/m_tot = 0.51 in Section 4.1.1
     assert "MN m" in result.stdout
+
+
+def test_tendons_are_printed():
+    rows = [line.split() for line in invoke(EXAMPLES / "restrained_pier.toml").stdout.splitlines()]
+    assert ["Initial", "force", "of", "the", "tendons,", "P", "3600", "kN"] in rows
+    # By hand: Σ k (B - x)².
+    stiffness = 25.0 * 1.5**2 + 10.0 * (2.1**2 + 0.9**2)
+    assert ["Their", "stiffness", "while", "rocking", f"{stiffness:.1f}", "MN", "m/rad"] in rows
+    assert ["Resisting", "moment,", "M_r", "=", "(m_tot", "g", "+", "P)", "B", "16.29", "MN", "m"] in rows
+
+
+@pytest.fixture
+def block(tmp_path):
+    path = tmp_path / "block.toml"
+    path.write_text("[block]\nslenderness = 0.2\nhalf_diagonal = 3.0\nmass = 1e6\n", "utf-8")
+    return path
+
+
+def test_rigid_block_has_no_modes(block, tmp_path):
+    result = invoke(block, "--out", tmp_path / "out")
+    assert result.exit_code == 0
+    assert "ω_n" not in result.stdout
+    assert "Sum of" not in result.stdout
+    # By hand: 0.7 atan(B/h) is 0.7 of the slenderness.
+    assert "Nominal limit, 0.7 atan(B m_tot/L_0^r)     0.1400" in result.stdout
+    assert "no figure, as [block] holds no mode shapes" in result.stderr
+    assert json.loads(invoke(block, "--json").stdout)["modes"] == []
+
+
+def test_rigid_block_rocks_by_default_as_one(block):
+    result = CliRunner().invoke(app, ["run", str(block), "el-centro-1940", "--json"])
+    assert [run["model"] for run in json.loads(result.stdout)["runs"]] == ["rigid", "rigid-C"]
+
+
+def test_adequacy_is_printed():
+    result = invoke(STRUCTURE, "--adequacy")
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert ["1", "1.03", "4.29", "0.880", "12.0", "120", "-"] in rows
+    assert ["2", "-0.0350", "0.792", "0.0872", "3.33", "0.0280", "87.8"] in rows
+    assert max(map(len, result.stdout.splitlines())) <= 80
+    flat = " ".join(result.stdout.split())
+    assert (
+        "Take 4DOF-S: with 2 modes, the second uplifted frequency is 87.8 % too high (allowed: 25 %); with 3," in flat
+    )
+    assert "How many modes it takes" not in invoke(STRUCTURE).stdout
+
+
+def test_adequacy_of_the_chimney():
+    found = json.loads(invoke(EXAMPLES / "chimney.toml", "--adequacy", "--modes", 1, "--json").stdout)
+    need, expected = found["adequacy"], rf.adequacy(rf.read_structure(EXAMPLES / "chimney.toml").rocking(), base_mass=0)
+    assert need["model"] == "3DOF-S"
+    assert need["model_for_shear"] is None
+    assert need["reason"] == expected.reason
+    assert need["tolerance"] == {
+        "base_moment": 0.12,
+        "first_frequency": 0.17,
+        "second_frequency": 0.25,
+        "base_shear": 0.1,
+    }
+    assert len(found["modes"]) == 1
+    assert [row["modes"] for row in need["rows"]] == [1, 2, 3, 4, 5]
+    assert [row["base_moment"] for row in need["rows"]] == expected.base_moment.tolist()
+    assert need["rows"][0]["frequency_error"] == [expected.frequency_error[0, 0], None]
+    assert "adequacy" not in json.loads(invoke(STRUCTURE, "--json").stdout)
+
+
+def test_adequacy_of_properties_is_of_all_mass():
+    need = json.loads(invoke(EXAMPLES / "structure_properties.toml", "--adequacy", "--json").stdout)["adequacy"]
+    assert need["base_known"] is False
+    assert need["mass"] == 1.65876e7
+    assert "m*_n/m_tot" in invoke(EXAMPLES / "structure_properties.toml", "--adequacy").stdout
+
+
+def test_adequacy_of_a_block(block):
+    result = invoke(block, "--adequacy")
+    assert result.exit_code == 2
+    assert "properties must have at least one mode" in result.stderr
 
 
 def test_first_modes_alone():
@@ -79,9 +167,35 @@ def test_folder(tmp_path):
     assert (tmp_path / "out" / "mode-shapes.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("name", ["chimney", "bridge_pier", "restrained_pier"])
+def test_figure_of_distributed_mass(name, tmp_path):
+    result = invoke(EXAMPLES / f"{name}.toml", "--modes", 2, "--adequacy", "--out", tmp_path / "out")
+    assert result.exit_code == 0
+    assert (tmp_path / "out" / "mode-shapes.png").is_file()
+    assert json.loads((tmp_path / "out" / "summary.json").read_text("utf-8"))["adequacy"]["model"]
+
+
+BEAM = """[beam]
+height = 30.0
+z = [0.0, 10.0, 10.0, 30.0]
+mass = [3e3, 3e3, 2e3, 1e3]
+bending_stiffness = 4e9
+half_width = 2.0
+damping_ratio = 0.02
+n_elements = 30
+"""
+
+
+def test_figure_of_a_beam(tmp_path):
+    path = tmp_path / "beam.toml"
+    path.write_text(BEAM, "utf-8")
+    assert invoke(path, "--out", tmp_path / "out").exit_code == 0
+    assert (tmp_path / "out" / "mode-shapes.png").is_file()
+
+
 def test_no_figure_without_shapes(tmp_path):
     result = invoke(EXAMPLES / "structure_properties.toml", "--out", tmp_path / "out")
-    assert "no figure, as [properties] hold no mode shapes" in result.stderr
+    assert "no figure, as [properties] holds no mode shapes" in result.stderr
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["modes.csv", "summary.json"]
 
 

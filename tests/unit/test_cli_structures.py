@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rockflex import Frame, InputError, LumpedStructure, RockingProperties
-from rockflex.cli._structures import load_structure, split_arguments
+from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
 FRAME = {
     "n_stories": 5,
@@ -95,9 +95,65 @@ def test_properties_by_hand(write, more):
     assert loaded.reference_mass == 240e3
 
 
+TOWER = {
+    "height": 200.0,
+    "base_radius": 8.0,
+    "top_radius": 4.0,
+    "wall": 1.0,
+    "density": 2400.0,
+    "elastic_modulus": 25e9,
+    "damping_ratio": 0.02,
+}
+PIER = {
+    "height": 12.0,
+    "tip_mass": 500e3,
+    "bending_stiffness": 4e10,
+    "base_mass": 120e3,
+    "half_width": 1.5,
+    "damping_ratio": 0.03,
+}
+TENDON = "[[tendons]]\ninitial_force = 2e6\nstiffness = 25e6\n"
+
+
+def test_mass_above_the_base_is_that_of_any_structure(write):
+    tower = load_structure(write(toml(TOWER, "tapered_tower")), NO_FLAGS)
+    assert tower.base_mass == 0.0
+    assert tower.reference_mass == pytest.approx(2200.0 * np.pi * 2400.0)  # Eq. 35: 17 600/8 π ρ
+    pier = load_structure(write(toml(PIER, "cantilever")), NO_FLAGS)
+    held = load_structure(write(toml(PIER, "cantilever") + TENDON), NO_FLAGS)
+    assert pier.base_mass == held.base_mass == 120e3
+    assert pier.reference_mass == held.reference_mass == pytest.approx(500e3)
+    assert load_structure(write(toml(PROPERTIES, "properties")), NO_FLAGS).base_mass is None
+
+
+def test_tendons_are_described(write):
+    held = load_structure(write(toml(PIER, "cantilever") + TENDON), NO_FLAGS)
+    assert held.kind == "cantilever"
+    assert held.describe()["tendons"] == [{"position": 0.0, "initial_force": 2e6, "stiffness": 25e6}]
+    described = describe_properties(held.properties)
+    assert described["tendons"] == held.properties.tendons
+    assert described["prestress"] == 2e6
+    assert described["tendon_stiffness"] == pytest.approx(25e6 * 1.5**2)
+    assert "tendons" not in describe_properties(load_structure(None, FRAME).properties)
+
+
+def test_paths_start_from_the_folder_of_the_file(write, tmp_path):
+    np.savetxt(tmp_path / "k.csv", [[300.0, -100.0], [-100.0, 100.0]], delimiter=",")
+    values = {"mass": [2.0, 1.0], "stiffness": "k.csv", "heights": [1.0, 2.0]}
+    rest = {"base_mass": 1.0, "half_width": 0.5, "damping_ratio": 0.02}
+    loaded = load_structure(write(toml({**values, **rest}, "matrices")), NO_FLAGS)
+    assert loaded.properties.n_modes == 2
+    assert loaded.describe()["stiffness"] == "k.csv"
+
+
 def test_title_tells_what_counts():
     assert load_structure(None, FRAME).title == "5-story frame: 5 modes, T_1 = 1 s, h*_1/B = 10, ζ_1 = 0.02"
     assert "1 mode," in load_structure(None, {**FRAME, "n_stories": 1}).title
+
+
+def test_title_of_a_rigid_block(write):
+    block = load_structure(write("[block]\nslenderness = 0.2\nhalf_diagonal = 3.0\n"), NO_FLAGS)
+    assert block.title == f"structure: rigid, B/h = {np.tan(0.2):.4g}"
 
 
 def test_unknown_key_is_named_with_its_neighbour(failing):
@@ -110,7 +166,10 @@ def test_unknown_key_is_named_with_its_neighbour(failing):
 
 def test_unknown_table(failing):
     message = failing(toml(FRAME, "frmae"))
-    keys = "name, impact, restitution, bouc_wen, frame, lumped, properties"
+    keys = (
+        "name, frame, fish_bone, wall_frame, tapered_tower, cantilever, beam, lumped, matrices, modes, properties, "
+        "block, tendons, impact, restitution, bouc_wen"
+    )
     assert message == f": frmae is not known; there are {keys}. Did you mean frame?"
 
 
@@ -162,11 +221,13 @@ def test_values_out_of_range_name_file_and_table(failing, change, said):
 
 
 @pytest.mark.parametrize(
-    ("text", "found"), [("", "none"), (toml(FRAME) + toml(PROPERTIES, "properties"), "[frame] and [properties]")]
+    ("text", "found"),
+    [("", "none was"), (toml(FRAME) + toml(PROPERTIES, "properties"), "[frame] and [properties] were")],
 )
 def test_one_structure_a_file(failing, text, found):
-    expected = f" must hold one structure, [frame], [lumped] or [properties], but {found} was found."
-    assert failing(text) == expected
+    message = failing(text)
+    assert message.startswith(": one structure is expected, [frame], [fish_bone], ")
+    assert message.endswith(f"[properties] or [block], but {found} found.")
 
 
 def test_a_table_is_expected(failing):

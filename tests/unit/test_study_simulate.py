@@ -91,7 +91,10 @@ def test_many_modes_of_few_floors():
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"structure": 3}, "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but int was given."),
+        (
+            {"structure": 3},
+            "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but int was given.",
+        ),
         ({"structure": None}, "structure must be .*, but NoneType was given"),
         ({"structure": Frame}, "structure must be .*, but the class Frame was given"),
         ({"structure": RockingProperties}, "structure must be .*, but the class RockingProperties was given"),

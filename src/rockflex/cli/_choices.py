@@ -22,6 +22,7 @@ __all__ = [
 
 LAWS = ("simplified", "complete", "restitution")
 USUAL = ("2DOF-S", "MDOF-S", "fixed")
+RIGID = ("rigid", "rigid-C")
 YIELDING = ("2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW")
 
 
@@ -108,7 +109,8 @@ def choose_models(
         If a label is unknown, needs more modes than there are, or does not go with the assumptions.
     """
     if given is None:
-        labels = list(USUAL if assumptions.bouc_wen is None else YIELDING)
+        usual = USUAL if properties.n_modes else RIGID
+        labels = list(usual if assumptions.bouc_wen is None else YIELDING)
         if assumptions.initial is not None:
             labels = [label for label in labels if parse_model(label).lifts]
     else:

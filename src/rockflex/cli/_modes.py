@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rockflex.cli._structures import LoadedStructure
-    from rockflex.modal import RockingProperties
+    from rockflex.modal import Adequacy, RockingProperties
 
 __all__ = ["EPILOG", "modes"]
 
@@ -20,6 +20,8 @@ EPILOG = """[bold]Examples[/bold]
 rockflex modes structure.toml
 
 rockflex modes structure.toml --modes 3 --json
+
+rockflex modes structure.toml --adequacy
 
 rockflex modes --stories 5 --story-height 3 --story-mass 40e3 --base-mass 40e3 --stiffness-ratio inf \
 --period 1 --aspect-ratio 10 --damping-ratio 0.02 --out modes"""
@@ -36,6 +38,8 @@ UNITS = {
     "resisting_moment": "N m",
     "nominal_overturning_rotation": "rad",
     "translational_inertia": "kg m²",
+    "prestress": "N",
+    "tendon_stiffness": "N m/rad",
 }
 
 
@@ -45,6 +49,10 @@ def modes(
     ] = None,
     structure: options.StructureFile = None,
     n_modes: Annotated[int | None, typer.Option("--modes", metavar="N", help="The first N modes alone.")] = None,
+    adequacy: Annotated[
+        bool,
+        typer.Option("--adequacy", help="Tell how many modes the structure needs, and why; --modes does not limit it."),
+    ] = False,
     json: options.Json = False,
     out: options.Out = None,
     force: options.Force = False,
@@ -81,12 +89,17 @@ def modes(
         "rocking": {name: value for name, value in rocking.items() if isinstance(value, float)},
         "units": UNITS,
     }
+    need = _adequacy(loaded) if adequacy else None
+    if need is not None:
+        document["adequacy"] = _describe_adequacy(need)
     if out is not None:
         _write(out, document, loaded, properties.n_modes, force=force)
     if json:
         typer.echo(to_json(document))
     else:
         _print(loaded, rows, properties)
+        if need is not None:
+            _print_adequacy(need)
 
 
 def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:
@@ -108,27 +121,90 @@ def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[di
     ]
 
 
+def _adequacy(loaded: "LoadedStructure") -> "Adequacy":
+    from rockflex.modal import adequacy
+
+    return adequacy(loaded.properties, base_mass=loaded.base_mass)
+
+
+def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
+    """Return everything for a document; in the rows what belongs to the first k modes."""
+    from dataclasses import asdict
+
+    rows = [
+        {
+            "modes": k + 1,
+            "base_moment": need.base_moment[k],
+            "base_moment_left": need.base_moment_left[k],
+            "base_shear": need.base_shear[k],
+            "base_shear_left": need.base_shear_left[k],
+            "frequency_error": need.frequency_error[k],
+        }
+        for k in range(need.n_modes)
+    ]
+    return {
+        "model": need.model,
+        "model_for_shear": need.model_for_shear,
+        "reason": need.reason,
+        "rows": rows,
+        "reference_error": need.reference_error,
+        "mass": need.mass,
+        "base_known": need.base_known,
+        "tolerance": asdict(need.tolerance),
+    }
+
+
+def _print_adequacy(need: "Adequacy") -> None:
+    from rockflex.cli._console import grid, number, output, show
+
+    console = output()
+    mass = "m*_n/Σm" if need.base_known else "m*_n/m_tot"
+    headings = ("modes", "m*_n h*_n/L_0^r", "left out [%]", mass, "left out [%]", "ω*_1 error [%]", "ω*_2 error [%]")
+    columns = (
+        need.base_moment,
+        100.0 * need.base_moment_left,
+        need.base_shear,
+        100.0 * need.base_shear_left,
+        *(100.0 * need.frequency_error).T,
+    )
+    rows = [[str(k + 1), *(number(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
+    console.print("\nHow many modes it takes", markup=False)
+    show(console, grid(headings, rows))
+    console.print()
+    console.print(need.reason, markup=False)
+
+
 def _print(loaded: "LoadedStructure", rows: list[dict[str, Any]], p: "RockingProperties") -> None:
     from rockflex.cli._console import grid, moment_unit, number, output, show
 
     console = output()
     console.print(f"{loaded.title}\n", markup=False, soft_wrap=True)
-    share = "m*_n/m_tot" if loaded.kind == "properties" else "m*_n/Σm"
+    share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
     headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
     keys = ("period", "omega", "mass_share", "effective_height", "top_ordinate", "zeta")
-    show(console, grid(headings, [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]))
+    if rows:
+        show(console, grid(headings, [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]))
+        console.print()
     total = sum(float(row["mass_share"]) for row in rows)
     unit, size = moment_unit(p.resisting_moment)
+    tendons: list[tuple[str, str, str]] = []
+    if p.tendons:
+        tendons = [
+            ("Initial force of the tendons, P", number(p.prestress / 1e3), "kN"),
+            ("Their stiffness while rocking", number(p.tendon_stiffness / size), f"{unit}/rad"),
+        ]
+    slope = "B/h*_1" if rows else "B m_tot/L_0^r"
+    weight = "(m_tot g + P)" if p.tendons else "m_tot g"
     values = (
-        (f"Sum of {share}", number(total), ""),
+        *([(f"Sum of {share}", number(total), "")] if rows else []),
         ("Moment of inertia about a pivot, I_θ", number(p.i_theta), "kg m²"),
         ("First moment of mass, L_0^r", number(p.l0r), "kg m"),
         ("Total mass with the base, m_tot", number(p.m_tot), "kg"),
         ("Half width of the base, B", number(p.half_width), "m"),
-        ("Resisting moment, M_r = m_tot g B", number(p.resisting_moment / size), unit),
-        ("Nominal limit, 0.7 atan(B/h*_1)", number(p.nominal_overturning_rotation), "rad"),
+        *tendons,
+        (f"Resisting moment, M_r = {weight} B", number(p.resisting_moment / size), unit),
+        (f"Nominal limit, 0.7 atan({slope})", number(p.nominal_overturning_rotation), "rad"),
     )
-    console.print()
     show(console, grid(("Rocking", "", ""), values))
 
 
@@ -146,5 +222,5 @@ def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", 
         if drawn:
             from rockflex.plot import plot_mode_shapes, save_figure
 
-            save_figure(plot_mode_shapes(built, n_modes=n_modes), stage / "mode-shapes.png")
-    note(f"Written to {folder}" + ("" if drawn else "; no figure, as [properties] hold no mode shapes"))
+            save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
+    note(f"Written to {folder}" + ("" if drawn else f"; no figure, as [{loaded.kind}] holds no mode shapes"))

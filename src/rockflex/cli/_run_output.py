@@ -27,6 +27,7 @@ UNITS = {
     "max_top_displacement": "m",
     "max_base_moment": "N m",
     "max_base_shear": "N",
+    "max_tendon_force": "N",
     "sliding_time": "s",
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",

@@ -1,29 +1,21 @@
 """A structure from a TOML file or from the flags of a frame."""
 
 import math
-import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from pydantic import ValidationError
-
 from rockflex._errors import InputError
-from rockflex.cli._schema import FrameTable, PropertiesTable, StructureFile, Table, problems
+from rockflex.cli._schema import StructureFile
 from rockflex.modal import RockingProperties
-from rockflex.structure import Frame, LumpedStructure
+from rockflex.structure import Frame, Restrained
+from rockflex.structure.file import KINDS, Built, build_in, checked, read_toml
 
 __all__ = ["LoadedStructure", "describe_properties", "load_structure", "split_arguments"]
 
 FLAGS = {"n_stories": "--stories"}  # the others are named after their argument
 ASSUMED = {"impact", "restitution", "bouc_wen"}
-KINDS: dict[str, type[Frame | LumpedStructure | RockingProperties]] = {
-    "frame": Frame,
-    "lumped": LumpedStructure,
-    "properties": RockingProperties,
-}
 
 
 @dataclass(frozen=True)
@@ -33,7 +25,7 @@ class LoadedStructure:
     name: str
     kind: str
     values: dict[str, Any]
-    built: Frame | LumpedStructure | RockingProperties
+    built: Built
     assumed: dict[str, Any] = field(default_factory=dict[str, Any])
     """What the file says beside: `impact`, `restitution` and `bouc_wen`, each where it is there."""
 
@@ -43,17 +35,24 @@ class LoadedStructure:
         return self.built if isinstance(self.built, RockingProperties) else self.built.rocking()
 
     @property
+    def base_mass(self) -> float | None:
+        """Mass of the base in kg; None where only properties are known."""
+        if isinstance(self.built, RockingProperties):
+            return None
+        structure = self.built.structure if isinstance(self.built, Restrained) else self.built
+        return float(getattr(structure, "base_mass", 0.0))
+
+    @property
     def reference_mass(self) -> float:
         """Mass above the base in kg, which all modes share; the total mass where only properties are known."""
-        if isinstance(self.built, RockingProperties):
-            return self.built.m_tot
-        lumped = self.built.lumped if isinstance(self.built, Frame) else self.built
-        return float(np.sum(lumped.masses))
+        return self.properties.m_tot - (self.base_mass or 0.0)
 
     @property
     def title(self) -> str:
         """One line for the head of a table."""
         p = self.properties
+        if p.n_modes == 0:
+            return f"{self.name}: rigid, B/h = {p.half_width * p.m_tot / p.l0r:.4g}"
         modes = "1 mode" if p.n_modes == 1 else f"{p.n_modes} modes"
         slenderness = p.effective_height[0] / p.half_width
         period = 2.0 * math.pi / p.omega[0]
@@ -95,29 +94,23 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     if given:
         message = f"The structure was given by {file} and by {_flags(given)}. Give one or the other."
         raise InputError(message)
-    document = _read(file)
-    kind = next(kind for kind in KINDS if getattr(document, kind) is not None)
-    table: Table = getattr(document, kind)
-    values = table.model_dump(exclude_none=True)
-    try:
-        built = KINDS[kind](**values)
-    except InputError as error:
-        message = f"{file}, [{kind}]: {error}"
-        raise InputError(message) from error
+    document = checked(StructureFile, read_toml(file, "structure"), str(file))
     assumed = document.model_dump(include=ASSUMED, exclude_none=True)
-    return LoadedStructure(document.name or file.stem, kind, values, built, assumed)
+    built = build_in(file, document)
+    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, assumed)
 
 
 def describe_properties(properties: RockingProperties) -> dict[str, Any]:
     """Return every parameter of a rocking structure by its name, for a document."""
-    names = (*PropertiesTable.model_fields, "resisting_moment", "nominal_overturning_rotation")
-    return {name: getattr(properties, name) for name in names}
+    names = (*KINDS["properties"].model_fields, "resisting_moment", "nominal_overturning_rotation")
+    tendons = ("tendons", "prestress", "tendon_stiffness") if properties.tendons else ()
+    return {name: getattr(properties, name) for name in (*names, *tendons)}
 
 
 def _from_flags(given: dict[str, Any], missing: list[str]) -> LoadedStructure:
     if missing:
         lack = "No structure was given." if not given else f"The frame lacks {_flags(missing)}."
-        needed = _flags(FrameTable.model_fields)
+        needed = _flags(KINDS["frame"].model_fields)
         message = f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {needed}."
         raise InputError(message)
     frame = Frame(**given)
@@ -126,28 +119,3 @@ def _from_flags(given: dict[str, Any], missing: list[str]) -> LoadedStructure:
 
 def _flags(names: Iterable[str]) -> str:
     return ", ".join(FLAGS.get(name, "--" + name.replace("_", "-")) for name in names)
-
-
-def _read(file: Path) -> StructureFile:
-    try:
-        content = tomllib.loads(file.read_text("utf-8"))
-    except FileNotFoundError as error:
-        message = f"The structure file {file} does not exist (working directory: {Path.cwd()})."
-        raise InputError(message) from error
-    except OSError as error:
-        message = f"The structure file {file} cannot be read: {error.strerror}."
-        raise InputError(message) from error
-    except ValueError as error:  # not TOML, or not UTF-8
-        message = f"{file} is not a valid TOML file: {error}."
-        raise InputError(message) from error
-    try:
-        document = StructureFile.model_validate(content)
-    except ValidationError as error:
-        message = f"{file}: {' '.join(problems(error, content))}"
-        raise InputError(message) from error
-    tables = [kind for kind in KINDS if kind in content]
-    if len(tables) != 1:
-        found = " and ".join(f"[{kind}]" for kind in tables) or "none"
-        message = f"{file} must hold one structure, [frame], [lumped] or [properties], but {found} was found."
-        raise InputError(message)
-    return document

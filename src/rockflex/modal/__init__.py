@@ -1,5 +1,6 @@
 """From mass, stiffness and heights to modes, and from modes to the parameters of a rocking structure."""
 
+from rockflex.modal._adequacy import Adequacy, AdequacyTolerance, adequacy
 from rockflex.modal._analysis import ModalProperties, modal_properties
 from rockflex.modal._assembly import rocking_properties
 from rockflex.modal._floors import FloorModes
@@ -10,6 +11,8 @@ from rockflex.modal._tendons import Tendon, tendon_set
 from rockflex.modal._uplifted import UpliftedModes, frequency_equation, uplifted_modes
 
 __all__ = [
+    "Adequacy",
+    "AdequacyTolerance",
     "FloorModes",
     "MassNormalisedModes",
     "ModalProperties",
@@ -17,6 +20,7 @@ __all__ = [
     "RockingProperties",
     "Tendon",
     "UpliftedModes",
+    "adequacy",
     "frequency_equation",
     "modal_properties",
     "modes_that_take_part",

@@ -13,7 +13,7 @@ __all__ = ["UpliftedModes", "frequency_equation", "uplifted_modes"]
 
 Float = NDArray[np.float64]
 
-_BESIDE = 1.0 + 1e-13  # a shift beside a root, so that no pivot is zero
+_BESIDE = (1e-13, 1e-11, 1e-9)  # shifts beside a root, relative: the first at which no pivot is zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,9 +109,15 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
 
 def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> tuple[Float, Float]:
     """Give small roots back the digits that rounding of the largest took: a step of inverse iteration each."""
-    near = np.diag(stiffness) - (squares * _BESIDE)[:, None, None] * mass
-    moved = np.linalg.solve(near, (mass @ motions).T[:, :, None])[:, :, 0].T
-    moved /= np.abs(moved).max(axis=0)
+    moved = motions
+    for shift in _BESIDE:
+        near = np.diag(stiffness) - (squares * (1.0 + shift))[:, None, None] * mass
+        try:
+            moved = np.linalg.solve(near, (mass @ motions).T[:, :, None])[:, :, 0].T
+        except np.linalg.LinAlgError:
+            continue
+        break
+    moved = moved / np.abs(moved).max(axis=0)
     work = np.einsum("in,in->n", moved, stiffness[:, None] * moved)
     return work / np.einsum("in,in->n", moved, mass @ moved), moved
 

@@ -1,18 +1,16 @@
 """Mode shapes over the height."""
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockflex._errors import InputError
+from rockflex.modal import ModalProperties
 from rockflex.plot._style import BLUE, GRAY, new_figure, styled
 from rockflex.plot._units import short
-
-if TYPE_CHECKING:
-    from rockflex.modal import ModalProperties
 
 __all__ = ["plot_mode_shapes"]
 
@@ -20,10 +18,10 @@ _PER_ROW = 5
 
 
 class _HasModes(Protocol):
-    def modal(self, n_modes: int | None = None) -> "ModalProperties": ...
+    def modal(self, n_modes: int | None = None) -> ModalProperties: ...
 
 
-def plot_mode_shapes(structure_or_modal: "_HasModes | ModalProperties", n_modes: int | None = None) -> Figure:
+def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: int | None = None) -> Figure:
     """Plot the mode shapes Γ_n φ_n over the height, a panel each.
 
     Over each panel stand T_n, m*_n and h*_n (Silva & Stojadinović 2024, Section 2.1, after Eq. 12); m*_n as a share of
@@ -48,7 +46,9 @@ def plot_mode_shapes(structure_or_modal: "_HasModes | ModalProperties", n_modes:
         If what is given has no modes, or not as many.
     """
     modes = _modes_of(structure_or_modal)
-    total = float(modes.effective_mass.sum()) if modes.n_modes == modes.heights.size else None
+    # With all modes, and with no fewer, a unit translation is the sum of what they take of it.
+    complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
+    total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)
     columns = min(shown.n_modes, _PER_ROW)
     rows = math.ceil(shown.n_modes / _PER_ROW)
@@ -67,19 +67,19 @@ def plot_mode_shapes(structure_or_modal: "_HasModes | ModalProperties", n_modes:
     return figure
 
 
-def _modes_of(source: "_HasModes | ModalProperties") -> "ModalProperties":
-    if hasattr(source, "shapes"):
-        return source  # pyright: ignore[reportReturnType]
+def _modes_of(source: _HasModes | ModalProperties) -> ModalProperties:
+    if isinstance(source, ModalProperties):
+        return source
     if not hasattr(source, "modal"):
         message = (
             f"structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
             f"{type(source).__name__} was given. Give the structure itself, or structure.modal()."
         )
         raise InputError(message)
-    return source.modal()  # pyright: ignore
+    return source.modal()
 
 
-def _draw(axes: Axes, modes: "ModalProperties", n: int, total: float | None) -> None:
+def _draw(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> None:
     ordinates = np.concatenate(([0.0], modes.participation[n] * modes.shapes[:, n]))
     heights = np.concatenate(([0.0], modes.heights))
     axes.axvline(0.0, color=GRAY, linewidth=0.8)
@@ -99,7 +99,7 @@ def _rounded_down(value: float) -> float:
     return float(f"{math.floor(value / 10.0**power)}e{power}")
 
 
-def _describe(modes: "ModalProperties", n: int, total: float | None) -> str:
+def _describe(modes: ModalProperties, n: int, total: float | None) -> str:
     mass, height = float(modes.effective_mass[n]), float(modes.effective_height[n])
     if total is None:
         share = rf"$m^*_{{{n + 1}}}$ = {short(mass)} kg"

@@ -58,8 +58,7 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
         raise InputError(message)
-    nominal = max(curve.history.model.properties.nominal_overturning_rotation for curve in curves)
-    rotation = _HEADROOM * (rotation_limit(curves) or nominal)
+    rotation = _HEADROOM * (rotation_limit(curves) or max(map(_whole_line, curves)))
     largest = max(_largest_moment(curve) for curve in curves)
     factor, unit = readable(largest, "N m")
     columns = min(len(curves), _PER_ROW)
@@ -83,6 +82,12 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
         figure.supylabel(f"$M_b$ [{unit}]", fontsize=9.0)
         figure.legend(handles=panels[0].get_lines()[1:], loc="outside upper center", handlelength=3.0)
     return figure
+
+
+def _whole_line(curve: Curve) -> float:
+    """Rotation up to which the static line is worth showing: where it ends, if it does."""
+    balance = curve.balance_rotation
+    return balance if math.isfinite(balance) else curve.history.model.properties.nominal_overturning_rotation
 
 
 def _largest_moment(curve: Curve) -> float:

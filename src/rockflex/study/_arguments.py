@@ -60,7 +60,8 @@ def properties_of(structure: Structure | RockingProperties) -> RockingProperties
         return structure
     if not is_structure(structure):
         message = (
-            f"structure must be a Frame, a LumpedStructure or RockingProperties, but {described(structure)} was given."
+            "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
+            f"{described(structure)} was given."
         )
         raise InputError(message)
     return structure.rocking()

@@ -1,0 +1,21 @@
+"""Structures as TOML files hold them."""
+
+from rockflex.structure.file._entry import KINDS, StructureEntry, TendonTable
+from rockflex.structure.file._read import build_in, read_structure, read_toml
+from rockflex.structure.file._table import Table, checked, problems
+from rockflex.structure.file._tables import Built, Structure, StructureTable
+
+__all__ = [
+    "KINDS",
+    "Built",
+    "Structure",
+    "StructureEntry",
+    "StructureTable",
+    "Table",
+    "TendonTable",
+    "build_in",
+    "checked",
+    "problems",
+    "read_structure",
+    "read_toml",
+]

@@ -1,0 +1,144 @@
+"""A structure as a file holds it."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, model_validator
+
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties, Tendon
+from rockflex.structure import Restrained
+from rockflex.structure.file._beam_table import BeamTable
+from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
+from rockflex.structure.file._table import Table
+from rockflex.structure.file._tables import (
+    BlockTable,
+    Built,
+    CantileverTable,
+    FishBoneTable,
+    FrameTable,
+    LumpedTable,
+    PropertiesTable,
+    StructureTable,
+    TaperedTowerTable,
+    WallFrameTable,
+)
+
+__all__ = ["KINDS", "StructureEntry", "TendonTable"]
+
+_A_TABLE = "a table"
+
+KINDS: dict[str, type[StructureTable]] = {
+    "frame": FrameTable,
+    "fish_bone": FishBoneTable,
+    "wall_frame": WallFrameTable,
+    "tapered_tower": TaperedTowerTable,
+    "cantilever": CantileverTable,
+    "beam": BeamTable,
+    "lumped": LumpedTable,
+    "matrices": MatricesTable,
+    "modes": ModesTable,
+    "properties": PropertiesTable,
+    "block": BlockTable,
+}
+"""The table of each kind of structure by its name in a file."""
+
+
+class TendonTable(Table):
+    """The arguments of `Tendon`."""
+
+    position: float = Field(0.0, description="the distance from the centre of the base, a number in m")
+    initial_force: float = Field(description="the force while the base stands on the ground, a number in N")
+    stiffness: float = Field(description="EA/L over the unbonded length, a number in N/m")
+    yield_force: float | None = Field(None, description="the force at which the tendon yields, a number in N")
+
+
+class StructureEntry(Table):
+    """A structure, perhaps with a name, and the tendons that hold it down.
+
+    Attributes
+    ----------
+    name : str
+        Empty where none was given.
+    frame, fish_bone, wall_frame, tapered_tower, cantilever, beam, lumped, matrices, modes, properties, block
+        One of them is a table, the others are None.
+    tendons : list of TendonTable
+        Perhaps none.
+    """
+
+    name: str = Field("", description="a name, in quotes")
+    frame: FrameTable | None = Field(None, description=_A_TABLE)
+    fish_bone: FishBoneTable | None = Field(None, description=_A_TABLE)
+    wall_frame: WallFrameTable | None = Field(None, description=_A_TABLE)
+    tapered_tower: TaperedTowerTable | None = Field(None, description=_A_TABLE)
+    cantilever: CantileverTable | None = Field(None, description=_A_TABLE)
+    beam: BeamTable | None = Field(None, description=_A_TABLE)
+    lumped: LumpedTable | None = Field(None, description=_A_TABLE)
+    matrices: MatricesTable | None = Field(None, description=_A_TABLE)
+    modes: ModesTable | None = Field(None, description=_A_TABLE)
+    properties: PropertiesTable | None = Field(None, description=_A_TABLE)
+    block: BlockTable | None = Field(None, description=_A_TABLE)
+    tendons: list[TendonTable] = Field(
+        default_factory=list[TendonTable], description="a list of tables, each under a heading [[tendons]]"
+    )
+
+    @model_validator(mode="after")
+    def _one_structure(self) -> "StructureEntry":
+        found = [f"[{kind}]" for kind in KINDS if getattr(self, kind) is not None]
+        if len(found) != 1:
+            *others, last = (f"[{kind}]" for kind in KINDS)
+            was = " and ".join(found) + " were" if found else "none was"
+            message = f"one structure is expected, {', '.join(others)} or {last}, but {was} found."
+            raise InputError(message)
+        return self
+
+    @property
+    def kind(self) -> str:
+        """Name of the table that is the structure."""
+        return next(kind for kind in KINDS if getattr(self, kind) is not None)
+
+    @property
+    def table(self) -> StructureTable:
+        """Table that is the structure."""
+        table: StructureTable = getattr(self, self.kind)
+        return table
+
+    def build(self, folder: Path | str = "") -> Built:
+        """Make the structure.
+
+        Parameters
+        ----------
+        folder
+            Where the paths of matrices start. Default: the working directory.
+
+        Returns
+        -------
+        Frame, Beam, ..., Restrained or RockingProperties
+
+        Raises
+        ------
+        InputError
+            If a value is outside its range, values do not go together, or a file of numbers cannot be read. The
+            message begins with the table.
+        """
+        try:
+            built = self.table.build(Path(folder))
+        except InputError as error:
+            message = f"[{self.kind}]: {error}"
+            raise InputError(message) from error
+        if not self.tendons:
+            return built
+        try:
+            tendons = [Tendon(**each.model_dump()) for each in self.tendons]
+            if isinstance(built, RockingProperties):
+                return replace(built, tendons=tendons)
+            return Restrained(built, tendons)
+        except InputError as error:
+            message = f"[[tendons]]: {error}"
+            raise InputError(message) from error
+
+    def describe(self) -> dict[str, Any]:
+        """Return the values of the structure's table, and its tendons if there are any."""
+        tendons = [each.model_dump(exclude_none=True) for each in self.tendons]
+        return {**self.table.values(), **({"tendons": tendons} if tendons else {})}

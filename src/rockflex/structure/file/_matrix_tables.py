@@ -1,0 +1,59 @@
+"""Tables of structures from the matrices or the modes of any finite element program."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, StringConstraints
+
+from rockflex.structure import from_matrices, from_modes
+from rockflex.structure.file._tables import BaseMass, Damping, HalfWidth, StructureTable, Vector
+
+__all__ = ["MatricesTable", "ModesTable"]
+
+Matrix = list[list[float]]
+Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
+
+_FILE = "or the path of a .npz, .mtx or .csv file"
+
+
+class _FromFiles(StructureTable):
+    """What both kinds have: freedoms above a base."""
+
+    mass: Vector | Matrix | str = Field(description=f"a list of masses in kg, or the mass matrix, {_FILE}")
+    heights: Vector | dict[Index, float] | str = Field(
+        description="a list of the heights of all freedoms in m, or a table { index = height } of those that move "
+        f"sideways, counted from 0, {_FILE}"
+    )
+    rotations: list[int] = Field(
+        default_factory=list[int], description="a list of the indices of rotations in the plane, counted from 0"
+    )
+    base_mass: BaseMass
+    half_width: HalfWidth
+    damping_ratio: Damping
+    n_modes: int | None = Field(None, description="how many modes to take (default: all), a whole number")
+
+    def arguments(self, folder: Path) -> dict[str, Any]:
+        """Return the arguments with paths from `folder`, and indices as numbers."""
+        given = {name: folder / value if isinstance(value, str) else value for name, value in self.values().items()}
+        if isinstance(self.heights, dict):
+            given["heights"] = {int(index): height for index, height in self.heights.items()}
+        return given
+
+
+class MatricesTable(_FromFiles):
+    """The arguments of `from_matrices`."""
+
+    makes = from_matrices
+
+    stiffness: Matrix | str = Field(description=f"the stiffness matrix in N/m, a list of rows, {_FILE}")
+
+
+class ModesTable(_FromFiles):
+    """The arguments of `from_modes`."""
+
+    makes = from_modes
+
+    omega: Vector | str = Field(description=f"a list of circular frequencies in rad/s, one a mode, {_FILE}")
+    shapes: Matrix | str = Field(
+        description=f"the mode shapes, a list of rows, one a freedom with a column for each mode, {_FILE}"
+    )

@@ -1,0 +1,80 @@
+"""Structures from TOML files."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from rockflex._errors import InputError
+from rockflex.structure.file._entry import StructureEntry
+from rockflex.structure.file._table import checked
+from rockflex.structure.file._tables import Built
+
+__all__ = ["build_in", "read_structure", "read_toml"]
+
+_FOR_RUNS = ("impact", "restitution", "bouc_wen")  # for `rockflex run` alone
+
+
+def read_structure(path: str | Path) -> Built:
+    """Return the structure of a TOML file, as the command line takes it.
+
+    The file holds one table, whose keys are the arguments of the class: ``[frame]`` (`Frame`), ``[fish_bone]``
+    (`FishBone`), ``[wall_frame]`` (`WallFrame`), ``[tapered_tower]`` (`TaperedTower`), ``[cantilever]``
+    (`CantileverWithTipMass`), ``[beam]`` (`Beam`, with lists of values at the heights ``z``), ``[lumped]``
+    (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
+    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[tendons]]`` (`Tendon`) hold it down. Units are kg,
+    m, s, N and rad; paths of matrices start from the folder of the file.
+
+    Parameters
+    ----------
+    path
+        The file. What it says to ``rockflex run`` alone, ``impact``, ``restitution`` and ``[bouc_wen]``, belongs to the
+        arguments of `simulate` and is not looked at.
+
+    Returns
+    -------
+    Frame, Beam, ..., Restrained or RockingProperties
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a key is unknown or missing, or a value is wrong; the message names file, table
+        and key.
+    """
+    content = {key: value for key, value in read_toml(Path(path), "structure").items() if key not in _FOR_RUNS}
+    return build_in(Path(path), checked(StructureEntry, content, str(path)))
+
+
+def read_toml(file: Path, kind: str) -> dict[str, Any]:
+    """Return the content of a TOML file; `kind` says what the file is to hold, for messages.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or is not TOML.
+    """
+    try:
+        return tomllib.loads(file.read_text("utf-8"))
+    except FileNotFoundError as error:
+        message = f"The {kind} file {file} does not exist (working directory: {Path.cwd()})."
+        raise InputError(message) from error
+    except OSError as error:
+        message = f"The {kind} file {file} cannot be read: {error.strerror}."
+        raise InputError(message) from error
+    except ValueError as error:  # not TOML, or not UTF-8
+        message = f"{file} is not a valid TOML file: {error}."
+        raise InputError(message) from error
+
+
+def build_in(file: Path, entry: StructureEntry) -> Built:
+    """Make the structure of a file, which messages then name.
+
+    Raises
+    ------
+    InputError
+        As `StructureEntry.build`.
+    """
+    try:
+        return entry.build(file.parent)
+    except InputError as error:
+        message = f"{file}, {error}"
+        raise InputError(message) from error

@@ -1,0 +1,354 @@
+"""Structures of every kind from TOML files."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+import rockflex as rf
+from rockflex.structure.file import KINDS, StructureEntry, Table, checked
+
+EXAMPLES = Path(rf.__file__).parents[2] / "examples"
+BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
+MASSES, STIFFNESS, HEIGHTS = [20e3, 90e3], [[34e6, -10.5e6], [-10.5e6, 4.2e6]], [8.0, 16.0]
+LUMPED = {"masses": MASSES, "stiffness": STIFFNESS, "heights": HEIGHTS, **BASE}
+PROPERTIES = {
+    "omega": [6.0, 18.0],
+    "effective_mass": [170e3, 20e3],
+    "effective_height": [10.5, -3.6],
+    "top_ordinate": [1.25, -0.36],
+    "i_theta": 20e6,
+    "l0r": 1.8e6,
+    "m_tot": 240e3,
+    "half_width": 1.0,
+    "zeta": 0.02,
+}
+TENDON = {"initial_force": 5e5, "stiffness": 2e7}
+FRAME = {
+    "n_stories": 3,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 40e3,
+    "stiffness_ratio": math.inf,
+    "period": 0.6,
+    "aspect_ratio": 8.0,
+    "damping_ratio": 0.02,
+}
+BEAM = {"height": 30.0, "half_width": 2.0, "damping_ratio": 0.02, "base_mass": 1e4, "n_elements": 40, "n_modes": 3}
+Z = [0.0, 10.0, 10.0, 30.0]
+FISH_BONE = {"story_heights": [4.0, 3.0], "masses": 40e3, "column_stiffness": [9e7, 8e7], "beam_stiffness": math.inf}
+WALL = {"height": 32.0, "mass": 3e6, "stiffness_parameter": math.inf, "period": 0.8, "aspect_ratio": 6.0}
+TOWER = {
+    "height": 200.0,
+    "base_radius": 8.0,
+    "top_radius": 4.0,
+    "wall": 1.0,
+    "density": 2400.0,
+    "elastic_modulus": 25e9,
+    "damping_ratio": [0.02, 0.03],
+    "n_modes": 2,
+}
+PIER = {"height": 12.0, "tip_mass": 500e3, "bending_stiffness": 4e10}
+
+
+def toml(value):
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def text(table, values):
+    return f"[{table}]\n" + "".join(f"{key} = {toml(value)}\n" for key, value in values.items())
+
+
+def modes_of_two_masses():
+    root = np.sqrt(MASSES)
+    squares, vectors = np.linalg.eigh(np.array(STIFFNESS) / np.outer(root, root))
+    return np.sqrt(squares), vectors / root[:, None]
+
+
+def assert_same(one, other):
+    one, other = (each if isinstance(each, rf.RockingProperties) else each.rocking() for each in (one, other))
+    for name in (*KINDS["properties"].model_fields, "tendons"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+
+
+@pytest.fixture
+def write(tmp_path):
+    def file(content):
+        path = tmp_path / "structure.toml"
+        path.write_text(content, "utf-8")
+        return path
+
+    return file
+
+
+@pytest.fixture
+def failing(write):
+    def message(content):
+        path = write(content)
+        with pytest.raises(rf.InputError) as caught:
+            rf.read_structure(path)
+        assert str(caught.value).startswith(str(path))
+        return str(caught.value).removeprefix(str(path))
+
+    return message
+
+
+@pytest.mark.parametrize(
+    ("table", "values", "make"),
+    [
+        ("frame", FRAME, rf.Frame),
+        ("fish_bone", {**FISH_BONE, **BASE}, rf.FishBone),
+        ("wall_frame", {**WALL, "base_mass": 4e5, "damping_ratio": 0.03}, rf.WallFrame),
+        ("wall_frame", {**WALL, "base_mass": 4e5, "damping_ratio": [0.02, 0.05], "n_modes": 2}, rf.WallFrame),
+        ("tapered_tower", TOWER, rf.TaperedTower),
+        ("tapered_tower", {**TOWER, "method": "fe"}, rf.TaperedTower),
+        ("cantilever", {**PIER, **BASE}, rf.CantileverWithTipMass),
+        ("cantilever", {**PIER, **BASE, "mass_per_length": 1e4, "n_modes": 2}, rf.CantileverWithTipMass),
+        ("cantilever", {**PIER, **BASE, "tip_inertia": 3e6}, rf.CantileverWithTipMass),
+        ("lumped", LUMPED, rf.LumpedStructure),
+        ("properties", PROPERTIES, rf.RockingProperties),
+        ("block", {"slenderness": 0.2, "half_diagonal": 3.0}, rf.rigid_block),
+        ("block", {"slenderness": 0.2, "half_diagonal": 3.0, "mass": 7.0}, rf.rigid_block),
+        ("beam", {**BEAM, "mass": 2e3, "bending_stiffness": 4e9}, rf.Beam),
+    ],
+)
+def test_keys_are_the_arguments_of_the_class(write, table, values, make):
+    built = rf.read_structure(write(text(table, values)))
+    assert_same(built, make(**values))
+    if isinstance(make, type):
+        assert type(built) is make
+
+
+def test_every_kind_is_tried():
+    assert set(KINDS) == {
+        *("frame", "fish_bone", "wall_frame", "tapered_tower", "cantilever", "beam", "lumped"),
+        *("matrices", "modes", "properties", "block"),
+    }
+
+
+def test_beam_with_lists_and_bodies(write):
+    lists = {"mass": [3e3, 3e3, 2e3, 1e3], "shear_stiffness": [2e9, 2e9, 1e9, 1e9]}
+    rest = {"bending_stiffness": 4e9, "rotary_inertia": 50.0, "rotary_in_modes": False}
+    bodies = {"heights": [20.0, 30.0], "masses": [1e3, 2e4], "rotary": [0.0, 5e4]}
+    built = rf.read_structure(write(text("beam", {**BEAM, "z": Z, **lists, **rest, "lumped_masses": bodies})))
+    tables = {name: (Z, values) for name, values in lists.items()}
+    assert_same(built, rf.Beam(**BEAM, **tables, **rest, lumped_masses=rf.LumpedMasses(**bodies)))
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        (
+            {"mass": [1e3, 2e3], "bending_stiffness": 4e9},
+            "mass is a list, but its heights are not known. Add z, a list of as many heights in m.",
+        ),
+        (
+            {"z": Z, "mass": 1e3, "bending_stiffness": 4e9},
+            "z holds heights, but nothing varies along them. Give a list of as many values, or leave z out.",
+        ),
+        (
+            {"z": Z, "mass": [1e3], "bending_stiffness": 4e9},
+            "mass must hold one value for each height of its table, and two rows or more, but 4 heights and 1 values "
+            "were given.",
+        ),
+    ],
+)
+def test_beam_whose_lists_do_not_fit(failing, values, said):
+    assert failing(text("beam", {**BEAM, **values})) == f", [beam]: {said}"
+
+
+def test_matrices_inline_and_from_files_beside_the_structure(write, tmp_path, monkeypatch):
+    expected = rf.LumpedStructure(**LUMPED)
+    np.savez(tmp_path / "both.npz", mass=MASSES, stiffness=STIFFNESS)
+    (tmp_path / "h").mkdir()
+    np.savetxt(tmp_path / "h" / "heights.csv", HEIGHTS, delimiter=",")
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    for values in (
+        {"mass": MASSES, "stiffness": STIFFNESS, "heights": HEIGHTS},
+        {"mass": np.diag(MASSES).tolist(), "stiffness": STIFFNESS, "heights": {"0": 8.0, "1": 16.0}},
+        {"mass": "both.npz", "stiffness": "both.npz", "heights": "h/heights.csv"},
+        {"mass": str(tmp_path / "both.npz"), "stiffness": "../" + tmp_path.name + "/both.npz", "heights": HEIGHTS},
+    ):
+        found = rf.read_structure(write(text("matrices", {**values, **BASE}))).rocking()
+        np.testing.assert_allclose(found.omega, expected.rocking().omega, rtol=1e-12)
+        np.testing.assert_allclose(found.effective_height, expected.rocking().effective_height, rtol=1e-10)
+
+
+def test_freedoms_that_turn(write):
+    values = {"mass": [5e5, 3e6], "stiffness": [[8e7, -4e8], [-4e8, 3e9]]}
+    built = rf.read_structure(write(text("matrices", {**values, "heights": {"0": 12.0}, "rotations": [1], **BASE})))
+    assert_same(built, rf.from_matrices(**values, heights={0: 12.0}, rotations=[1], **BASE))
+
+
+def test_modes(write, tmp_path):
+    omega, shapes = modes_of_two_masses()
+    np.savetxt(tmp_path / "phi.csv", shapes, delimiter=",")
+    rest = {"mass": MASSES, "heights": HEIGHTS, **BASE}
+    expected = rf.from_modes(omega, shapes, **rest)
+    for given in (shapes.tolist(), "phi.csv"):
+        assert_same(
+            rf.read_structure(write(text("modes", {"omega": omega.tolist(), "shapes": given, **rest}))), expected
+        )
+
+
+def test_file_of_numbers_that_is_not_there(failing, tmp_path):
+    message = failing(text("matrices", {"mass": "m.npz", "stiffness": STIFFNESS, "heights": HEIGHTS, **BASE}))
+    assert message.startswith(f", [matrices]: mass: the file {tmp_path / 'm.npz'} does not exist")
+
+
+def test_indices_of_heights_are_whole_numbers(failing):
+    values = {"mass": MASSES, "stiffness": STIFFNESS, "heights": {"top": 16.0}, **BASE}
+    assert failing(text("matrices", values)) == (
+        ": [matrices] heights must be a list of the heights of all freedoms in m, or a table { index = height } of "
+        "those that move sideways, counted from 0, or the path of a .npz, .mtx or .csv file, but {'top': 16.0} was "
+        "given."
+    )
+
+
+TENDONS = "".join(
+    f"[[tendons]]\nposition = {x}\ninitial_force = 5e5\nstiffness = 2e7\n{more}"
+    for x, more in ((-0.5, ""), (0.0, "yield_force = 9e5\n"), (0.5, ""))
+)
+
+
+def test_tendons_hold_a_structure_down(write):
+    built = rf.read_structure(write(text("frame", FRAME) + TENDONS))
+    tendons = [rf.Tendon(**TENDON, position=x) for x in (-0.5, 0.5)]
+    tendons.insert(1, rf.Tendon(**TENDON, yield_force=9e5))
+    assert built == rf.Restrained(rf.Frame(**FRAME), tendons)
+    # By hand: the weight and the three forces, about a pivot.
+    p = built.rocking()
+    assert p.resisting_moment == pytest.approx((160e3 * 9.81 + 1.5e6) * p.half_width)
+
+
+def test_tendons_hold_properties_down(write):
+    built = rf.read_structure(write(text("properties", PROPERTIES) + TENDONS))
+    assert isinstance(built, rf.RockingProperties)
+    assert [tendon.position for tendon in built.tendons] == [-0.5, 0.0, 0.5]
+
+
+def test_wrong_tendons(failing):
+    frame = text("frame", FRAME)
+    one = "[[tendons]]\nposition = 0.3\ninitial_force = 5e5\nstiffness = 2e7\n"
+    assert failing(frame + one).startswith(", [[tendons]]: The tendons must be symmetric about the centre of the base")
+    assert failing(frame + one.replace("2e7", "-1")) == (
+        ", [[tendons]]: stiffness must be a zero or positive, finite number in N/m, but -1.0 was given."
+    )
+    assert failing(frame + TENDONS + one.replace("2e7", '"high"').replace("initial_force = 5e5", "force = 5e5")) == (
+        ": [[tendons]] no. 4, initial_force is missing: the force while the base stands on the ground, a number in N. "
+        "[[tendons]] no. 4, stiffness must be EA/L over the unbonded length, a number in N/m, but 'high' was given. "
+        "[[tendons]] no. 4, force is not known; there are position, initial_force, stiffness, yield_force. "
+        "Did you mean yield_force?"
+    )
+    assert failing(frame + "[tendons]\nstiffness = 3\n") == (
+        ": tendons must be a list of tables, each under a heading [[tendons]], but {'stiffness': 3} was given."
+    )
+    assert failing("tendons = [3]\n" + frame) == ": [[tendons]] no. 1 must be a table, but 3 was given."
+
+
+def test_one_structure_a_file(failing):
+    expected = (
+        ": one structure is expected, [frame], [fish_bone], [wall_frame], [tapered_tower], [cantilever], [beam], "
+        "[lumped], [matrices], [modes], [properties] or [block], but {} found."
+    )
+    assert failing("") == expected.format("none was")
+    assert failing(text("lumped", LUMPED) + text("frame", FRAME)) == expected.format("[frame] and [lumped] were")
+
+
+def test_keys_of_a_table_in_a_table(failing):
+    values = {**BEAM, "mass": 1e3, "bending_stiffness": 4e9, "lumped_masses": {"height": [3.0], "masses": 5.0}}
+    assert failing(text("beam", values)) == (
+        ": [beam.lumped_masses] heights is missing: a list of the heights of the bodies above the base in m. "
+        "[beam.lumped_masses] masses must be a list of the masses of the bodies in kg, but 5.0 was given. "
+        "[beam.lumped_masses] height is not known; there are heights, masses, rotary. Did you mean heights?"
+    )
+
+
+def test_what_only_runs_need_is_left_to_them(write):
+    more = 'impact = "complete"\n' + text("frame", FRAME) + "[bouc_wen]\nyield_displacement = 0.1\n"
+    assert rf.read_structure(write(more)) == rf.Frame(**FRAME)
+
+
+def test_values_out_of_range_name_file_and_table(failing):
+    assert failing(text("tapered_tower", {**TOWER, "wall": 5.0})).startswith(
+        ", [tapered_tower]: wall must be at most the smaller radius, top_radius = 4 m, but 5 m was given."
+    )
+    assert failing(text("tapered_tower", {**TOWER, "method": "exact"})) == (
+        ': [tapered_tower] method must be "ritz" (shapes over the whole height) or "fe" (2000 finite elements), but '
+        "'exact' was given."
+    )
+    assert failing(text("frame", {**FRAME, "period": math.inf})) == (
+        ", [frame]: period must be a positive, finite number in s, but inf was given."
+    )
+
+
+def test_file_that_cannot_be_read(tmp_path):
+    with pytest.raises(rf.InputError, match=r"The structure file .*x\.toml does not exist \(working directory: "):
+        rf.read_structure(str(tmp_path / "x.toml"))
+
+
+def test_entry_is_frozen_named_and_says_what_it_holds():
+    entry = StructureEntry.model_validate({"name": "A", "lumped": LUMPED, "tendons": [TENDON]})
+    assert (entry.name, entry.kind) == ("A", "lumped")
+    assert entry.describe() == {**LUMPED, "tendons": [{"position": 0.0, **TENDON}]}
+    assert_same(entry.build(), rf.Restrained(rf.LumpedStructure(**LUMPED), rf.Tendon(**TENDON)))
+    with pytest.raises(ValidationError):
+        entry.name = "B"
+
+
+class Study(Table):
+    """A file that holds several structures."""
+
+    structures: list[StructureEntry]
+
+
+def test_entries_in_another_file_are_told_by_their_number():
+    good = {"lumped": LUMPED}
+    bad = {"frame": {**FRAME, "n_stories": 2.5}, "tendons": [TENDON, {"stiffness": 1.0}]}
+    assert len(checked(Study, {"structures": [good]}).structures) == 1
+    with pytest.raises(rf.InputError) as caught:
+        checked(Study, {"structures": [good, bad, {}]}, "study.toml")
+    first, second, third = str(caught.value).removeprefix("study.toml: ").split(". [[")
+    assert first == (
+        "[[structures]] no. 2, [structures.frame] n_stories must be the number of stories, a whole number, but 2.5 was "
+        "given"
+    )
+    assert second == (
+        "structures]] no. 2, [[structures.tendons]] no. 2, initial_force is missing: the force while the base stands "
+        "on the ground, a number in N"
+    )
+    assert third.startswith("structures]] no. 3: one structure is expected, [frame], ")
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("bridge_pier", rf.CantileverWithTipMass),
+        ("chimney", rf.TaperedTower),
+        ("restrained_pier", rf.Restrained),
+        ("structure_1", rf.Frame),
+        ("structure_lumped", rf.LumpedStructure),
+        ("structure_properties", rf.RockingProperties),
+        ("wall", rf.WallFrame),
+    ],
+)
+def test_examples(name, kind):
+    assert isinstance(rf.read_structure(EXAMPLES / f"{name}.toml"), kind)
+
+
+def test_chimney_of_section_4_1_1():
+    expected = rf.TaperedTower(200, 8, 4, 1, 2400, 25e9, 0.02, method="ritz", n_modes=5)
+    assert_same(rf.read_structure(EXAMPLES / "chimney.toml"), expected)
+
+
+@pytest.mark.parametrize("model", [*KINDS.values(), StructureEntry])
+def test_every_key_is_described(model):
+    for name, field in model.model_fields.items():
+        assert field.description, name
+        assert not field.description.endswith(".")
