@@ -17,12 +17,14 @@ ALLOWED = {
     "motion": set(),
     "modal": set(),
     "parallel": set(),
+    "store": set(),
+    "fragility": set(),
     "structure": {"modal"},
     "models": {"modal"},
     "solve": {"models", "motion"},
     "response": {"solve", "models", "modal"},
-    "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel"},
-    "plot": {"motion", "modal", "structure", "response", "study"},
+    "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel", "store"},
+    "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
 }
 FOUNDATION = {
     "_checks",
@@ -37,7 +39,10 @@ FACES = {"cli", "__main__"}  # may import anything, and nothing below may import
 # The one place of each of these libraries.
 HOME = {"matplotlib": {"plot"}, "typer": {"cli"}, "rich": {"cli"}, "numba": {"_kernel"}}
 NEVER_AT_IMPORT = {"pandas"}  # only inside functions, or for the type checker
-NOT_LOADED = {"numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic"}  # by `import rockflex`
+NOT_LOADED = {
+    *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
+    "distributed",
+}  # by `import rockflex`
 LONGEST = 300  # lines
 
 RUNTIME, TYPING, DEFERRED = "when the module is imported", "for the type checker", "inside a function"

@@ -10,6 +10,7 @@ from rockflex.response import IMPACT_WINDOW
 __all__ = ["print_failures", "print_runs"]
 
 MAX_LISTED = 5
+YIELDED = "A tendon passed its yield force, and the models keep it elastic: such runs are not to be trusted"
 NOMINAL = "† θ passed 0.7 atan(B/h*_1), the nominal limit of overturning"
 FRICTION = (
     "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
@@ -46,6 +47,8 @@ def print_runs(title: str, plan: Plan, runs: Sequence[Run], elapsed: float, *, t
     console.print()
     if any(run.peaks["nominal_overturning"] for run in runs):
         console.print(NOMINAL, markup=False, soft_wrap=True)
+    if any((run.peaks["tendon_utilisation"] or 0.0) > 1.0 for run in runs):
+        console.print(YIELDED, markup=False, soft_wrap=True)
     if plan.friction is not None:
         console.print(FRICTION.format(window=IMPACT_WINDOW, mu=plan.friction), markup=False, soft_wrap=True)
     each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
@@ -75,6 +78,9 @@ def _peaks(runs: Sequence[Run]) -> Columns:
         ("V_b [kN]", _column(runs, "max_base_shear", 1e3)),
         ("impacts", ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]),
     ]
+    if any(run.peaks["max_tendon_force"] for run in runs):
+        columns.append(("T [kN]", _column(runs, "max_tendon_force", 1e3)))
+        columns.append(("T/F_y", _column(runs, "tendon_utilisation")))
     if any(run.run_time is not None for run in runs):
         columns.append(("time [ms]", [number(None if run.run_time is None else 1e3 * run.run_time, 3) for run in runs]))
     return columns

@@ -1,0 +1,37 @@
+"""Fragility and risk: regressions of study results, their confidence bands, and their integrals over hazard."""
+
+from rockflex.fragility._annual_rate import AnnualRate, annual_rate, risk_targeted_median
+from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band
+from rockflex.fragility._capacities import fit_capacities
+from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._clouds import CloudFits, fit_clouds
+from rockflex.fragility._hazard import HazardCurve
+from rockflex.fragility._logistic import LogisticFit, fit_logistic
+from rockflex.fragility._lognormal import LognormalFragility
+from rockflex.fragility._measures import compare_measures
+from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, fit_outcomes
+from rockflex.fragility._stripes import fit_stripes
+from rockflex.fragility._unanimous import UnanimousOutcome
+
+__all__ = [
+    "AnnualRate",
+    "BootstrapBand",
+    "CloudFit",
+    "CloudFits",
+    "HazardCurve",
+    "LogisticFit",
+    "LognormalFragility",
+    "OutcomeFragility",
+    "OutcomeProbabilities",
+    "UnanimousOutcome",
+    "annual_rate",
+    "bootstrap_band",
+    "compare_measures",
+    "fit_capacities",
+    "fit_cloud",
+    "fit_clouds",
+    "fit_logistic",
+    "fit_outcomes",
+    "fit_stripes",
+    "risk_targeted_median",
+]

@@ -1,0 +1,183 @@
+"""Fragility and hazard together: annual rates of failure, and capacities that meet a target rate."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import in_range, positive
+from rockflex._errors import InputError
+from rockflex.fragility._hazard import HazardCurve
+from rockflex.fragility._lognormal import LognormalFragility
+
+__all__ = ["AnnualRate", "annual_rate", "risk_targeted_median"]
+
+Float = NDArray[np.float64]
+Curve = Callable[[Float], Float]
+SMALLEST = 60.0  # ln of how far below the curve's lower end its tail is followed
+
+
+class Fragility(Protocol):
+    """Anything with a probability of failure at a measure."""
+
+    def probability(self, im: Float, /) -> Float:
+        """Probability of failure, of the shape of `im`."""
+        ...
+
+
+@dataclass(frozen=True)
+class AnnualRate:
+    """Mean annual rate of failure, from what the hazard curve covers, and bounds of what lies beyond its ends.
+
+    Attributes
+    ----------
+    rate : float
+        ∫ P(im) |dλ| in 1/year from the first to the last point of the curve.
+    below : float
+        Rate in 1/year from smaller measures if the curve went on with the slope of its first segment: an upper bound,
+        as hazard curves flatten towards small measures. Infinite where that integral grows without bound.
+    above : float
+        Largest rate in 1/year from larger measures: that at which the last point is exceeded.
+    """
+
+    rate: float
+    below: float
+    above: float
+
+    @property
+    def beyond(self) -> float:
+        """Upper bound in 1/year of what the curve does not cover: the true rate is at most `rate` + `beyond`."""
+        return self.below + self.above
+
+    def probability_in(self, years: float) -> float:
+        """Probability of at least one failure in `years`, 1 - exp(-rate years), as a Poisson process."""
+        return -math.expm1(-self.rate * positive("years", years, "years", zero=True))
+
+
+def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate:
+    """Integrate a fragility curve over a hazard curve, λ_f = ∫ P(im) |dλ(im)|.
+
+    Between two points λ is a power law, and adaptive Gauss-Kronrod quadrature in log IM takes all segments at once.
+
+    Parameters
+    ----------
+    hazard
+        The hazard curve, in the measure and the unit of the fragility.
+    fragility
+        A fit with `probability`, or a function of an array of measures, such as
+        ``lambda im: outcomes.exceedance(im, 0.01)``.
+
+    Raises
+    ------
+    InputError
+        If the probabilities are not finite numbers from 0 to 1.
+    """
+    probability = _probability(fragility)
+    return AnnualRate(_covered(hazard, probability), _below(hazard, probability), float(hazard.rate[-1]))
+
+
+def risk_targeted_median(
+    hazard: HazardCurve, dispersion: float, target_rate: float, *, allowed_beyond: float = 0.1
+) -> float:
+    """Median capacity of a lognormal fragility whose annual rate of failure meets a target.
+
+    The uniform-risk value, as in risk-targeted design maps (Luco et al. 2007, SEAOC Convention Proceedings), by Brent's
+    method. A probability of 1 % in 50 years is a rate of 2.01e-4.
+
+    Parameters
+    ----------
+    hazard
+        The hazard curve.
+    dispersion
+        Standard deviation of the logarithm of the capacity.
+    target_rate
+        Annual rate of failure in 1/year.
+    allowed_beyond
+        Largest `AnnualRate.beyond` at the solution, as a fraction of the target. The rate is met by what the curve
+        covers, so the true one may be larger by this fraction.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, no median within the curve meets the target, or too much of the rate lies
+        beyond the ends of the curve.
+    """
+    from scipy.optimize import brentq
+
+    beta = positive("dispersion", dispersion, "natural logarithms")
+    target = positive("target_rate", target_rate, "1/year")
+    share = in_range("allowed_beyond", allowed_beyond, 0.0, math.inf)
+
+    def rate(log_median: float) -> float:
+        return _covered(hazard, LognormalFragility(math.exp(log_median), beta).probability)
+
+    low, high = math.log(hazard.im[0]), math.log(hazard.im[-1])
+    most, least = rate(low), rate(high)
+    if not least <= target <= most:
+        message = (
+            f"target_rate must lie between {least:.4g} and {most:.4g} per year, the rates of medians at the ends of "
+            f"the hazard curve, but {target:g} was given. Extend the curve."
+        )
+        raise InputError(message)
+    median = math.exp(brentq(lambda x: rate(x) / target - 1.0, low, high, xtol=1e-12, rtol=1e-12))
+    left = annual_rate(hazard, LognormalFragility(median, beta))
+    if left.beyond > share * target:
+        message = (
+            f"At the median {median:.4g}, up to {left.beyond:.3g} per year lie beyond the ends of the hazard curve "
+            f"({left.below:.3g} below, {left.above:.3g} above), more than {share:g} of the target. Extend the curve, "
+            "or set allowed_beyond."
+        )
+        raise InputError(message)
+    return median
+
+
+def _probability(fragility: Fragility | Curve) -> Curve:
+    function: Any = getattr(fragility, "probability", fragility)
+    if not callable(function):
+        message = (
+            f"fragility must have a method probability(im), or be a function of im, but {type(fragility).__name__} was "
+            "given."
+        )
+        raise InputError(message)
+
+    def checked(im: Float) -> Float:
+        p = np.asarray(function(im), dtype=np.float64)
+        if not ((p >= 0.0) & (p <= 1.0)).all():
+            message = (
+                f"fragility must give probabilities from 0 to 1, but gave {p[~((p >= 0.0) & (p <= 1.0))].flat[0]:g}. "
+                "A part that could not be fitted gives NaN."
+            )
+            raise InputError(message)
+        return p
+
+    return checked
+
+
+def _covered(hazard: HazardCurve, probability: Curve) -> float:
+    from scipy.integrate import quad_vec
+
+    start, width = np.log(hazard.im[:-1]), np.diff(np.log(hazard.im))
+    k, rates = hazard.slopes, hazard.rate[:-1]
+
+    def segments(t: float) -> Float:
+        return probability(np.exp(start + t * width)) * k * width * rates * np.exp(-k * width * t)
+
+    parts, _ = quad_vec(segments, 0.0, 1.0, epsabs=1e-300, epsrel=1e-10, norm="max", limit=2000)
+    return float(np.sum(parts))
+
+
+def _below(hazard: HazardCurve, probability: Curve) -> float:
+    """∫ P |dλ| below the first point, with the slope of the first segment; infinite if it does not settle."""
+    from scipy.integrate import quad_vec
+
+    im, k, rate = float(hazard.im[0]), float(hazard.slopes[0]), float(hazard.rate[0])
+    end = min(SMALLEST, 600.0 / k)  # keeps exp(k s) finite
+
+    def tail(s: float) -> Float:
+        return probability(np.array([im * math.exp(-s)])) * k * rate * math.exp(k * s)
+
+    total, _ = quad_vec(tail, 0.0, end, epsabs=1e-12 * rate, epsrel=1e-8, limit=2000, points=(0.01 * end, 0.1 * end))
+    return float(total[0]) if tail(end)[0] <= 1e-9 * rate else math.inf

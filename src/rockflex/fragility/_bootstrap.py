@@ -1,0 +1,169 @@
+"""Confidence bands from resampled runs or records."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector, whole_number
+from rockflex._errors import InputError, SolverError
+from rockflex.fragility._arguments import confidence, same_length
+
+__all__ = ["BootstrapBand", "bootstrap_band"]
+
+Float = NDArray[np.float64]
+NEEDED = 20  # resamples that can be fitted, for quantiles of any meaning
+
+
+@dataclass(frozen=True, eq=False)
+class BootstrapBand:
+    """A percentile band of a curve over resamples. The arrays are read-only.
+
+    Attributes
+    ----------
+    at, estimate, low, high : ndarray, shape (m,)
+        Where the curve was evaluated, the curve of the data as given, and the limits of the band.
+    level : float
+        Confidence level.
+    n : int
+        Resamples asked for.
+    n_failed : int
+        Resamples that could not be fitted, such as those without a single event; they are not in the band.
+    n_separated : int
+        Resamples with separated outcomes, which were fitted with Firth's penalty.
+    n_groups : int
+        Number of blocks that were drawn from: the groups, or the runs where none were given.
+    note : str
+        What to know before the band is used; empty if there is nothing.
+    """
+
+    at: Float
+    estimate: Float
+    low: Float
+    high: Float
+    level: float
+    n: int
+    n_failed: int
+    n_separated: int
+    n_groups: int
+    note: str
+
+    def __post_init__(self) -> None:
+        for array in (self.at, self.estimate, self.low, self.high):
+            array.setflags(write=False)
+
+
+def bootstrap_band(
+    fit_function: Callable[[Any, Any], Any],
+    im: ArrayLike,
+    outcome_or_response: ArrayLike,
+    groups: ArrayLike | None = None,
+    *,
+    at: ArrayLike,
+    level: float = 0.9,
+    n: SupportsIndex = 1000,
+    seed: int = 0,
+    curve: Callable[[Any, Float], Any] | None = None,
+) -> BootstrapBand:
+    """Percentile band of a fitted curve from resamples of the runs, or of the records that they share.
+
+    With `groups`, whole groups are drawn: the components of a record and its scale factors are not independent, and a
+    band that takes them so is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
+    Application, Section 3.8).
+
+    Parameters
+    ----------
+    fit_function
+        `fit_logistic`, `fit_cloud`, `fit_capacities`, or any function of the two columns.
+    im : array_like, shape (k,)
+        First column.
+    outcome_or_response : array_like, shape (k,) or (k, ...)
+        Second column; a table of several is resampled by rows.
+    groups : array_like, shape (k,), optional
+        Name or number of the record of every run, the same for both components.
+    at : array_like, shape (m,)
+        Measures at which the curve is wanted.
+    level
+        Confidence level in [0, 1).
+    n
+        Number of resamples, at least 20.
+    seed
+        Of NumPy's default generator; the same seed gives the same band.
+    curve
+        Function of a fit and `at`; by default the fit's `probability`, or its `median` where it has none.
+
+    Raises
+    ------
+    InputError
+        If the columns differ in length, an argument is out of range, the data as given cannot be fitted, or fewer than
+        20 resamples can.
+    """
+    measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
+    values = np.asarray(outcome_or_response)
+    labels = np.arange(measures.size) if groups is None else np.asarray(groups)
+    same_length(im=measures, outcome_or_response=values, groups=labels)
+    wanted, times = confidence(level), whole_number("n", n, NEEDED)
+    evaluate = curve or _curve
+    estimate = np.array(evaluate(fit_function(measures, values), grid), dtype=np.float64)
+
+    blocks = _blocks(labels)
+    generator = np.random.default_rng(seed)
+    curves: list[Float] = []
+    failures: list[str] = []
+    separated = 0
+    for _ in range(times):
+        rows = np.concatenate([blocks[i] for i in generator.integers(len(blocks), size=len(blocks))])
+        try:
+            fit = fit_function(measures[rows], values[rows])
+            drawn = np.asarray(evaluate(fit, grid), dtype=np.float64)
+        except (InputError, SolverError) as error:
+            failures.append(str(error))
+            continue
+        if not np.isfinite(drawn).all():
+            failures.append("The curve is not finite everywhere.")
+            continue
+        curves.append(drawn)
+        separated += bool(getattr(fit, "separated", False))
+    if len(curves) < NEEDED:
+        message = (
+            f"Only {len(curves)} of {times} resamples could be fitted, {NEEDED} are needed. The first failure: "
+            f"{failures[0]}"
+        )
+        raise InputError(message)
+    low, high = np.quantile(curves, [0.5 - 0.5 * wanted, 0.5 + 0.5 * wanted], axis=0)
+    note = _note(times, failures, separated, len(blocks))
+    return BootstrapBand(grid, estimate, low, high, wanted, times, len(failures), separated, len(blocks), note)
+
+
+def _curve(fit: Any, grid: Float) -> Any:
+    return fit.probability(grid) if hasattr(fit, "probability") else fit.median(grid)
+
+
+def _blocks(labels: NDArray[Any]) -> list[NDArray[np.int64]]:
+    """Rows of every group, in the order in which the groups first appear."""
+    import pandas as pd
+
+    codes, names = pd.factorize(labels, use_na_sentinel=True)
+    if (codes < 0).any():
+        message = f"groups must name the record of every run, but {int((codes < 0).sum())} names are missing."
+        raise InputError(message)
+    if len(names) < 2:
+        message = f"groups must hold at least two groups, but all {labels.size} runs belong to {len(names)}."
+        raise InputError(message)
+    return np.split(np.argsort(codes, kind="stable"), np.cumsum(np.bincount(codes))[:-1])
+
+
+def _note(n: int, failures: list[str], separated: int, groups: int) -> str:
+    notes: list[str] = []
+    if failures:
+        notes.append(
+            f"{len(failures)} of {n} resamples could not be fitted and are not in the band, which is too narrow for "
+            f"it. The first failure: {failures[0]}"
+        )
+    if separated:
+        notes.append(f"{separated} of {n} resamples were separated and fitted with Firth's penalty.")
+    if groups < 20:
+        notes.append(f"Percentile bands from {groups} blocks are too narrow; take them as a lower bound.")
+    return " ".join(notes)

@@ -1,0 +1,82 @@
+"""Incremental dynamic analysis: a lognormal curve through the capacities of single records."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._errors import InputError
+from rockflex.fragility._arguments import flags, log_column, same_length
+from rockflex.fragility._lognormal import LognormalFragility
+
+__all__ = ["fit_capacities"]
+
+Float = NDArray[np.float64]
+
+
+def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> LognormalFragility:
+    """Fit a lognormal fragility to the capacities of records.
+
+    Without censored records: mean and standard deviation (n - 1) of the logarithms, the method of moments of Baker 2015
+    (Earthquake Spectra 31(1), 579-599). With them: maximum likelihood, to which a censored record contributes the
+    probability that its capacity is larger; that dispersion is not corrected for few records.
+
+    Parameters
+    ----------
+    im : array_like, shape (n,)
+        Intensity measure at which each record first reached the limit or overturned, in any one unit; for a censored
+        record the largest measure that was tried.
+    censored : array_like, shape (n,), optional
+        Whether the record never got there.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive, or the capacities that are known are fewer than two different ones.
+    """
+    x = log_column("im", im, "Leave those records out.")
+    above = np.zeros(x.size, dtype=np.bool_) if censored is None else flags("censored", censored)
+    same_length(im=x, censored=above)
+    known = x[~above]
+    if known.size < 2 or np.ptp(known) == 0.0:
+        message = (
+            f"im must hold at least two different capacities that were reached, but {np.unique(known).size} were given "
+            f"beside {int(above.sum())} censored records. Scale the records further up."
+        )
+        raise InputError(message)
+    if above.any():
+        mean, beta = _maximum_likelihood(known, x[above])
+        method, covariance = "censored capacities, maximum likelihood", _covariance(known, x[above], mean, beta)
+    else:
+        mean, beta, n = float(known.mean()), float(known.std(ddof=1)), known.size
+        method, covariance = "capacities, moments", np.diag([beta**2 / n, beta**2 / (2.0 * (n - 1))])
+    return LognormalFragility(math.exp(mean), beta, covariance, x.size, method)
+
+
+def _maximum_likelihood(known: Float, above: Float) -> tuple[float, float]:
+    from scipy.optimize import fmin
+    from scipy.stats import CensoredData, norm
+
+    def search(function: Any, start: Any, args: Any = (), disp: Any = 0) -> Any:
+        return fmin(function, start, args, xtol=1e-7, ftol=1e-11, maxiter=10_000, maxfun=10_000, disp=disp)
+
+    # Shifted and scaled, so that the tolerances mean the same for every unit and dispersion.
+    shift, scale = float(known.mean()), float(np.ptp(known))
+    data = CensoredData(uncensored=(known - shift) / scale, right=(above - shift) / scale)
+    fit: Any = norm.fit  # its stubs know no function as an optimizer
+    mean, beta = fit(data, loc=0.0, scale=0.5, optimizer=search)
+    return shift + scale * float(mean), scale * float(beta)
+
+
+def _covariance(known: Float, above: Float, mean: float, beta: float) -> Float:
+    """Inverse of the observed information of (mean, beta) of a normal sample with right-censored values."""
+    from scipy.special import log_ndtr
+
+    z, c = (known - mean) / beta, (above - mean) / beta
+    hazard = np.exp(-0.5 * c**2 - 0.5 * math.log(2.0 * math.pi) - log_ndtr(-c))  # φ(c)/(1 - Φ(c))
+    slope = hazard * (hazard - c)  # its derivative
+    mean_mean = z.size + slope.sum()
+    mean_beta = 2.0 * z.sum() + (hazard + c * slope).sum()
+    beta_beta = (3.0 * z**2 - 1.0).sum() + (c**2 * slope + 2.0 * c * hazard).sum()
+    return beta**2 * np.linalg.inv(np.array([[mean_mean, mean_beta], [mean_beta, beta_beta]]))

@@ -1,0 +1,118 @@
+"""Cloud analysis: a straight line through the logarithms of response and intensity measure."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._errors import InputError
+from rockflex.fragility._arguments import confidence, fractions, log_at, log_column, log_measures, same_length
+from rockflex.fragility._predictor import standard_error
+
+__all__ = ["CloudFit", "fit_cloud", "fit_line"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class CloudFit:
+    """The line log(y) = c1 + c2 log(IM), with natural logarithms, and the scatter about it.
+
+    Given IM, the response is lognormal about the line with the same dispersion everywhere (Silva & Stojadinović 2024,
+    Section 3.2; Jalayer & Cornell 2009, Earthquake Eng. Struct. Dyn. 38(8), 951-972).
+
+    Attributes
+    ----------
+    c1, c2 : float
+        Intercept (of the logarithm of the response in the unit given, at IM = 1) and slope.
+    dispersion : float
+        Standard deviation of the residuals of log(y), with n - 2 degrees of freedom.
+    r2 : float
+        Coefficient of determination of the logarithms.
+    n : int
+        Number of runs.
+    covariance : ndarray, shape (2, 2)
+        Covariance of (c1, c2); read-only.
+    """
+
+    c1: float
+    c2: float
+    dispersion: float
+    r2: float
+    n: int
+    covariance: Float
+
+    def __post_init__(self) -> None:
+        self.covariance.setflags(write=False)
+
+    def median(self, im: ArrayLike) -> Float:
+        """Median response exp(c1) IM^c2, of the shape of `im`."""
+        return np.exp(self.c1 + self.c2 * log_at(im))
+
+    def quantile(self, im: ArrayLike, p: ArrayLike) -> Float:
+        """Response that a fraction `p` of the runs at `im` stay below; `im` and `p` broadcast."""
+        from scipy.special import ndtri
+
+        return self.median(im) * np.exp(self.dispersion * ndtri(fractions("p", p)))
+
+    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+        """Lower and upper confidence limits of the median, from Student's t with n - 2 degrees of freedom."""
+        from scipy.special import stdtrit
+
+        x = log_at(im)
+        half = stdtrit(self.n - 2, 0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
+        centre = self.c1 + self.c2 * x
+        return np.exp(centre - half), np.exp(centre + half)
+
+    def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Float:
+        """Probability that the response exceeds `limit` at `im`; the two broadcast."""
+        from scipy.special import ndtr
+
+        above = self.c1 + self.c2 * log_at(im) - log_at(limit, "limit")
+        if self.dispersion == 0.0:
+            return np.where(above > 0.0, 1.0, 0.0)
+        return ndtr(above / self.dispersion)
+
+
+def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
+    """Fit log(y) = c1 + c2 log(IM) by least squares (Silva & Stojadinović 2024, Figures 6 and 7).
+
+    The covariance takes the runs as independent; where several of them share a record, `bootstrap_band` with `groups`
+    does not.
+
+    Parameters
+    ----------
+    im : array_like, shape (n,)
+        Intensity measure of every run, in any one unit; n >= 3.
+    response : array_like, shape (n,)
+        Peak response of every run, in any one unit: the runs that rocked and did not overturn.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive and finite, fewer than three runs are given, or all have the same measure or the
+        same response.
+    """
+    x = log_measures(im)
+    y = log_column(
+        "response", response, "A cloud holds the runs that responded: leave the others out, or see fit_outcomes."
+    )
+    same_length(im=x, response=y)
+    return fit_line(x, y)[0]
+
+
+def fit_line(x: Float, y: Float) -> tuple[CloudFit, Float]:
+    """Least squares through logarithms of equal length; the residuals beside the fit."""
+    from statsmodels.api import OLS
+
+    if x.size < 3 or np.ptp(y) == 0.0:
+        message = (
+            f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
+            "different responses were given."
+        )
+        raise InputError(message)
+    result = OLS(y, np.column_stack((np.ones(x.size), x))).fit()
+    c1, c2 = (float(value) for value in result.params)
+    dispersion = float(np.sqrt(result.mse_resid))
+    fit = CloudFit(c1, c2, dispersion, float(result.rsquared), x.size, np.array(result.cov_params()))
+    return fit, np.asarray(result.resid)

@@ -1,0 +1,86 @@
+"""The fits of a whole cloud study: one set for each structure and model."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rockflex._errors import InputError
+from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["CloudFits", "fit_clouds"]
+
+
+@dataclass(frozen=True, eq=False)
+class CloudFits:
+    """What the cloud of one structure and one model says.
+
+    Attributes
+    ----------
+    structure, model : str
+        Names in the study.
+    measure : str
+        Column of the intensity measure.
+    outcomes : OutcomeFragility
+        No rocking, rocking and overturning, and the rotations of the runs that rocked and stand.
+    top_displacement : CloudFit or None
+        log u_top,max on log IM of the same runs, as in Figure 7. None where these cannot be fitted.
+    n_failed : int
+        Runs that could not be solved, which are in no fit.
+    """
+
+    structure: str
+    model: str
+    measure: str
+    outcomes: OutcomeFragility
+    top_displacement: CloudFit | None
+    n_failed: int
+
+
+def fit_clouds(
+    runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = 1e-4, nominal: bool = False
+) -> list[CloudFits]:
+    """Fit the clouds of a study, in the order of its structures and models (Silva & Stojadinović 2024, Figs. 5-7).
+
+    Parameters
+    ----------
+    runs : pandas.DataFrame
+        The table of a cloud study.
+    measure
+        Column of the intensity measure.
+    threshold
+        Rotation in rad up to which a run counts as one without rocking.
+    nominal
+        Count runs as overturned that pass 0.7 atan(B/h*_1), and not only those that reach π/2.
+
+    Raises
+    ------
+    InputError
+        If `runs` lacks a column, a structure has no solved run with a model, or its measures are not positive.
+    """
+    needed = ["structure", "model", "status", "max_rotation", "max_top_displacement", "nominal_overturning", measure]
+    lacking = [name for name in needed if name not in runs]
+    if lacking:
+        message = f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}."
+        raise InputError(message)
+    found: list[CloudFits] = []
+    for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
+        solved = group[group["status"].notna()]
+        if not len(solved):
+            message = f"No run of {structure!r} with {model} was solved. See the column error of the table."
+            raise InputError(message)
+        fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
+        im, rotation, top = (
+            solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation", "max_top_displacement")
+        )
+        rocked = ~fallen & (rotation > threshold)
+        outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)
+        try:
+            displacement = fit_cloud(im[rocked], top[rocked])
+        except InputError:
+            displacement = None
+        failed = len(group) - len(solved)
+        found.append(CloudFits(str(structure), str(model), measure, outcomes, displacement, failed))
+    return found

@@ -1,0 +1,178 @@
+"""Logistic regression of an outcome that happens or does not, on the logarithm of an intensity measure."""
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._errors import InputError, SolverError
+from rockflex.fragility._arguments import confidence, flags, log_at, log_measures, same_length
+from rockflex.fragility._predictor import Standardised, standard_error
+from rockflex.fragility._unanimous import UnanimousOutcome
+
+__all__ = ["LogisticFit", "fit_logistic", "is_separated"]
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+Method = Literal["maximum likelihood", "Firth"]
+
+
+@dataclass(frozen=True, eq=False)
+class LogisticFit:
+    """The curve P = 1/(1 + exp(-(b0 + b1 log IM))), with the natural logarithm.
+
+    Attributes
+    ----------
+    b0, b1 : float
+        Intercept (at IM = 1) and slope.
+    covariance : ndarray, shape (2, 2)
+        Covariance of (b0, b1): inverse of the Fisher information at the estimate, without the penalty; read-only.
+    n, n_events : int
+        Number of runs, and of those in which the outcome happened.
+    method : str
+        "maximum likelihood", or "Firth" where that has no finite slope.
+    separated : bool
+        Whether one measure parts all runs with the outcome from all without, so that maximum likelihood has no finite
+        slope.
+    note : str
+        What to know before the curve is used; empty if there is nothing.
+    """
+
+    b0: float
+    b1: float
+    covariance: Float
+    n: int
+    n_events: int
+    method: Method
+    separated: bool
+    note: str
+
+    def __post_init__(self) -> None:
+        self.covariance.setflags(write=False)
+
+    @property
+    def median(self) -> float:
+        """The measure at which P = 0.5, exp(-b0/b1); NaN for a curve that does not rise."""
+        return math.exp(-self.b0 / self.b1) if self.b1 > 0.0 else math.nan
+
+    @property
+    def dispersion(self) -> float:
+        """Scale 1/b1 of the logistic distribution of log capacity; NaN for a curve that does not rise.
+
+        The standard deviation of that distribution is π/√3 times as large.
+        """
+        return 1.0 / self.b1 if self.b1 > 0.0 else math.nan
+
+    def probability(self, im: ArrayLike) -> Float:
+        """Probability of the outcome, of the shape of `im`."""
+        from scipy.special import expit
+
+        return expit(self.b0 + self.b1 * log_at(im))
+
+    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+        """Lower and upper confidence limits of the probability: delta method on b0 + b1 log IM, then the curve."""
+        from scipy.special import expit, ndtri
+
+        x = log_at(im)
+        half = ndtri(0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
+        centre = self.b0 + self.b1 * x
+        return expit(centre - half), expit(centre + half)
+
+
+def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
+    """Fit a logistic curve by maximum likelihood (Silva & Stojadinović 2024, Figure 5).
+
+    Where one measure parts the runs with the outcome from those without, the likelihood grows with the slope for ever.
+    The curve is then fitted with Firth's penalty, which is finite for any data (Firth 1993, Biometrika 80(1), 27-38;
+    Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419), and `method`, `separated` and `note` say so.
+
+    Parameters
+    ----------
+    im : array_like, shape (n,)
+        Intensity measure of every run, in any one unit.
+    outcome : array_like, shape (n,)
+        Whether it happened: booleans, or 1 and 0.
+
+    Raises
+    ------
+    InputError
+        If a measure is not positive and finite, all are the same, an outcome is neither true nor false, or all
+        outcomes are alike.
+    """
+    x = log_measures(im)
+    y = flags("outcome", outcome)
+    same_length(im=x, outcome=y)
+    if y.all() or not y.any():
+        alike = UnanimousOutcome(bool(y[0]), y.size)
+        message = (
+            f"outcome is {alike.outcome} in all {alike.n} runs, so there is no curve to fit. {alike.note} "
+            "Add runs at other measures, or use fit_outcomes, which goes on with such a group."
+        )
+        raise InputError(message)
+    scaled = Standardised(x)
+    separated = is_separated(x, y)
+    found = None if separated else _maximum_likelihood(scaled, y)
+    method: Method = "maximum likelihood" if found else "Firth"
+    b0, b1, covariance = scaled.unscaled(*(found or _firth(scaled, y)))
+    notes: list[str] = []
+    if separated:
+        low, high = _gap(x, y)
+        notes.append(
+            f"Separated between im = {low:.4g} and {high:.4g}: no finite slope is the likeliest, so Firth's penalty "
+            "set it. Median and slope are known no better than that gap."
+        )
+    elif method == "Firth":
+        notes.append("Nearly separated: maximum likelihood found no slope, so Firth's penalty set it.")
+    if b1 <= 0.0:
+        notes.append(f"The probability does not rise with im (b1 = {b1:.3g}), so there is no median or dispersion.")
+    return LogisticFit(b0, b1, covariance, y.size, int(y.sum()), method, separated, " ".join(notes))
+
+
+def is_separated(x: Float, y: Bool) -> bool:
+    """Whether some value of one regressor parts the outcomes, runs at that value aside (quasi-separation)."""
+    return bool(x[~y].max() <= x[y].min() or x[y].max() <= x[~y].min())
+
+
+def _gap(x: Float, y: Bool) -> tuple[float, float]:
+    below, above = (~y, y) if x[~y].max() <= x[y].min() else (y, ~y)
+    return math.exp(x[below].max()), math.exp(x[above].min())
+
+
+def _maximum_likelihood(scaled: Standardised, y: Bool) -> tuple[Float, Float] | None:
+    """Parameters and covariance; None where Newton's method does not arrive."""
+    from statsmodels.api import Logit
+    from statsmodels.tools.sm_exceptions import PerfectSeparationWarning
+
+    with warnings.catch_warnings(), np.errstate(over="ignore"):
+        warnings.simplefilter("ignore", PerfectSeparationWarning)  # runs in which the outcome is all but certain
+        try:
+            result = Logit(y.astype(np.float64), scaled.design).fit(disp=0, maxiter=100, warn_convergence=False)
+        except np.linalg.LinAlgError:
+            return None
+    parameters, covariance = np.asarray(result.params), np.asarray(result.cov_params())
+    arrived = result.mle_retvals["converged"] and np.isfinite(parameters).all() and np.isfinite(covariance).all()
+    return (parameters, covariance) if arrived else None
+
+
+def _firth(scaled: Standardised, y: Bool) -> tuple[Float, Float]:
+    from firthmodels import FirthLogisticRegression
+    from scipy.special import expit
+
+    # NumPy's backend: compiling the other takes longer than any study of one regressor.
+    model = FirthLogisticRegression(backend="numpy", max_iter=1000)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # `converged_` says the same
+        model.fit(scaled.x[:, None], y)
+    if not model.converged_:
+        message = (
+            f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
+            "Look for a single run far from all others."
+        )
+        raise SolverError(message)
+    parameters = np.array([model.intercept_, model.coef_[0]])
+    p = expit(scaled.design @ parameters)
+    information = (scaled.design.T * (p * (1.0 - p))) @ scaled.design
+    return parameters, np.asarray(np.linalg.inv(information), dtype=np.float64)

@@ -1,0 +1,87 @@
+"""Fragility curves of lognormal shape."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_matrix, positive
+from rockflex._errors import InputError
+from rockflex.fragility._arguments import confidence, fractions, log_at
+
+__all__ = ["LognormalFragility"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class LognormalFragility:
+    """The curve P = Φ(ln(IM/median)/beta).
+
+    Attributes
+    ----------
+    median : float
+        Median capacity, in the unit of IM.
+    beta : float
+        Standard deviation of the logarithm of the capacity.
+    covariance : ndarray, shape (2, 2), or None
+        Covariance of (ln median, beta), read-only; None where it is not known.
+    n : int
+        Number of runs or records behind the curve; 0 for one that was given.
+    method : str
+        How it was found.
+
+    Raises
+    ------
+    InputError
+        If the median or beta is not positive and finite, or the covariance is not a finite 2 by 2 matrix.
+    """
+
+    median: float
+    beta: float
+    covariance: Float | None = None
+    n: int = 0
+    method: str = "given"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "median", positive("median", self.median, "the unit of IM"))
+        object.__setattr__(self, "beta", positive("beta", self.beta, "natural logarithms"))
+        if self.covariance is not None:
+            matrix = finite_matrix("covariance", self.covariance, "natural logarithms squared", (2, 2))
+            matrix.setflags(write=False)
+            object.__setattr__(self, "covariance", matrix)
+
+    def probability(self, im: ArrayLike) -> Float:
+        """Probability of failure, of the shape of `im`."""
+        from scipy.special import ndtr
+
+        return ndtr(self._score(im))
+
+    def quantile(self, p: ArrayLike) -> Float:
+        """Capacity that a fraction `p` stay below, of the shape of `p`."""
+        from scipy.special import ndtri
+
+        return self.median * np.exp(self.beta * ndtri(fractions("p", p)))
+
+    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+        """Lower and upper confidence limits of the probability: delta method on ln(IM/median)/beta, then Φ.
+
+        Raises
+        ------
+        InputError
+            If the covariance is not known.
+        """
+        from scipy.special import ndtr, ndtri
+
+        if self.covariance is None:
+            message = "A band needs the covariance of (ln median, beta), which this curve was given without."
+            raise InputError(message)
+        z = self._score(im)
+        gradient = np.stack((np.full_like(z, -1.0), -z)) / self.beta
+        error = np.sqrt(np.einsum("i...,ij,j...->...", gradient, self.covariance, gradient))
+        half = ndtri(0.5 + 0.5 * confidence(level)) * error
+        return ndtr(z - half), ndtr(z + half)
+
+    def _score(self, im: ArrayLike) -> Float:
+        return (log_at(im) - math.log(self.median)) / self.beta

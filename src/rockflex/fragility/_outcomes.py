@@ -1,0 +1,198 @@
+"""The three outcomes of a run: no rocking, rocking, overturning."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector, positive
+from rockflex._errors import InputError, SolverError
+from rockflex.fragility._arguments import flags, log_at, log_measures, same_length
+from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._logistic import LogisticFit, fit_logistic
+from rockflex.fragility._unanimous import UnanimousOutcome
+
+__all__ = ["OutcomeFragility", "OutcomeProbabilities", "fit_outcomes"]
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+FEW = 10  # runs below which a note is left
+
+
+class OutcomeProbabilities(NamedTuple):
+    """Probabilities of the three outcomes, which sum to 1."""
+
+    no_rocking: Float
+    rocking: Float
+    overturning: Float
+
+
+@dataclass(frozen=True, eq=False)
+class OutcomeFragility:
+    """Fits of the three outcomes of Silva & Stojadinović 2024, Section 3.2.
+
+    Attributes
+    ----------
+    overturning : LogisticFit or UnanimousOutcome
+        P(overturning | IM), of all runs.
+    rocking : LogisticFit, UnanimousOutcome or None
+        P(rocking | no overturning, IM), of the runs that stand. None where these cannot be fitted: all overturned, or
+        all that stand share one measure.
+    initiation : LogisticFit or UnanimousOutcome
+        P(rocking or overturning | IM) as one curve of all runs, as in Figure 5. The total probability does not use it:
+        two logistic curves of their own may cross, so that what is left for rocking would be negative.
+    rotation : CloudFit or None
+        log θ_max on log IM, of the runs that rocked and stand, as in Figure 6. None where these cannot be fitted.
+    threshold : float
+        Rotation in rad up to which a run counts as one without rocking.
+    highest_limit : float
+        Smallest rotation in rad of an overturned run, π/2 if there is none: overturning exceeds every limit below it.
+    n_no_rocking, n_rocking, n_overturned : int
+        Runs of each outcome.
+    notes : tuple of str
+        What to know before the fits are used: parts that rest on few runs, or could not be fitted.
+    """
+
+    overturning: LogisticFit | UnanimousOutcome
+    rocking: LogisticFit | UnanimousOutcome | None
+    initiation: LogisticFit | UnanimousOutcome
+    rotation: CloudFit | None
+    threshold: float
+    highest_limit: float
+    n_no_rocking: int
+    n_rocking: int
+    n_overturned: int
+    notes: tuple[str, ...]
+
+    def probabilities(self, im: ArrayLike) -> OutcomeProbabilities:
+        """Probabilities of no rocking, rocking, and overturning, each of the shape of `im`."""
+        falls = self.overturning.probability(im)
+        rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
+        stands = 1.0 - falls
+        return OutcomeProbabilities(_weighted(stands, 1.0 - rocks), _weighted(stands, rocks), falls)
+
+    def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Float:
+        """Probability that the rotation exceeds `limit` (rad) at `im`; the two broadcast.
+
+        P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking), all given IM; NaN where a factor that counts
+        could not be fitted (`notes` say which).
+
+        Raises
+        ------
+        InputError
+            If a measure is not positive, or a limit is below the threshold of rocking or not below `highest_limit`.
+        """
+        limits = np.exp(log_at(limit, "limit"))
+        if (limits < self.threshold * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
+            message = (
+                f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {limit!r} was given. "
+                "Below, a run counts as one without rocking; above, overturned runs need not exceed it."
+            )
+            raise InputError(message)
+        _, rocks, falls = self.probabilities(im)
+        beyond = np.full_like(limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
+        return falls + _weighted(rocks, beyond)
+
+
+def fit_outcomes(
+    im: ArrayLike, rotation: ArrayLike, overturned: ArrayLike, *, threshold: float = 1e-4
+) -> OutcomeFragility:
+    """Fit the three outcomes of a cloud of runs, and the rotations of those that rocked.
+
+    A group that is empty or small does not stop a study: its part becomes a constant with a one-sided bound, or None,
+    and `notes` say so.
+
+    Parameters
+    ----------
+    im : array_like, shape (n,)
+        Intensity measure of every run, in any one unit.
+    rotation : array_like, shape (n,)
+        Largest rotation θ_max of every run in rad, zero or more.
+    overturned : array_like, shape (n,)
+        Whether the run overturned, by the definition of the caller: the rotation reached π/2, or passed the nominal
+        0.7 atan(B/h*_1) (columns `status` and `nominal_overturning` of a study).
+    threshold
+        Rotation in rad up to which a run counts as one without rocking.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, all measures are the same, or a run overturned with a rotation up to `threshold`.
+    """
+    log_measures(im)
+    measures = finite_vector("im", im, "one unit")
+    rotations, falls = finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
+    same_length(im=measures, rotation=rotations, overturned=falls)
+    limit = positive("threshold", threshold, "rad")
+    _check(rotations, falls, limit)
+
+    stands, moves = ~falls, rotations > limit
+    rocked = stands & moves
+    counts = int((~moves).sum()), int(rocked.sum()), int(falls.sum())
+    notes = [
+        f"Only {count} of {falls.size} runs {what}: what rests on them is uncertain, see bootstrap_band."
+        for count, what in zip(counts, ("do not rock", "rock and stand", "overturn"), strict=True)
+        if 0 < count < FEW
+    ]
+    return OutcomeFragility(
+        overturning=_curve("overturning", measures, falls, notes) or UnanimousOutcome(bool(falls[0]), falls.size),
+        rocking=_curve("rocking", measures[stands], moves[stands], notes),
+        initiation=_curve("initiation", measures, moves, notes) or UnanimousOutcome(bool(moves[0]), moves.size),
+        rotation=_cloud(measures[rocked], rotations[rocked], notes),
+        threshold=limit,
+        highest_limit=float(rotations[falls].min(initial=0.5 * math.pi)),
+        n_no_rocking=counts[0],
+        n_rocking=counts[1],
+        n_overturned=counts[2],
+        notes=tuple(notes),
+    )
+
+
+def _check(rotations: Float, falls: Bool, threshold: float) -> None:
+    negative = np.flatnonzero(rotations < 0.0)
+    if negative.size:
+        message = (
+            f"rotation must be zero or positive, but {negative.size} of {rotations.size} values are not, the first "
+            f"({rotations[negative[0]]:g}) in row {negative[0]}. Give the largest magnitude of every run."
+        )
+        raise InputError(message)
+    small = np.flatnonzero(falls & (rotations <= threshold))
+    if small.size:
+        message = (
+            f"{small.size} overturned runs have a rotation of at most the threshold {threshold:g} rad, the first in "
+            f"row {small[0]} ({rotations[small[0]]:g} rad). Check that the columns belong together, and the unit."
+        )
+        raise InputError(message)
+
+
+def _curve(name: str, im: Float, outcome: Bool, notes: list[str]) -> LogisticFit | UnanimousOutcome | None:
+    if outcome.size == 0:
+        notes.append(f"{name}: no run stands, so there is nothing to fit.")
+        return None
+    if outcome.all() or not outcome.any():
+        alike = UnanimousOutcome(bool(outcome[0]), outcome.size)
+        notes.append(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}")
+        return alike
+    try:
+        fit = fit_logistic(im, outcome)
+    except (InputError, SolverError) as error:
+        notes.append(f"{name}: {error}")
+        return None
+    if fit.note:
+        notes.append(f"{name}: {fit.note}")
+    return fit
+
+
+def _cloud(im: Float, rotation: Float, notes: list[str]) -> CloudFit | None:
+    try:
+        return fit_cloud(im, rotation)
+    except InputError as error:
+        notes.append(f"rotation: {error}")
+        return None
+
+
+def _weighted(weight: Float, values: Float) -> Float:
+    """The product, with zero where the weight is: what cannot happen needs no fit."""
+    return np.where(weight == 0.0, 0.0, weight * values)[()]

@@ -1,0 +1,29 @@
+"""The straight line a + b ln(IM) under every fit: its standard error, and the scaling that keeps solvers well set."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Standardised", "standard_error"]
+
+Float = NDArray[np.float64]
+
+
+class Standardised:
+    """Logarithms shifted and scaled to mean 0 and standard deviation 1, and the way back."""
+
+    def __init__(self, x: Float) -> None:
+        mean, spread = float(x.mean()), float(x.std())
+        self.x = (x - mean) / spread
+        self.design = np.column_stack((np.ones(x.size), self.x))
+        self._back = np.array([[1.0, -mean / spread], [0.0, 1.0 / spread]])
+
+    def unscaled(self, parameters: Float, covariance: Float) -> tuple[float, float, Float]:
+        """Intercept, slope and covariance for the logarithms as they were given."""
+        a, b = self._back @ parameters
+        return float(a), float(b), self._back @ covariance @ self._back.T
+
+
+def standard_error(x: Float, covariance: Float) -> Float:
+    """Standard error of a + b x for the covariance of (a, b)."""
+    variance = covariance[0, 0] + 2.0 * covariance[0, 1] * x + covariance[1, 1] * x**2
+    return np.sqrt(np.maximum(variance, 0.0))  # rounding may leave a small negative variance

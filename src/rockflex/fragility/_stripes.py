@@ -1,0 +1,100 @@
+"""Multiple-stripe analysis: a lognormal curve through counts at a few levels of intensity."""
+
+import math
+import warnings
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._checks import finite_vector
+from rockflex._errors import InputError, SolverError
+from rockflex.fragility._arguments import log_measures, same_length
+from rockflex.fragility._lognormal import LognormalFragility
+from rockflex.fragility._predictor import Standardised
+
+__all__ = ["fit_stripes"]
+
+Float = NDArray[np.float64]
+
+
+def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike) -> LognormalFragility:
+    """Fit a lognormal fragility to stripes by maximum likelihood of the binomial counts.
+
+    A generalised linear model with probit link on log IM (Baker 2015, Earthquake Spectra 31(1), 579-599). The
+    covariance follows from the Fisher information by the delta method.
+
+    Parameters
+    ----------
+    im_levels : array_like, shape (k,)
+        Intensity measure of every stripe, in any one unit.
+    n_exceeding, n_total : array_like, shape (k,)
+        Runs of the stripe that exceed the limit or overturn, and all its runs.
+
+    Raises
+    ------
+    InputError
+        If a level is not positive, a count is no whole number or larger than its total, the counts do not determine a
+        dispersion (one level parts all runs that exceed from all others), or the curve does not rise.
+    SolverError
+        If the fit does not converge.
+    """
+    x = log_measures(im_levels, "im_levels")
+    total, events = _counts("n_total", n_total, 1), _counts("n_exceeding", n_exceeding, 0)
+    same_length(im_levels=x, n_exceeding=events, n_total=total)
+    if (events > total).any():
+        row = int(np.flatnonzero(events > total)[0])
+        message = (
+            f"n_exceeding must be at most n_total, but stripe {row} has {events[row]:g} of {total[row]:g}. "
+            "Give counts, not fractions, and check their order."
+        )
+        raise InputError(message)
+    _check_overlap(x, events, total)
+
+    from statsmodels.api import GLM, families
+    from statsmodels.tools.sm_exceptions import PerfectSeparationWarning
+
+    scaled = Standardised(x)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PerfectSeparationWarning)  # stripes that are all but certain
+        family = families.Binomial(link=families.links.Probit())
+        result = GLM(np.column_stack((events, total - events)), scaled.design, family=family).fit()
+    if not (result.converged and np.isfinite(result.params).all()):
+        message = "The fit of the stripes did not converge. Add stripes at which some runs exceed and others do not."
+        raise SolverError(message)
+    a, b, covariance = scaled.unscaled(np.asarray(result.params), np.asarray(result.cov_params()))
+    if b <= 0.0:
+        message = (
+            f"The fraction of runs that exceed does not rise with im_levels (slope {b:.3g}), so no lognormal capacity "
+            "fits. Check the order of the columns."
+        )
+        raise InputError(message)
+    back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
+    return LognormalFragility(
+        math.exp(-a / b), 1.0 / b, back @ covariance @ back.T, int(total.sum()), "binomial counts, maximum likelihood"
+    )
+
+
+def _counts(name: str, values: ArrayLike, least: int) -> Float:
+    numbers = finite_vector(name, values, "runs")
+    bad = np.flatnonzero((numbers != np.rint(numbers)) | (numbers < least))
+    if bad.size:
+        message = f"{name} must hold whole numbers of at least {least}, but row {bad[0]} holds {numbers[bad[0]]:g}."
+        raise InputError(message)
+    return numbers
+
+
+def _check_overlap(x: Float, events: Float, total: Float) -> None:
+    with_events, without = x[events > 0], x[events < total]
+    if with_events.size == 0 or without.size == 0:
+        word, side = ("No run exceeds", "larger") if with_events.size == 0 else ("All runs exceed", "smaller")
+        message = f"{word} the limit at any level, so no curve can be fitted. Add stripes at {side} levels."
+        raise InputError(message)
+    low, high = math.exp(without.max()), math.exp(with_events.min())
+    if low <= high:
+        between = f"at {low:.4g}" if low == high else f"between {low:.4g} and {high:.4g}"
+        message = (
+            f"The stripes are separated {between}: no run exceeds the limit below, all do above, and the likeliest "
+            "dispersion is zero. Add stripes near that level, or give the single runs to fit_logistic, which has a "
+            "penalty for this."
+        )
+        raise InputError(message)

@@ -1,0 +1,55 @@
+"""Runs that all ended alike, from which only a one-sided bound follows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex.fragility._arguments import confidence, log_at
+
+__all__ = ["UnanimousOutcome"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class UnanimousOutcome:
+    """An outcome that happened in every run, or in none; it stands in for a curve that cannot be fitted.
+
+    Attributes
+    ----------
+    outcome : bool
+        Whether it happened in all runs, or in none.
+    n : int
+        Number of runs.
+    """
+
+    outcome: bool
+    n: int
+
+    @property
+    def note(self) -> str:
+        """What can be concluded, in words."""
+        side = "above" if self.outcome else "below"
+        return (
+            f"What follows is a bound only: with 95 % confidence the probability, averaged over these runs, is {side} "
+            f"{100.0 * self.bound(0.95):.3g} %."
+        )
+
+    def bound(self, level: float = 0.95) -> float:
+        """Exact one-sided bound of the probability averaged over the runs, of confidence `level`.
+
+        Above, 1 - (1 - level)^(1/n), if it never happened; below, (1 - level)^(1/n), if it always did (Clopper &
+        Pearson 1934, Biometrika 26(4), 404-413).
+        """
+        root = (1.0 - confidence(level)) ** (1.0 / self.n)
+        return root if self.outcome else 1.0 - root
+
+    def probability(self, im: ArrayLike) -> Float:
+        """1 or 0 as observed, of the shape of `im`."""
+        return np.full_like(log_at(im), 1.0 if self.outcome else 0.0)
+
+    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+        """Observed value and its one-sided bound of confidence `level`, the same at every `im`."""
+        seen, bound = self.probability(im), np.full_like(log_at(im), self.bound(level))
+        return (bound, seen) if self.outcome else (seen, bound)

@@ -1,0 +1,103 @@
+"""Cloud fits against statsmodels called directly, SciPy and exact lines; refused columns by their messages."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+import statsmodels.api as sm
+from scipy import stats
+
+from rockflex import InputError
+from rockflex.fragility import fit_cloud
+
+RNG = np.random.default_rng(7)
+IM = np.exp(RNG.normal(-1.0, 0.8, 60))
+Y = 0.02 * IM**1.3 * np.exp(0.4 * RNG.normal(size=60))
+AT = np.array([0.05, 0.4, 2.0])
+
+
+def test_the_line_is_that_of_statsmodels_and_scipy():
+    fit = fit_cloud(IM, Y)
+    line = stats.linregress(np.log(IM), np.log(Y))
+    assert (fit.c1, fit.c2) == pytest.approx((line.intercept, line.slope), rel=1e-12)
+    assert fit.r2 == pytest.approx(line.rvalue**2, rel=1e-12)
+    residuals = np.log(Y) - line.intercept - line.slope * np.log(IM)
+    assert fit.dispersion == pytest.approx(math.sqrt(np.sum(residuals**2) / 58), rel=1e-12)
+    result = sm.OLS(np.log(Y), sm.add_constant(np.log(IM))).fit()
+    np.testing.assert_allclose(fit.covariance, result.cov_params(), rtol=1e-12)
+    low, high = np.exp(result.get_prediction(sm.add_constant(np.log(AT))).conf_int(alpha=0.2)).T
+    np.testing.assert_allclose(fit.band(AT, 0.8), (low, high), rtol=1e-12)
+    assert fit.n == 60
+
+
+def test_quantiles_and_exceedance_are_of_one_lognormal():
+    fit = fit_cloud(IM, Y)
+    scipys = stats.lognorm(fit.dispersion, scale=fit.median(AT))
+    np.testing.assert_allclose(fit.quantile(AT, 0.84), scipys.ppf(0.84), rtol=1e-12)
+    np.testing.assert_allclose(fit.exceedance(AT, 0.01), scipys.sf(0.01), rtol=1e-10)
+    np.testing.assert_allclose(fit.quantile(AT, 0.5), fit.median(AT))
+    assert fit.exceedance(AT[:, None], [0.01, 0.02]).shape == (3, 2)
+    assert fit.median(0.4) == pytest.approx(math.exp(fit.c1) * 0.4**fit.c2)
+
+
+def test_points_on_a_line_have_no_scatter():
+    im = np.array([1.0, 2.0, 4.0, 8.0])
+    fit = fit_cloud(im, im)
+    assert (fit.c2, fit.r2) == pytest.approx((1.0, 1.0))
+    assert fit.dispersion < 1e-14
+    assert fit.exceedance([1.0, 3.0], 2.0) == pytest.approx([0.0, 1.0])
+
+
+def test_units_shift_the_line_only():
+    fit, other = fit_cloud(IM, Y), fit_cloud(100.0 * IM, 1000.0 * Y)
+    assert (other.c2, other.dispersion, other.r2) == pytest.approx((fit.c2, fit.dispersion, fit.r2))
+    np.testing.assert_allclose(other.median(100.0 * AT), 1000.0 * fit.median(AT))
+
+
+def test_columns_of_pandas_serve():
+    table = pd.DataFrame({"im": IM, "y": Y}, index=np.arange(60)[::-1])
+    assert fit_cloud(table["im"], table["y"]).c2 == fit_cloud(IM, Y).c2
+    assert fit_cloud(table["im"].astype("Float64"), table["y"]).c2 == fit_cloud(IM, Y).c2
+
+
+def test_the_covariance_is_read_only():
+    with pytest.raises(ValueError, match="read-only"):
+        fit_cloud(IM, Y).covariance[0, 0] = 0.0
+
+
+@pytest.mark.parametrize(
+    ("im", "response", "text"),
+    [
+        (
+            [0.1, 0.0, -1.0],
+            [1, 2, 3],
+            r"im must be positive.* 2 of 3 .* first \(0\) in row 1\. .*keep the rows with im",
+        ),
+        ([0.1, 0.2, 0.3], [1, 0, 3], r"response must be positive.* 1 of 3 .* row 1\. .*see fit_outcomes"),
+        ([0.1, 0.2, math.nan], [1, 2, 3], r"im must be finite, but 1 of 3"),
+        ([0.1, 0.2, 0.3], [1, 2], r"one row a run, but im has 3, response has 2"),
+        ([0.1, 0.2], [1, 2], r"at least 3 runs with different responses, but 2 runs with 2 different"),
+        ([0.1, 0.2, 0.3], [1, 1, 1], r"3 runs with 1 different"),
+        ([0.2, 0.2, 0.2], [1, 2, 3], r"at least two different values, but 1 were given in 3 runs"),
+        ("abc", [1, 2, 3], r"im must be a sequence of numbers"),
+    ],
+)
+def test_columns_that_cannot_be_fitted_are_refused(im, response, text):
+    with pytest.raises(InputError, match=text):
+        fit_cloud(im, response)
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda fit: fit.median([0.0, 1.0]), "im must be positive and finite, but 0 .* Start a grid above zero"),
+        (lambda fit: fit.median("x"), "im must be a number or an array of numbers, but str"),
+        (lambda fit: fit.exceedance(1.0, -0.1), "limit must be positive and finite, but -0.1"),
+        (lambda fit: fit.quantile(1.0, 84), "p must lie between 0 and 1, but 84 .* p=0.84"),
+        (lambda fit: fit.band(1.0, 90), r"level must lie in \[0, 1\), but 90 .* level=0.9"),
+    ],
+)
+def test_places_that_cannot_be_evaluated_are_refused(call, text):
+    with pytest.raises(InputError, match=text):
+        call(fit_cloud(IM, Y))
