@@ -7,16 +7,24 @@ from typing import SupportsIndex, TypeVar
 
 from rockflex._checks import whole_number
 
-__all__ = ["map_threads"]
+__all__ = ["core_count", "map_threads"]
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
+
+
+def core_count() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
 
 
 def map_threads(
     function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
 ) -> Iterator[Result]:
     """Yield `function(task)` of every task, in order of completion; few tasks wait at a time.
+
+    When the map is left early, by an error, an interrupt or `close`, no further task begins, and those that run, at
+    most one a thread, are waited for. A consumer that can fail itself closes it by `contextlib.closing`.
 
     Parameters
     ----------
@@ -32,9 +40,7 @@ def map_threads(
     InputError
         If `workers` is neither None nor a whole number of at least 1.
     """
-    count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
-    if workers is not None:
-        count = whole_number("workers", workers, 1)
+    count = core_count() if workers is None else whole_number("workers", workers, 1)
     if count == 1:
         yield from map(function, tasks)
         return

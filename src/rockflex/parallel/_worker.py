@@ -1,0 +1,81 @@
+"""What runs on the workers of a Dask cluster: a plan that waits there, and its chunks."""
+
+import pickle
+import platform
+from importlib import metadata
+from threading import Lock
+from typing import Any
+
+from distributed import WorkerPlugin, get_worker
+
+from rockflex._errors import InputError
+
+__all__ = ["PlanCarrier", "compute", "installed_versions", "refuse_other_versions"]
+
+PACKAGES = ("rockflex", "numpy", "scipy", "numba", "pyarrow", "distributed")  # the numbers or the transport need them
+
+
+class PlanCarrier(WorkerPlugin):
+    """A pickled plan, which Dask hands to every worker, those that join later included.
+
+    A plan that every chunk depended on would draw all chunks to the worker that holds it, and scattered data die with
+    their workers.
+    """
+
+    def __init__(self, content: bytes) -> None:
+        self.content, self.plan, self.lock = content, None, None
+
+    def setup(self, worker: Any) -> None:  # noqa: ARG002
+        self.lock = Lock()
+
+    def load(self) -> Any:
+        """Return the plan, unpickled at the first call.
+
+        Raises
+        ------
+        InputError
+            If its modules cannot be imported here, or are other ones.
+        """
+        with self.lock or Lock():
+            if self.plan is None:
+                try:
+                    self.plan = pickle.loads(self.content)
+                except Exception as error:  # unpickling runs the modules' own code
+                    message = (
+                        f"The worker {_here()} cannot load the plan ({type(error).__name__}: {error}). Start the "
+                        "workers in the same environment, from which its modules can be imported."
+                    )
+                    raise InputError(message) from error
+            return self.plan
+
+
+def compute(name: str, number: int, versions: dict[str, str]) -> Any:
+    """Return a chunk of the plan that waits under `name`, if this worker has the right versions."""
+    refuse_other_versions(_here(), installed_versions(), versions)
+    plugin: Any = get_worker().plugins[name]
+    return plugin.load().chunk(number)
+
+
+def installed_versions() -> dict[str, str]:
+    """Return the version of Python and of each package that matters; "none" for one that is not installed."""
+    found = {"python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "none"
+    return found
+
+
+def refuse_other_versions(worker: str, there: dict[str, str], here: dict[str, str]) -> None:
+    """Raise an `InputError` that names every package whose version differs between a worker and the client."""
+    wrong = [f"{name} {there.get(name, 'none')} and not {here[name]}" for name in here if there.get(name) != here[name]]
+    if wrong:
+        message = (
+            f"The worker {worker} has {', '.join(wrong)}. Start the workers in the same environment as this process."
+        )
+        raise InputError(message)
+
+
+def _here() -> str:
+    return get_worker().address

@@ -1,0 +1,284 @@
+"""The folder of a study: opened, filled chunk by chunk, left at any moment and taken up again."""
+# pyright: reportUnknownParameterType=false
+# (pyarrow comes without types)
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self, SupportsIndex
+
+from rockflex._checks import whole_number
+from rockflex._errors import InputError
+from rockflex.store._durable import sweep, write_durable
+from rockflex.store._lock import Lock
+from rockflex.store._manifest import MANIFEST, SPEC, Manifest
+from rockflex.store._parts import PartError, encode, read, schema_of, verify
+from rockflex.store._refusals import refuse_foreign, refuse_other_columns, reported
+from rockflex.store._spec import listed
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+
+__all__ = ["DamagedPart", "StudyFolder"]
+
+PARTS, LOCK = "parts", "lock"
+
+
+@dataclass(frozen=True)
+class DamagedPart:
+    """A part that cannot be used: `number` of the chunk, `path` of the file, and the `reason`."""
+
+    number: int
+    path: Path
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.reason}"
+
+
+@dataclass(frozen=True)
+class StudyFolder:
+    """A study on disk, one Parquet file a chunk.
+
+    Made by `open`, to write, or `load`, to read. Of what is written, every file is whole or absent at every moment;
+    whoever reads ``parts/*.parquet`` with another program sees finished chunks only.
+
+    Use it as a context, or call `close`, to let another process in.
+    """
+
+    path: Path
+    manifest: Manifest
+    lock: Lock | None = None
+
+    @classmethod
+    def open(
+        cls,
+        path: str | Path,
+        spec: Mapping[str, Any],
+        n_chunks: SupportsIndex,
+        versions: Mapping[str, str],
+        checksums: Mapping[str, str] | None = None,
+        *,
+        any_version: bool = False,
+    ) -> Self:
+        """Make the folder of a study, or open the one that an earlier call made, to write into it.
+
+        Parameters
+        ----------
+        path
+            The folder; absent, empty, or a study with this very specification.
+        spec
+            The study's specification: whatever its results depend on, as plain JSON values.
+        n_chunks
+            Number of chunks, at least 1.
+        versions
+            Version of each library that the numbers depend on, by name.
+        checksums
+            Checksum of each record that the study uses, by name.
+        any_version
+            Go on with other versions than the study was begun with. Every part names its own.
+
+        Raises
+        ------
+        InputError
+            If the folder holds another study, other records or another program's files, was begun with other versions,
+            is in use by another process, or cannot be written.
+        """
+        folder = Path(path)
+        given = Manifest.of(spec, n_chunks, versions, checksums or {})
+        with reported(folder):
+            if not (folder / MANIFEST).exists():
+                refuse_foreign(folder, {PARTS, LOCK, SPEC})
+            (folder / PARTS).mkdir(parents=True, exist_ok=True)
+            lock = Lock.acquire(folder / LOCK)
+            try:
+                sweep(folder, "*.json")
+                sweep(folder / PARTS, "part-*.parquet")
+                if not (folder / MANIFEST).exists():
+                    given.write(folder)
+                stored = Manifest.read(folder)
+                stored.accept(given, folder, any_version=any_version)
+                study = cls(folder, replace(stored, versions=given.versions), lock)
+                study._refuse_strays()
+            except BaseException:
+                lock.release()
+                raise
+        return study
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Open the folder of a study to read it, also while another process fills it.
+
+        Raises
+        ------
+        InputError
+            If there is no study at `path`, or it is damaged.
+        """
+        folder = Path(path)
+        with reported(folder):
+            if not (folder / MANIFEST).is_file():
+                message = (
+                    f"There is no study at {folder}: it has no {MANIFEST}. Give the folder that a study was run in."
+                )
+                raise InputError(message)
+            study = cls(folder, Manifest.read(folder))
+            study._refuse_strays()
+        return study
+
+    @property
+    def spec(self) -> dict[str, Any]:
+        """The study's specification."""
+        return self.manifest.spec
+
+    @property
+    def n_chunks(self) -> int:
+        """Number of parts of the complete study."""
+        return self.manifest.n_chunks
+
+    @property
+    def finished(self) -> bool:
+        """Whether every part is there and intact."""
+        return not self.missing()
+
+    def damaged(self) -> list[DamagedPart]:
+        """Return the parts that are there and cannot be used; running the study again replaces them."""
+        found: list[DamagedPart] = []
+        for number in range(self.n_chunks):
+            path = self._part(number)
+            try:
+                if path.exists():
+                    verify(path, self.manifest.study, number)
+            except (PartError, OSError) as error:
+                found.append(DamagedPart(number, path, str(error)))
+        return found
+
+    def missing(self) -> list[int]:
+        """Return the numbers of the chunks that are absent or damaged, in order."""
+        damaged = {part.number for part in self.damaged()}
+        return [number for number in range(self.n_chunks) if number in damaged or not self._part(number).exists()]
+
+    def write(self, number: SupportsIndex, table: "pa.Table") -> Path:
+        """Write the table of one chunk; once this returns, it outlasts a loss of power.
+
+        Parameters
+        ----------
+        number
+            Number of the chunk, from 0.
+        table
+            Its runs; names and types of the columns as in all other chunks.
+
+        Raises
+        ------
+        InputError
+            If the number or the columns do not fit, the folder was opened to read, or the disk is full. The parts
+            already written are kept, and nothing is left of this one.
+        """
+        import pyarrow as pa
+
+        place = whole_number("number", number, 0, self.n_chunks - 1)
+        if not isinstance(table, pa.Table):
+            message = f"A chunk must be a pyarrow.Table, but {type(table).__name__} was given."
+            raise InputError(message)
+        if self.lock is None:
+            message = f"{self.path} was opened to read. Open it by StudyFolder.open, with its specification, to write."
+            raise InputError(message)
+        self.lock.check()
+        content = encode(table, self.manifest.study, place, self.manifest.versions)
+        self._refuse_other_columns(place, schema_of(content))
+        with reported(self.path, len(content)):
+            return write_durable(self._part(place), content)
+
+    def table(self, *, partial: bool = False) -> "pa.Table":
+        """Return all parts as one table, in the order of the chunks.
+
+        Parameters
+        ----------
+        partial
+            Take the parts that are there, at least one, instead of raising if some are missing.
+
+        Raises
+        ------
+        InputError
+            If a part is missing, damaged, or has other columns than the first.
+        """
+        import pyarrow as pa
+
+        self._refuse_strays()
+        tables: dict[int, pa.Table] = {}
+        for number in range(self.n_chunks):
+            path = self._part(number)
+            try:
+                if path.exists():
+                    tables[number] = read(path, self.manifest.study, number)
+            except (PartError, OSError) as error:
+                message = (
+                    f"{path} is damaged: {error}. Run the study again in this folder, which computes this part anew "
+                    "and keeps the others; or delete the file and load with partial=True."
+                )
+                raise InputError(message) from error
+        absent = self.n_chunks - len(tables)
+        if not tables or (absent and not partial):
+            hint = "" if not tables else ", or take what is there by partial=True"
+            message = f"{absent} of {self.n_chunks} parts of {self.path} are missing. Run the study to its end{hint}."
+            raise InputError(message)
+        first = next(iter(tables.values())).schema
+        for number, table in tables.items():
+            refuse_other_columns(self._part(number), first, table.schema)
+        metadata = {key: value for key, value in (first.metadata or {}).items() if not key.startswith(b"rockflex.")}
+        parts = [table.replace_schema_metadata(metadata) for table in tables.values()]
+        return pa.concat_tables(parts).unify_dictionaries()
+
+    def frame(self, *, partial: bool = False) -> "pd.DataFrame":
+        """Return `table` as a pandas DataFrame with a plain index.
+
+        Columns that came from pandas have the types that they had; of other tables, whole numbers and booleans become
+        types of pandas that know missing values. Raises as `table` does.
+        """
+        import pandas as pd
+        import pyarrow as pa
+
+        table = self.table(partial=partial)
+        if b"pandas" in (table.schema.metadata or {}):
+            return table.to_pandas().reset_index(drop=True)
+        widths = {pa.int8(): "Int8", pa.int16(): "Int16", pa.int32(): "Int32", pa.int64(): "Int64"}
+        kinds: dict[Any, Any] = {kind: pd.api.types.pandas_dtype(name) for kind, name in widths.items()}
+        return table.to_pandas(types_mapper=(kinds | {pa.bool_(): pd.BooleanDtype()}).get)
+
+    def close(self) -> None:
+        """Let another process write into the folder."""
+        if self.lock is not None:
+            self.lock.release()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _part(self, number: int) -> Path:
+        return self.path / PARTS / f"part-{number:05d}.parquet"
+
+    def _refuse_strays(self) -> None:
+        expected = {self._part(number).name for number in range(self.n_chunks)}
+        strays = sorted(path.name for path in (self.path / PARTS).glob("*.parquet") if path.name not in expected)
+        if strays:
+            message = (
+                f"In {self.path / PARTS} there are files of no part of the study:{listed(strays)}\nMove them away."
+            )
+            raise InputError(message)
+
+    def _refuse_other_columns(self, number: int, schema: "pa.Schema") -> None:
+        """Compare with the first intact part that is not the one to be written."""
+        for other in range(self.n_chunks):
+            path = self._part(other)
+            try:
+                if other == number or not path.exists():
+                    continue
+                refuse_other_columns(path, schema_of(verify(path, self.manifest.study, other)), schema, number)
+            except (PartError, OSError):
+                continue
+            return

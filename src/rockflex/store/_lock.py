@@ -1,0 +1,138 @@
+"""One process at a time: a file that names the process, its start and its host."""
+
+import json
+import os
+import platform
+import time
+import weakref
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Self
+from uuid import uuid4
+
+from rockflex._errors import InputError
+
+__all__ = ["Lock"]
+
+UNREADABLE_FOR = 1.0  # s; a file that stays empty for longer was left by a process killed between two calls
+
+
+@dataclass(frozen=True)
+class Lock:
+    """The right to write into a folder; given back by `release`, or when the object or the process ends in order."""
+
+    path: Path
+    content: str
+
+    @classmethod
+    def acquire(cls, path: Path) -> Self:
+        """Make the file, and take over one whose process is dead on this host.
+
+        Raises
+        ------
+        InputError
+            If a living process, or one on another host, holds it.
+        """
+        me = {"pid": os.getpid(), "start": _start(os.getpid()), "host": platform.node()}
+        since = datetime.now(UTC).isoformat(timespec="seconds")
+        content = json.dumps(me | {"since": since, "token": uuid4().hex})
+        while True:
+            try:
+                descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
+            except FileExistsError:
+                _take_away_if_stale(path)
+                continue
+            with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+                file.write(content)
+            lock = cls(path, content)
+            weakref.finalize(lock, _release, path, content)
+            return lock
+
+    def check(self) -> None:
+        """Raise an `InputError` if the file is no longer this lock's: released, deleted or taken over."""
+        if _text(self.path) != self.content:
+            message = (
+                f"The lock {self.path} is no longer held: the folder was closed, or the file was deleted or taken "
+                "over. What was written is kept. Open the study again."
+            )
+            raise InputError(message)
+
+    def release(self) -> None:
+        _release(self.path, self.content)
+
+
+def _release(path: Path, content: str) -> None:
+    # A forked child inherits the object, but not the right.
+    if json.loads(content)["pid"] == os.getpid() and _text(path) == content:
+        path.unlink(missing_ok=True)
+
+
+def _take_away_if_stale(path: Path) -> None:
+    text = _text(path)
+    holder = _parsed(text)
+    if holder is None:
+        try:
+            age = time.time() - path.stat().st_mtime
+        except FileNotFoundError:
+            return
+        if age < UNREADABLE_FOR:
+            time.sleep(0.05)
+            return
+    elif not _dead(holder):
+        message = (
+            f"{path.parent} is in use by process {holder['pid']} on {holder['host']} since {holder['since']}. "
+            f"Wait until it has finished, or end it. If it no longer runs, delete {path} and try again."
+        )
+        raise InputError(message)
+    aside = path.with_name(f".{path.name}.{uuid4().hex}")
+    try:
+        path.rename(aside)  # succeeds for one process only
+    except FileNotFoundError:
+        return
+    taken = _text(aside)
+    if taken == text:
+        aside.unlink()
+    else:  # another was faster and this is its new file
+        aside.rename(path)
+
+
+def _text(path: Path) -> str | None:
+    try:
+        return path.read_text("utf-8")
+    except FileNotFoundError:
+        return None
+
+
+def _parsed(text: str | None) -> dict[str, Any] | None:
+    try:
+        holder = json.loads(text or "")
+        return holder if {"pid", "start", "host", "since"} <= holder.keys() else None
+    except (ValueError, AttributeError):
+        return None
+
+
+def _dead(holder: dict[str, Any]) -> bool:
+    if holder["host"] != platform.node():
+        return False
+    start = _start(holder["pid"])
+    # A number is given to a new process in time; the start tells them apart.
+    return start is None or bool(start and holder["start"] and start != holder["start"])
+
+
+def _start(pid: int) -> str | None:
+    """When a process began, in ticks since the host did; empty where that is unknown, None if it is dead."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text("utf-8").rpartition(")")[2].split()
+        return None if fields[0] in "ZX" else fields[19]
+    except OSError:
+        pass
+    if os.name == "nt":  # where signal 0 is not a question
+        return ""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return None
+    except PermissionError:
+        pass
+    return ""

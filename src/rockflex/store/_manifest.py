@@ -1,0 +1,143 @@
+"""What a study's folder says of itself: the specification, and where its numbers come from."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Self, SupportsIndex
+
+from rockflex._checks import whole_number
+from rockflex._errors import InputError
+from rockflex.store._durable import write_durable
+from rockflex.store._spec import differences, listed, plain
+
+__all__ = ["MANIFEST", "SPEC", "Manifest"]
+
+FORMAT = "rockflex-study-1"
+MANIFEST, SPEC = "manifest.json", "spec.json"
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """Identity and origin of a study.
+
+    Parameters
+    ----------
+    spec
+        The study's specification, as plain JSON; kept in a file of its own.
+    study
+        Digest of the specification, the number of chunks and the checksums; every part carries it.
+    n_chunks
+        Number of parts of the complete study.
+    versions
+        Version of each library that the numbers depend on.
+    checksums
+        Checksum of each record, by name.
+    created
+        Date and time, UTC, ISO 8601.
+    """
+
+    spec: dict[str, Any]
+    study: str
+    n_chunks: int
+    versions: dict[str, Any]
+    checksums: dict[str, Any]
+    created: str
+
+    @classmethod
+    def of(
+        cls,
+        spec: Mapping[str, Any],
+        n_chunks: SupportsIndex,
+        versions: Mapping[str, str],
+        checksums: Mapping[str, str],
+    ) -> Self:
+        for name, given in (("spec", spec), ("versions", versions), ("checksums", checksums)):
+            if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
+                message = f"{name} must be a mapping, but {type(given).__name__} was given."
+                raise InputError(message)
+        count = whole_number("n_chunks", n_chunks, 1)
+        content, sums = plain("spec", spec), plain("checksums", checksums)
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        return cls(content, _digest(content, count, sums), count, plain("versions", versions), sums, now)
+
+    def write(self, folder: Path) -> None:
+        """Write both files; that of the manifest last, as its presence makes the folder a study."""
+        origin = {"format": FORMAT, **asdict(self), "seed": self.spec.get("seed")}
+        del origin["spec"]
+        write_durable(folder / SPEC, _encoded(self.spec))
+        write_durable(folder / MANIFEST, _encoded(origin))
+
+    @classmethod
+    def read(cls, folder: Path) -> Self:
+        """Read what `write` wrote.
+
+        Raises
+        ------
+        InputError
+            If a file is missing, damaged, changed by hand or of another format.
+        """
+        path = folder / MANIFEST
+        try:
+            origin = json.loads(path.read_text("utf-8"))
+            spec = json.loads((folder / SPEC).read_text("utf-8"))
+            known = origin.pop("format")
+            if known == FORMAT:
+                del origin["seed"]
+                manifest = cls(spec=spec, **origin)
+                intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
+                if intact:
+                    return manifest
+        except (ValueError, TypeError, KeyError, AttributeError, FileNotFoundError) as error:
+            reason = f"{type(error).__name__}: {error}"
+            message = (
+                f"{path} or the {SPEC} beside it is damaged ({reason}). Restore both from a copy, "
+                f"or give another folder; the results in {folder / 'parts'} can still be read as Parquet."
+            )
+            raise InputError(message) from error
+        if known != FORMAT:
+            message = (
+                f"{path} has the format {known!r}, but this version of rockflex reads {FORMAT!r}. "
+                "Use the version that wrote it."
+            )
+            raise InputError(message)
+        message = f"{folder / SPEC} was changed after the study began. Undo the change, or give another folder."
+        raise InputError(message)
+
+    def accept(self, given: "Manifest", folder: Path, *, any_version: bool) -> None:
+        """Raise an `InputError` that says what differs if `given` is not this study."""
+        changed = differences(self.spec, given.spec)
+        if self.n_chunks != given.n_chunks:
+            changed.append(f"number of chunks: {self.n_chunks} in the folder, {given.n_chunks} now")
+        if changed:
+            message = (
+                f"{folder} holds another study. What differs:{listed(changed)}\n"
+                "Give another folder for this study, or the folder's own specification to go on with it."
+            )
+            raise InputError(message)
+        changed = differences(self.checksums, given.checksums)
+        if changed:
+            message = (
+                f"{folder} holds this study with other records. Checksums that differ:{listed(changed)}\n"
+                "Use the same record files, or give another folder."
+            )
+            raise InputError(message)
+        changed = differences(self.versions, given.versions)
+        if changed and not any_version:
+            message = (
+                f"{folder} was begun with other versions, whose numbers may differ in the last digits:"
+                f"{listed(changed)}\n"
+                "Install those versions, give another folder, or pass any_version=True to mix them."
+            )
+            raise InputError(message)
+
+
+def _encoded(content: dict[str, Any]) -> bytes:
+    return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
+
+
+def _digest(spec: dict[str, Any], n_chunks: int, checksums: dict[str, Any]) -> str:
+    canonical = json.dumps([spec, n_chunks, checksums], sort_keys=True)
+    return hashlib.sha256(canonical.encode()).hexdigest()[:32]

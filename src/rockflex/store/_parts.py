@@ -1,0 +1,89 @@
+"""One chunk as a Parquet file that knows its study, its place and the checksum of all its bytes."""
+# pyright: reportUnknownParameterType=false
+# (pyarrow comes without types)
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zlib import crc32
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+__all__ = ["PartError", "encode", "read", "schema_of", "verify"]
+
+# The checksum stands in the footer, as a value of fixed length: it is taken with zeros in its own place.
+MARKER, BLANK = b"rockflex-crc32:", b"00000000"
+
+
+class PartError(Exception):
+    """Why a file is not the part that it should be."""
+
+
+def encode(table: "pa.Table", study: str, number: int, versions: dict[str, Any]) -> bytes:
+    """Return the content of the part's file."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    origin = {"rockflex.study": study, "rockflex.chunk": str(number), "rockflex.versions": json.dumps(versions)}
+    sink = pa.BufferOutputStream()
+    with parquet.ParquetWriter(sink, table.schema, compression="zstd") as writer:
+        writer.write_table(table)
+        writer.add_key_value_metadata({**origin, "rockflex.checksum": (MARKER + BLANK).decode()})
+    content = sink.getvalue().to_pybytes()
+    return _sealed(content, b"%08x" % crc32(content))
+
+
+def verify(path: Path, study: str, number: int) -> bytes:
+    """Return the content of the part's file.
+
+    Raises
+    ------
+    PartError
+        If it is cut short, damaged, not a part, or a part of another study or place.
+    """
+    content = path.read_bytes()
+    if content[:4] != b"PAR1" or content[-4:] != b"PAR1" or len(content) < 12:
+        message = f"it is no whole Parquet file, but {len(content)} bytes"
+        raise PartError(message)
+    place = content.rfind(MARKER)
+    if place < 0:
+        message = "it is a Parquet file that carries no checksum, so that no study wrote it"
+        raise PartError(message)
+    recorded = content[place + len(MARKER) :][:8]
+    if recorded != b"%08x" % crc32(_sealed(content, BLANK)):
+        message = "its bytes do not agree with their checksum"
+        raise PartError(message)
+    origin = _origin(content)
+    if origin.get(b"rockflex.study") != study.encode():
+        message = "it belongs to another study"
+        raise PartError(message)
+    if origin.get(b"rockflex.chunk") != str(number).encode():
+        message = f"it holds chunk {origin.get(b'rockflex.chunk', b'?').decode()}"
+        raise PartError(message)
+    return content
+
+
+def read(path: Path, study: str, number: int) -> "pa.Table":
+    """Return the table of a part; raises as `verify` does."""
+    from pyarrow import BufferReader, parquet
+
+    return parquet.ParquetFile(BufferReader(verify(path, study, number))).read()
+
+
+def schema_of(content: bytes) -> "pa.Schema":
+    """Return the columns and types that a reader of the file will see."""
+    from pyarrow import BufferReader, parquet
+
+    return parquet.read_schema(BufferReader(content))
+
+
+def _sealed(content: bytes, checksum: bytes) -> bytes:
+    place = content.rindex(MARKER) + len(MARKER)
+    return content[:place] + checksum + content[place + len(checksum) :]
+
+
+def _origin(content: bytes) -> dict[bytes, bytes]:
+    from pyarrow import BufferReader, parquet
+
+    return parquet.read_metadata(BufferReader(content)).metadata or {}

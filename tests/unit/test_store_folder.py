@@ -1,0 +1,284 @@
+"""A study's folder: made, refused, filled, read."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import duckdb
+import numpy as np
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pytest
+
+from rockflex import InputError
+from rockflex.store import StudyFolder, _durable
+from toy_study import SPEC, VERSIONS, ToyPlan, opened, run_study
+
+PLAN = ToyPlan(n_chunks=4, rows=30)
+
+
+@pytest.fixture
+def done(tmp_path: Path) -> Path:
+    run_study(str(tmp_path / "study"), PLAN)
+    return tmp_path / "study"
+
+
+def test_a_new_folder_says_what_it_is(tmp_path: Path) -> None:
+    with opened(str(tmp_path / "deep" / "study"), PLAN) as folder:
+        assert folder.missing() == [0, 1, 2, 3]
+        assert not folder.finished
+    manifest = json.loads((folder.path / "manifest.json").read_text())
+    assert manifest["format"] == "rockflex-study-1"
+    assert manifest["versions"] == VERSIONS
+    assert manifest["checksums"] == {"record": "abc"}
+    assert (manifest["seed"], manifest["n_chunks"]) == (7, 4)
+    assert manifest["created"].endswith("+00:00")
+    assert json.loads((folder.path / "spec.json").read_text()) == SPEC
+    assert sorted(path.name for path in folder.path.iterdir()) == ["manifest.json", "parts", "spec.json"]
+
+
+def test_the_table_comes_back_in_order_and_with_its_types(done: Path) -> None:
+    folder = StudyFolder.load(done)
+    assert folder.finished
+    assert folder.spec == SPEC
+    assert sorted(path.name for path in (done / "parts").iterdir()) == [f"part-0000{i}.parquet" for i in range(4)]
+    pd.testing.assert_frame_equal(folder.frame(), PLAN.whole())
+    assert folder.table().column_names == list(PLAN.whole())
+
+
+def test_a_written_order_does_not_matter(tmp_path: Path) -> None:
+    with opened(str(tmp_path), PLAN) as folder:
+        for number in (2, 0, 3, 1):
+            path = folder.write(np.int64(number), PLAN.chunk(number))
+            assert path == tmp_path / "parts" / f"part-0000{number}.parquet"
+        pd.testing.assert_frame_equal(folder.frame(), PLAN.whole())
+
+
+def test_pandas_polars_and_duckdb_read_the_parts(done: Path) -> None:
+    files, whole = str(done / "parts" / "*.parquet"), PLAN.whole()
+    pandas = pd.read_parquet(done / "parts")
+    pd.testing.assert_frame_equal(pandas, whole)
+    polars = pl.read_parquet(files)
+    assert polars["max_rotation"].to_numpy().tobytes() == whole["max_rotation"].to_numpy().tobytes()
+    assert polars["n_impacts"].null_count() == whole["n_impacts"].isna().sum()
+    assert polars["status"].to_list() == [None if pd.isna(each) else each for each in whole["status"]]
+    query = f"select status, count(*) n, sum(n_impacts) s from '{files}' group by status order by status nulls last"
+    counted = whole.groupby("status", observed=True)["n_impacts"].agg(["size", "sum"])
+    rows = duckdb.sql(query).fetchall()
+    assert rows[:-1] == [(name, *map(int, counted.loc[name])) for name in counted.index]
+    assert rows[-1] == (None, int(whole["status"].isna().sum()), None)
+
+
+def test_an_index_of_pandas_and_a_plain_table_are_read_too(tmp_path: Path) -> None:
+    with StudyFolder.open(tmp_path / "a", {}, 2, VERSIONS) as folder:
+        for number in range(2):
+            frame = pd.DataFrame({"x": [1.0, 2.0]}, index=pd.RangeIndex(2 * number, 2 * number + 2))
+            folder.write(number, pa.Table.from_pandas(frame))
+        pd.testing.assert_frame_equal(folder.frame(), pd.DataFrame({"x": [1.0, 2.0, 1.0, 2.0]}))
+    with StudyFolder.open(tmp_path / "b", {}, 2, VERSIONS) as folder:
+        folder.write(0, pa.table({"n": pa.array([1, None], pa.int32()), "f": pa.array([True, None])}))
+        folder.write(1, pa.table({"n": pa.array([1, 2], pa.int32()), "f": pa.array([True, False])}))
+        assert [str(kind) for kind in folder.frame().dtypes] == ["Int32", "boolean"]
+
+
+def test_a_finished_study_computes_nothing_again(done: Path) -> None:
+    assert run_study(str(done), PLAN) == []
+
+
+def test_an_unfinished_study_is_partial(tmp_path: Path) -> None:
+    with opened(str(tmp_path), PLAN) as folder:
+        with pytest.raises(InputError, match=r"4 of 4 parts of .* are missing. Run the study to its end\.$"):
+            folder.table(partial=True)
+        folder.write(2, PLAN.chunk(2))
+        with pytest.raises(InputError, match=r"3 of 4 parts of .* are missing. .* by partial=True"):
+            folder.table()
+        pd.testing.assert_frame_equal(folder.frame(partial=True), PLAN.frame(2))
+        assert folder.missing() == [0, 1, 3]
+
+
+def test_another_spec_is_refused_with_what_differs(done: Path) -> None:
+    spec = {"seed": 8, "structure": {"period": 1.25, "base": "stiff"}, "scales": [0.5, 1.0, 2.0]}
+    with pytest.raises(InputError) as caught:
+        StudyFolder.open(done, spec, 5, VERSIONS, {"record": "abc"})
+    assert str(caught.value).splitlines()[1:-1] == [
+        "  seed: 7 in the folder, 8 now",
+        "  structure.period: 1.0 in the folder, 1.25 now",
+        "  structure.stiffness_ratio: Infinity in the folder, not given now",
+        '  structure.base: not in the folder, "stiff" now',
+        "  scales: 2 entries in the folder, 3 now",
+        "  number of chunks: 4 in the folder, 5 now",
+    ]
+    assert "holds another study" in str(caught.value)
+    opened(str(done), PLAN).close()  # the refusal left no lock
+
+
+def test_equal_numbers_are_no_difference(tmp_path: Path) -> None:
+    spec = {"a": 1, "b": [2.0, float("nan")], "c": (True, None)}
+    StudyFolder.open(tmp_path, spec, 1, VERSIONS).close()
+    StudyFolder.open(tmp_path, {"c": [True, None], "a": 1.0, "b": (2, float("nan"))}, 1, VERSIONS).close()
+    with pytest.raises(InputError, match=r"c\[0\]: true in the folder, 1 now"):
+        StudyFolder.open(tmp_path, spec | {"c": [1, None]}, 1, VERSIONS)
+
+
+def test_many_and_long_differences_are_cut(tmp_path: Path) -> None:
+    StudyFolder.open(tmp_path, {"v": [0] * 30, "t": "x" * 100}, 1, VERSIONS).close()
+    with pytest.raises(InputError) as caught:
+        StudyFolder.open(tmp_path, {"v": [1] * 30, "t": "y"}, 1, VERSIONS)
+    lines = str(caught.value).splitlines()
+    assert lines[10:12] == ["  v[9]: 0 in the folder, 1 now", "  and 21 more"]
+
+
+def test_other_records_are_refused(done: Path) -> None:
+    with pytest.raises(InputError, match=r'with other records.*\n  record: "abc" in the folder, "abd" now'):
+        StudyFolder.open(done, SPEC, 4, VERSIONS, {"record": "abd"})
+
+
+def test_other_versions_are_refused_unless_they_may_mix(done: Path) -> None:
+    newer = VERSIONS | {"rockflex": "0.2.0"}
+    with pytest.raises(InputError, match=r'rockflex: "0.1.0" in the folder, "0.2.0" now\n.*any_version=True'):
+        StudyFolder.open(done, SPEC, 4, newer, {"record": "abc"})
+    part = done / "parts" / "part-00001.parquet"
+    part.unlink()
+    with StudyFolder.open(done, SPEC, 4, newer, {"record": "abc"}, any_version=True) as folder:
+        folder.write(1, PLAN.chunk(1))
+    origin = pa.parquet.read_metadata(part).metadata
+    assert json.loads(origin[b"rockflex.versions"]) == newer
+    assert json.loads((done / "manifest.json").read_text())["versions"] == VERSIONS
+    pd.testing.assert_frame_equal(StudyFolder.load(done).frame(), PLAN.whole())
+
+
+def test_what_is_no_study_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "thesis.tex").write_text("x")
+    with pytest.raises(InputError, match=r"file is a file\. Give a folder"):
+        opened(str(tmp_path / "file"), PLAN)
+    with pytest.raises(InputError, match=r"cannot be used: Not a directory"):
+        opened(str(tmp_path / "file" / "below"), PLAN)
+    with pytest.raises(InputError, match=r"is no study, and not empty \('thesis.tex' is in it\)"):
+        opened(str(tmp_path / "other"), PLAN)
+    assert [path.name for path in (tmp_path / "other").iterdir()] == ["thesis.tex"]
+    for name in ("other", "file", "nothing"):
+        with pytest.raises(InputError, match=r"There is no study at .*: it has no manifest.json"):
+            StudyFolder.load(tmp_path / name)
+
+
+def test_a_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "mkdir", refuse)
+    with pytest.raises(InputError, match=r"cannot be used: Permission denied\. Give a folder that you may write into"):
+        opened(str(tmp_path / "study"), PLAN)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"spec": {"a": {"b": [1, np.float32(2)]}}}, r"spec\.a\.b\[1\] is of type float32, .* \.tolist\(\)"),
+        ({"spec": {1: 2}}, r"keys of spec must be strings, but 1 was given"),
+        ({"spec": [1]}, r"spec must be a mapping, but list was given"),
+        ({"n_chunks": 0}, r"n_chunks must be a whole number of at least 1"),
+        ({"versions": None}, r"versions must be a mapping"),
+        ({"checksums": {"a": {1}}}, r"checksums\.a is of type set"),
+    ],
+)
+def test_bad_arguments_leave_nothing(tmp_path: Path, given: dict, message: str) -> None:
+    arguments = {"spec": SPEC, "n_chunks": 2, "versions": VERSIONS} | given
+    with pytest.raises(InputError, match=message):
+        StudyFolder.open(tmp_path / "study", **arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bad_chunks_are_refused(tmp_path: Path) -> None:
+    with opened(str(tmp_path), PLAN) as folder:
+        with pytest.raises(InputError, match=r"number must be a whole number from 0 to 3, but 4 was given"):
+            folder.write(4, PLAN.chunk(3))
+        with pytest.raises(InputError, match=r"must be a pyarrow.Table, but DataFrame was given"):
+            folder.write(0, PLAN.frame(0))
+        folder.write(1, PLAN.chunk(1))
+        other = PLAN.chunk(0)
+        retyped = other.set_column(0, "structure", other["structure"].cast(pa.int64()))
+        retyped = retyped.append_column("y", other["error"])
+        with pytest.raises(InputError) as caught:
+            folder.write(0, retyped.drop_columns(["error"]))
+        lines = str(caught.value).splitlines()
+        assert lines[0] == f"Chunk 0 has other columns than {tmp_path / 'parts' / 'part-00001.parquet'}:"
+        assert lines[1:4] == ["  structure: int32, int64", "  error: large_string, None", "  y: None, large_string"]
+        with pytest.raises(InputError, match="the order of the columns"):
+            folder.write(0, other.select(list(reversed(other.column_names))))
+        assert folder.missing() == [0, 2, 3]
+        folder.write(1, retyped)  # the only part may be replaced
+    with pytest.raises(InputError, match="was opened to read"):
+        StudyFolder.load(tmp_path).write(0, other)
+
+
+def test_changed_files_are_seen(done: Path) -> None:
+    spec, manifest = done / "spec.json", done / "manifest.json"
+    kept = spec.read_text(), manifest.read_text()
+    spec.write_text(kept[0].replace("1.0", "2.0"))
+    with pytest.raises(InputError, match=r"spec.json was changed after the study began\. Undo"):
+        StudyFolder.load(done)
+    spec.write_text(kept[0][:-5])
+    with pytest.raises(InputError, match=r"spec.json beside it is damaged \(JSONDecodeError"):
+        StudyFolder.load(done)
+    spec.write_text(kept[0])
+    for content in ("", "[]", "{}", '{"format": "rockflex-study-1"}', kept[1][:50]):
+        manifest.write_text(content)
+        with pytest.raises(InputError, match=r"damaged \(.*Restore both from a copy"):
+            StudyFolder.load(done)
+    manifest.write_text(kept[1].replace("study-1", "study-9"))
+    with pytest.raises(InputError, match=r"has the format 'rockflex-study-9', but .* reads 'rockflex-study-1'"):
+        opened(str(done), PLAN)
+    manifest.write_text(kept[1])
+    (done / "parts" / "part-00004.parquet").write_bytes(b"")
+    for attempt in (StudyFolder.load, lambda path: opened(str(path), PLAN)):
+        with pytest.raises(InputError, match=r"files of no part of the study:\n  part-00004.parquet\nMove them"):
+            attempt(done)
+
+
+def test_what_a_kill_left_is_swept(done: Path) -> None:
+    (done / "parts" / ".part-00002.parquet.12-abc").write_bytes(b"half")
+    (done / ".spec.json.12-abc").write_bytes(b"half")
+    (done / "manifest.json").unlink()  # killed before the folder became a study
+    opened(str(done), PLAN).close()
+    assert list(done.rglob(".*")) == []
+    assert StudyFolder.load(done).finished
+
+
+def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with opened(str(tmp_path), PLAN) as folder:
+        folder.write(0, PLAN.chunk(0))
+
+        def full(_: int) -> None:
+            raise OSError(28, "No space left on device")
+
+        monkeypatch.setattr(_durable.os, "fsync", full)
+        with pytest.raises(InputError, match=r"No room on the disk of .*: 0\.\d+ MB .* MB are free \(No space left on"):
+            folder.write(1, PLAN.chunk(1))
+        monkeypatch.undo()
+        assert [path.name for path in (tmp_path / "parts").iterdir()] == ["part-00000.parquet"]
+        assert folder.missing() == [1, 2, 3]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="limits of resources are of POSIX")
+def test_a_limit_on_the_size_of_files_is_met_like_a_full_disk(tmp_path: Path) -> None:
+    program = (
+        "import resource, sys; from toy_study import *\n"
+        "with opened(sys.argv[1], ToyPlan(4)) as folder:\n"
+        "    folder.write(0, ToyPlan(4).chunk(0))\n"
+        "    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))\n"
+        "    folder.write(1, ToyPlan(4, rows=3000).chunk(1))\n"
+    )
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[1])}
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path)], capture_output=True, text=True, env=environment, check=False
+    )
+    assert "InputError: No room on the disk" in done.stderr
+    assert "(File too large). The parts already written are kept." in done.stderr
+    assert [path.name for path in (tmp_path / "parts").iterdir()] == ["part-00000.parquet"]
+    assert sorted(run_study(str(tmp_path), replace(PLAN, rows=50))) == [1, 2, 3]
