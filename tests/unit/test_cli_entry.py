@@ -23,7 +23,7 @@ def python(*arguments, **variables):
     )
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["modes", "-h"], ["motion", "-h"], ["--version"]])
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["modes", "-h"], ["motion", "-h"], ["cloud", "-h"], ["--version"]])
 def test_help_imports_nothing_heavy(arguments):
     code = f"""
 import sys

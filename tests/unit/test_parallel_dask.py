@@ -40,13 +40,6 @@ def test_the_parts_are_those_of_a_local_study_to_the_last_bit(tmp_path: Path, cl
     pd.testing.assert_frame_equal(StudyFolder.load(there).frame(), plan.whole())
 
 
-def test_both_workers_take_part(cluster: Cluster) -> None:
-    begin = time.monotonic()
-    with contextlib.closing(map_dask(ToyPlan(delay=0.25), range(8), cluster.address)) as results:
-        assert sorted(number for number, _ in results) == list(range(8))
-    assert 4 * 0.25 < time.monotonic() - begin < 6 * 0.25
-
-
 def test_few_chunks_are_in_flight(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
     sent: list[int] = []
     real = distributed.Client.submit

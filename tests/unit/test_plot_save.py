@@ -1,7 +1,6 @@
 import os
 import stat
 import struct
-from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
@@ -75,13 +74,11 @@ def test_a_full_disk_leaves_the_old_file(figure, tmp_path, monkeypatch):
     path = save_figure(figure, tmp_path / "a.png")
     before = path.read_bytes()
 
-    def fill(self, data):
-        with self.open("wb") as file:
-            file.write(data[:10])
+    def fill(_descriptor):
         message = "No space left on device"
         raise OSError(message)
 
-    monkeypatch.setattr(Path, "write_bytes", fill)
+    monkeypatch.setattr("os.fsync", fill)
     with pytest.raises(OSError, match="No space left"):
         save_figure(figure, path)
     assert path.read_bytes() == before

@@ -14,8 +14,8 @@ import polars as pl
 import pyarrow as pa
 import pytest
 
-from rockflex import InputError
-from rockflex.store import StudyFolder, _durable
+from rockflex import InputError, _files
+from rockflex.store import StudyFolder
 from toy_study import SPEC, VERSIONS, ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=4, rows=30)
@@ -257,7 +257,7 @@ def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: py
         def full(_: int) -> None:
             raise OSError(28, "No space left on device")
 
-        monkeypatch.setattr(_durable.os, "fsync", full)
+        monkeypatch.setattr(_files.os, "fsync", full)
         with pytest.raises(InputError, match=r"No room on the disk of .*: 0\.\d+ MB .* MB are free \(No space left on"):
             folder.write(1, PLAN.chunk(1))
         monkeypatch.undo()

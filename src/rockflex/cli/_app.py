@@ -8,7 +8,7 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _modes, _motion, _run
+from rockflex.cli import _figures, _modes, _motion, _run, _study
 from rockflex.cli._console import complain
 
 __all__ = ["app", "main"]
@@ -20,6 +20,10 @@ rockflex motion fema-p695-far-field
 rockflex modes structure.toml
 
 rockflex run structure.toml el-centro-1940 --model 2DOF-S,MDOF-S --scale 1.5 --out results
+
+rockflex cloud study.toml --out study
+
+rockflex figures study
 
 [bold]Exit codes[/bold]
 
@@ -51,6 +55,9 @@ app = typer.Typer(
 app.command("run", epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
 app.command("modes", epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
+for command in (_study.cloud, _study.ida, _study.stripes, _study.population):
+    app.command(command.__name__, epilog=_study.epilog(command.__name__), no_args_is_help=True)(command)
+app.command("figures", epilog=_figures.EPILOG, no_args_is_help=True)(_figures.figures)
 
 
 def _version(asked: bool) -> None:

@@ -9,7 +9,19 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-__all__ = ["complain", "fits", "grid", "moment_unit", "note", "number", "output", "progress", "show"]
+__all__ = [
+    "complain",
+    "duration",
+    "fits",
+    "grid",
+    "moment_unit",
+    "note",
+    "number",
+    "output",
+    "progress",
+    "show",
+    "study_progress",
+]
 
 
 def complain(message: str) -> None:
@@ -70,6 +82,37 @@ def progress(title: str, total: int | None = None) -> Generator[Callable[[int], 
     with Progress(console=console, transient=True) as bar:
         task = bar.add_task(title, total=total)
         yield lambda steps: bar.advance(task, steps)
+
+
+@contextmanager
+def study_progress(title: str) -> Generator[Callable[[int, int, int], None], None, None]:
+    """Show a bar with rate and time left on stderr, on a terminal only; what is given takes parts, done and runs."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda _parts, _done, _runs: None
+        return
+    from time import perf_counter
+
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    look = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[rate]}"))
+    with Progress(*look, TimeRemainingColumn(), console=console, transient=True) as bar:
+        task, begun = bar.add_task(title, total=None, rate=""), perf_counter()
+
+        def show(parts: int, done: int, runs: int) -> None:
+            rate = runs / max(perf_counter() - begun, 1e-9)
+            bar.update(task, total=parts, completed=done, rate=f"{rate:.0f} rows/s" if runs else "")
+
+        yield show
+
+
+def duration(seconds: float) -> str:
+    """Write a time as 0.8 s, 45 s, 12 min or 3.4 h."""
+    if seconds < 90.0:
+        return f"{seconds:.1f} s" if seconds < 10.0 else f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def fits(console: "Console", table: "Table") -> bool:

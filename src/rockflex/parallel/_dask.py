@@ -4,7 +4,7 @@
 
 import pickle
 import time
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from itertools import islice
@@ -41,7 +41,7 @@ def map_dask(
     *,
     retries: SupportsIndex = 2,
     patience: float = 600.0,
-) -> Iterator[tuple[int, "pa.Table"]]:
+) -> Generator[tuple[int, "pa.Table"]]:
     """Yield each number and ``plan.chunk(number)``, in order of completion, computed on a Dask cluster.
 
     The plan travels to every worker once, and to workers that join later. Chunks of a worker that dies are computed on

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
-from rockflex.store._durable import sweep, write_durable
+from rockflex._files import sweep, write_whole
 from rockflex.store._lock import Lock
 from rockflex.store._manifest import MANIFEST, SPEC, Manifest
 from rockflex.store._parts import PartError, encode, read, schema_of, verify
@@ -188,7 +188,7 @@ class StudyFolder:
         content = encode(table, self.manifest.study, place, self.manifest.versions)
         self._refuse_other_columns(place, schema_of(content))
         with reported(self.path, len(content)):
-            return write_durable(self._part(place), content)
+            return write_whole(self._part(place), content)
 
     def table(self, *, partial: bool = False) -> "pa.Table":
         """Return all parts as one table, in the order of the chunks.

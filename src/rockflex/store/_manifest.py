@@ -10,7 +10,7 @@ from typing import Any, Self, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
-from rockflex.store._durable import write_durable
+from rockflex._files import write_whole
 from rockflex.store._spec import differences, listed, plain
 
 __all__ = ["MANIFEST", "SPEC", "Manifest"]
@@ -67,8 +67,8 @@ class Manifest:
         """Write both files; that of the manifest last, as its presence makes the folder a study."""
         origin = {"format": FORMAT, **asdict(self), "seed": self.spec.get("seed")}
         del origin["spec"]
-        write_durable(folder / SPEC, _encoded(self.spec))
-        write_durable(folder / MANIFEST, _encoded(origin))
+        write_whole(folder / SPEC, _encoded(self.spec))
+        write_whole(folder / MANIFEST, _encoded(origin))
 
     @classmethod
     def read(cls, folder: Path) -> Self:

@@ -1,5 +1,7 @@
 """Studies: one run, the cross product of many, and spectra of what rocks."""
 
+from rockflex.study._conduct import Progress, estimate_time, run_study
+from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
 from rockflex.study._overturning import OverturningScales, overturning_scales, overturning_spectrum
 from rockflex.study._rocking_spectrum import rocking_spectrum
@@ -9,9 +11,13 @@ from rockflex.study._simulate_many import simulate_many
 __all__ = [
     "InitialState",
     "OverturningScales",
+    "Progress",
+    "estimate_time",
+    "frequency_ratios",
     "overturning_scales",
     "overturning_spectrum",
     "rocking_spectrum",
+    "run_study",
     "simulate",
     "simulate_many",
 ]

@@ -1,0 +1,180 @@
+"""What is printed of a study: its outcomes and its fits."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import typer
+
+from rockflex._errors import InputError, SolverError
+from rockflex.cli._console import duration, grid, note, number, output, show
+from rockflex.cli._output import to_json, versions
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockflex.fragility import CloudFit, LognormalFragility
+    from rockflex.study.plans import Study
+
+__all__ = ["summarise"]
+
+Rows = list[dict[str, Any]]
+PEAK_VELOCITY, PEAK_ACCELERATION = "pgv", "pga"
+
+
+def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bool) -> int:
+    """Print what a study found; return how many runs could not be solved."""
+    findings: dict[str, Callable[[Any, pd.DataFrame], Iterator[tuple[str, Rows]]]] = {
+        "cloud": _cloud,
+        "incremental": _incremental,
+        "stripes": _stripes,
+        "population": _population,
+    }
+    tables = dict(findings[study.study](study, table))
+    failed = int(table["error"].notna().sum())
+    document = {"versions": versions(), "study": study.document(), "rows": len(table), "failed": failed}
+    document |= {"elapsed": seconds, **tables}
+    if json:
+        typer.echo(to_json(document))
+    else:
+        _print(tables)
+        typer.echo(f"\n{len(table)} rows in {duration(seconds)}")
+    if failed:
+        first = table.loc[table["error"].notna(), "error"].iloc[0]
+        note(f"{failed} rows have an error, the first: {first}")
+    return failed
+
+
+def _print(tables: dict[str, Rows]) -> None:
+    console = output()
+    for place, (title, rows) in enumerate(tables.items()):
+        if not rows:
+            continue
+        console.print(("\n" if place else "") + title, style="bold", markup=False)
+        words = sum(isinstance(value, str) for value in rows[0].values())
+        show(console, grid(list(rows[0]), ([_cell(value) for value in row.values()] for row in rows), n_left=words))
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    if value is None:
+        return "-"
+    return str(int(value)) if isinstance(value, int | np.integer) else number(float(value))
+
+
+def _cloud(_: "Study", runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+    from rockflex.fragility import LogisticFit, fit_clouds
+
+    outcomes: Rows = []
+    lines: Rows = []
+    solved = runs.groupby(["structure", "model"], observed=True)["status"].transform("count") > 0
+    for (structure, model), lost in runs[~solved].groupby(["structure", "model"], observed=True, sort=False):
+        note(f"No run of {structure} with {model} was solved ({len(lost)} rows): it has no fit")
+    for fits in fit_clouds(runs[solved], PEAK_VELOCITY) if solved.any() else ():
+        name = {"structure": fits.structure, "model": fits.model}
+        o, curve = fits.outcomes, fits.outcomes.initiation
+        fitted = isinstance(curve, LogisticFit)
+        outcomes.append(
+            {
+                **name,
+                "no rocking": o.n_no_rocking,
+                "rocking": o.n_rocking,
+                "overturned": o.n_overturned,
+                "failed": fits.n_failed,
+                "PGV of P(rocking)=½ [m/s]": curve.median if fitted else None,
+                "spread [-]": curve.dispersion if fitted else None,
+                "fit": curve.method if fitted else "all alike",
+            }
+        )
+        lines.append({**name, **_line("θ_max", o.rotation), **_line("u_top", fits.top_displacement)})
+    yield "Outcomes, and P(θ_max > 1e-4 rad) by logistic regression on log PGV", _words_first(outcomes)
+    yield "log y = c1 + c2 log PGV of runs that rocked and stand (rad, m, m/s)", lines
+
+
+def _line(name: str, fit: "CloudFit | None") -> dict[str, Any]:
+    values = (None,) * 4 if fit is None else (fit.c1, fit.c2, fit.dispersion, fit.r2)
+    return dict(zip((f"{name} c1", f"{name} c2", f"{name} spread", f"{name} R²"), values, strict=True))
+
+
+def _words_first(rows: Rows) -> Rows:
+    return [dict(sorted(row.items(), key=lambda item: not isinstance(item[1], str))) for row in rows]
+
+
+def _incremental(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+    from rockflex.fragility import fit_capacities
+    from rockflex.study.plans import incremental_capacities
+
+    rows: Rows = []
+    for measure in (PEAK_ACCELERATION, PEAK_VELOCITY):
+        capacities = incremental_capacities(runs, measure).dropna(subset=["capacity"])
+        for (structure, model), each in capacities.groupby(["structure", "model"], observed=True, sort=False):
+            fit = _fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]))
+            rows.append(
+                {
+                    "structure": str(structure),
+                    "model": str(model),
+                    "measure": measure.upper(),
+                    "records": len(each),
+                    "never overturned": int(each["censored"].sum()),
+                    "resurrections": int(each["resurrections"].sum()),
+                    "median [SI]": fit and fit.median,
+                    "β": fit and fit.beta,
+                }
+            )
+    limit = "|θ| = π/2" if study.limit == "overturning" else "0.7 atan(B/h*_1)"
+    yield f"Capacities to {limit}, lognormal", rows
+
+
+def _stripes(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+    from rockflex.fragility import fit_stripes
+    from rockflex.study.plans import stripe_counts
+
+    fits: Rows = []
+    counts: Rows = []
+    for limit, title in (("uplift", "uplift"), ("nominal", "0.7 atan(B/h*_1)"), ("overturning", "overturning")):
+        counted = stripe_counts(runs, limit)  # pyright: ignore[reportArgumentType]
+        for (structure, model), each in counted.groupby(["structure", "model"], observed=True, sort=False):
+            fit = _fitted(lambda each=each: fit_stripes(each["level"], each["n_exceeding"], each["n_total"]))
+            name = {"limit": title, "structure": str(structure), "model": str(model)}
+            fits.append({**name, "median": fit and fit.median, "β": fit and fit.beta})
+            levels = zip(each["level"], each["n_exceeding"], each["n_total"], strict=True)
+            counts.append({**name, **{f"{level:g}": f"{n}/{total}" for level, n, total in levels}})
+    yield f"Runs beyond the limit at each level of {study.measure}", counts
+    yield f"Fragility by maximum likelihood, lognormal in {study.measure}", fits
+
+
+def _fitted(fit: "Callable[[], LognormalFragility]") -> "LognormalFragility | None":
+    """The fit, or None with a note where the data give none."""
+    try:
+        return fit()
+    except (InputError, SolverError) as error:
+        note(f"No fit: {error}")
+        return None
+
+
+def _population(_: "Study", pairs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+    from rockflex.study.plans import population_statistics
+
+    found = population_statistics(pairs)
+    outcomes = found.outcomes.reset_index(names="MDOF-S \\ 2DOF-S")
+    yield "Pairs by outcome", [_named(row) for row in outcomes.to_dict("records")]
+    columns = ["n", "r2", "r2_low", "r2_high", "slope", "slope_low", "slope_high", "r2_line"]
+    for title, frame, words in (
+        ("MDOF-S against 2DOF-S (Section 3.3), 90 % intervals", found.agreement, ["group", "quantity", "behaviour"]),
+        ("Modal combination (Section 3.4), 90 % intervals", found.combination, ["quantity", "estimate"]),
+    ):
+        yield title, [_named(row) for row in frame[[*words, *columns]].to_dict("records")]
+    shown = ["pair", "n_stories", "behaviour", "aspect_ratio", "period", "record", "pgv"]
+    shown += ["max_rotation_mdof", "max_rotation_2dof", "share"]
+    rows: Sequence[dict[Any, Any]] = found.outliers[shown].to_dict("records")
+    yield "Largest disagreements in rotation", _words_first([_named(row) for row in rows])
+
+
+def _named(row: dict[Any, Any]) -> dict[str, Any]:
+    plain: dict[str, Any] = {}
+    for key, value in row.items():
+        missing = value is None or (isinstance(value, float) and math.isnan(value))
+        plain[str(key)] = None if missing else value if isinstance(value, int | float) else str(value)
+    return plain

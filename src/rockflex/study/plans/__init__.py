@@ -1,0 +1,45 @@
+"""Studies of thousands of runs: what they hold, and how they are cut into chunks."""
+
+from rockflex.study.plans._agreement import PopulationStatistics, population_statistics
+from rockflex.study.plans._cloud import CloudPlan, CloudStudy, run_cloud
+from rockflex.study.plans._incremental import (
+    IncrementalPlan,
+    IncrementalStudy,
+    incremental_capacities,
+    run_incremental,
+)
+from rockflex.study.plans._load import Study, load_study
+from rockflex.study.plans._plan import ChunkedPlan, Plan, run_plan
+from rockflex.study.plans._population import PopulationPlan, PopulationStudy, run_population
+from rockflex.study.plans._prototypes import Prototype, draw_prototype
+from rockflex.study.plans._records import Records, record_group
+from rockflex.study.plans._stripes import StripePlan, StripeStudy, stripe_counts
+from rockflex.study.plans._tables import to_frame
+
+__all__ = [
+    "ChunkedPlan",
+    "CloudPlan",
+    "CloudStudy",
+    "IncrementalPlan",
+    "IncrementalStudy",
+    "Plan",
+    "PopulationPlan",
+    "PopulationStatistics",
+    "PopulationStudy",
+    "Prototype",
+    "Records",
+    "StripePlan",
+    "StripeStudy",
+    "Study",
+    "draw_prototype",
+    "incremental_capacities",
+    "load_study",
+    "population_statistics",
+    "record_group",
+    "run_cloud",
+    "run_incremental",
+    "run_plan",
+    "run_population",
+    "stripe_counts",
+    "to_frame",
+]

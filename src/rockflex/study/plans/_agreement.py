@@ -1,0 +1,231 @@
+"""How well one mode stands for all of them (Section 3.3), and what the second one adds (Section 3.4)."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import in_range, whole_number
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["PopulationStatistics", "population_statistics"]
+
+Array = NDArray[np.float64]
+
+FEWEST = 3  # pairs, below which nothing is said
+STATUSES = ("no_uplift", "rocking", "overturned")
+SUMS = 6  # per comparison, from which slope and R² follow
+SHOWN = (
+    *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "record", "pga", "pgv"),
+    *("status_mdof", "status_2dof", "max_rotation_mdof", "max_rotation_2dof"),
+    *("max_top_displacement_mdof", "max_top_displacement_2dof"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class PopulationStatistics:
+    """Agreement of MDOF-S with what one mode, or one and the second on a fixed base, say of it.
+
+    The tables `agreement` and `combination` have one row a comparison of y, from MDOF-S, with x, an estimate of it:
+    `group`, `quantity`, `behaviour` ("all", "shear" or "flexure"), `estimate`, the number `n` of pairs, and
+
+    - `r2` = 1 - Σ(y - x)²/Σ(y - ȳ)², the coefficient of determination of the line y = x, with `r2_low`, `r2_high`;
+    - `slope`, c1 of y = c1 x by least squares, with `slope_low`, `slope_high`;
+    - `r2_line`, the coefficient of determination of that line.
+
+    The intervals are bootstrap percentiles; pairs are resampled. Of fewer than three pairs nothing is said.
+
+    Attributes
+    ----------
+    outcomes : pandas.DataFrame
+        Number of pairs by the status of MDOF-S (rows) and 2DOF-S (columns).
+    n_failed : int
+        Pairs of which a run could not be solved, which are in no table.
+    n_nominal_mdof, n_nominal_2dof : int
+        Pairs whose rotation passed 0.7 atan(B/h*_1).
+    agreement : pandas.DataFrame
+        Section 3.3, Fig. 9: the top displacement of pairs without uplift, and top displacement and rotation of those
+        in which MDOF-S rocks and neither model overturns.
+    combination : pandas.DataFrame
+        Section 3.4, Fig. 13, of the same rocking pairs: D_2 against S_d(ω_2); top displacement (m), base shear over
+        m_s g and base moment over L_0^r g against 2DOF-S alone ("2DOF-S") and combined with the second mode ("SRSS").
+    outliers : pandas.DataFrame
+        Pairs of the largest difference of rotation, with what they are; `share` is their part of Σ(y - x)² over the
+        rocking pairs, missing of pairs that are not among them.
+    """
+
+    outcomes: "pd.DataFrame"
+    n_failed: int
+    n_nominal_mdof: int
+    n_nominal_2dof: int
+    agreement: "pd.DataFrame"
+    combination: "pd.DataFrame"
+    outliers: "pd.DataFrame"
+
+
+@dataclass(frozen=True, eq=False)
+class _Comparison:
+    group: str
+    quantity: str
+    behaviour: str
+    estimate: str
+    x: Array
+    y: Array
+    kept: NDArray[np.bool_]
+
+
+def population_statistics(
+    pairs: "pd.DataFrame",
+    level: float = 0.9,
+    n_resamples: SupportsIndex = 1000,
+    seed: SupportsIndex = 0,
+    n_outliers: SupportsIndex = 10,
+) -> PopulationStatistics:
+    """Compare the two models of a population of random structures (Silva & Stojadinović 2024, Sections 3.3 and 3.4).
+
+    Parameters
+    ----------
+    pairs
+        What `run_population`, or the plan of a `PopulationStudy`, gives.
+    level
+        Of the bootstrap intervals, between 0 and 1.
+    n_resamples, seed
+        Of the bootstrap.
+    n_outliers
+        Rows of the table of outliers.
+
+    Returns
+    -------
+    PopulationStatistics
+        Counts, coefficients of determination, slopes and outliers.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or no pair was solved.
+    """
+    in_range("level", level, 1e-9, 1.0)
+    resamples, start = whole_number("n_resamples", n_resamples, 1), whole_number("seed", seed, 0)
+    shown = whole_number("n_outliers", n_outliers, 0)
+    solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
+    if not len(solved):
+        message = "pairs holds no pair that was solved. Give the table of run_population, or see its column error."
+        raise InputError(message)
+    import pandas as pd
+
+    resting = solved[solved["status_mdof"] == "no_uplift"]
+    rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
+    agreeing = [
+        *_compare(_agreement("no_uplift", resting, ("top_displacement",)), level, resamples, start),
+        *_compare(_agreement("rocking", rocking, ("top_displacement", "rotation")), level, resamples, start),
+    ]
+    combining = pd.DataFrame(_compare(_combination(rocking), level, resamples, start))
+    counts = pd.crosstab(
+        pd.Categorical(solved["status_mdof"], STATUSES),
+        pd.Categorical(solved["status_2dof"], STATUSES),
+        rownames=["MDOF-S"],
+        colnames=["2DOF-S"],
+        dropna=False,
+    )
+    return PopulationStatistics(
+        outcomes=counts,
+        n_failed=len(pairs) - len(solved),
+        n_nominal_mdof=int(solved["nominal_overturning_mdof"].sum()),
+        n_nominal_2dof=int(solved["nominal_overturning_2dof"].sum()),
+        agreement=pd.DataFrame(agreeing),
+        combination=combining.drop(columns=["group", "behaviour"]),
+        outliers=_outliers(solved, rocking, shown),
+    )
+
+
+def _agreement(group: str, frame: "pd.DataFrame", quantities: tuple[str, ...]) -> list[_Comparison]:
+    everything = np.ones(len(frame), dtype=bool)
+    shear = (frame["behaviour"] == "shear").to_numpy(dtype=bool)
+    found: list[_Comparison] = []
+    for quantity in quantities:
+        x, y = (frame[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
+        for behaviour, kept in (("all", everything), ("shear", shear), ("flexure", ~shear)):
+            found.append(_Comparison(group, quantity, behaviour, "2DOF-S", x, y, kept))
+    return found
+
+
+def _combination(frame: "pd.DataFrame") -> list[_Comparison]:
+    everything = np.ones(len(frame), dtype=bool)
+    found: list[_Comparison] = []
+
+    def compare(quantity: str, estimate: str, x: str, y: str, unit: Array) -> None:
+        of_x, of_y = (frame[name].to_numpy(dtype=float) / unit for name in (x, y))
+        found.append(_Comparison("rocking", quantity, "all", estimate, of_x, of_y, everything))
+
+    one = np.ones(len(frame))
+    weight, moment = frame["structure_mass"].to_numpy(dtype=float) * GRAVITY, frame["l0r_g"].to_numpy(dtype=float)
+    compare("second_displacement", "S_d(ω_2)", "sd_2", "max_second_displacement_mdof", one)
+    for quantity, unit in (("top_displacement", one), ("base_shear", weight), ("base_moment", moment)):
+        compare(quantity, "2DOF-S", f"max_{quantity}_2dof", f"max_{quantity}_mdof", unit)
+        compare(quantity, "SRSS", f"srss_{quantity}", f"max_{quantity}_mdof", unit)
+    return found
+
+
+def _compare(comparisons: list[_Comparison], level: float, resamples: int, seed: int) -> list[dict[str, object]]:
+    """Rows of a table, of comparisons over the same pairs, which are resampled together."""
+    terms = np.column_stack([_terms(each) for each in comparisons])
+    n = terms.shape[0]
+    rng = np.random.Generator(np.random.Philox(seed))
+    drawn = np.full((resamples, len(comparisons), 2), np.nan)
+    for resample in drawn if n else ():
+        weights = np.bincount(rng.integers(n, size=n), minlength=n).astype(float)
+        resample[:] = _estimates((weights @ terms).reshape(-1, SUMS))
+    tail = 0.5 * (1.0 - level)
+    best = _estimates(terms.sum(axis=0).reshape(-1, SUMS))
+    rows: list[dict[str, object]] = []
+    for place, each in enumerate(comparisons):
+        x, y = each.x[each.kept], each.y[each.kept]
+        known = drawn[np.isfinite(drawn[:, place]).all(axis=1), place]
+        (slope, r2), low, high = np.full((3, 2), np.nan)
+        if x.size >= FEWEST and len(known):
+            (slope, r2), (low, high) = best[place], np.quantile(known, (tail, 1.0 - tail), axis=0)
+        spread = float(np.sum((y - y.mean()) ** 2)) if y.size else 0.0
+        rows.append(
+            {
+                "group": each.group,
+                "quantity": each.quantity,
+                "behaviour": each.behaviour,
+                "estimate": each.estimate,
+                "n": x.size,
+                "r2": r2,
+                "r2_low": low[1],
+                "r2_high": high[1],
+                "slope": slope,
+                "slope_low": low[0],
+                "slope_high": high[0],
+                "r2_line": 1.0 - float(np.sum((y - slope * x) ** 2)) / spread if spread > 0.0 else np.nan,
+            }
+        )
+    return rows
+
+
+def _terms(each: _Comparison) -> Array:
+    """Terms of the sums, one row a pair: x², xy, (y - x)², and 1, y, y² about the mean y of all."""
+    x, y, kept = each.x, each.y, each.kept.astype(float)
+    away = y - (float(y[each.kept].mean()) if each.kept.any() else 0.0)
+    return np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x))) * kept[:, None]
+
+
+def _estimates(sums: Array) -> Array:
+    """Slope of y = c1 x, and R² of y = x, one row a comparison."""
+    xx, xy, misses, away, square, count = sums.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.column_stack((xy / xx, 1.0 - misses / (square - away**2 / count)))
+
+
+def _outliers(solved: "pd.DataFrame", rocking: "pd.DataFrame", count: int) -> "pd.DataFrame":
+    misses = (solved["max_rotation_mdof"] - solved["max_rotation_2dof"]).abs()
+    worst = solved.loc[misses.sort_values(ascending=False, kind="stable").index[:count], list(SHOWN)]
+    total = float((misses[rocking.index] ** 2).sum())
+    share = (misses**2 / total).where(misses.index.isin(rocking.index)) if total > 0.0 else misses * np.nan
+    return worst.assign(difference=misses[worst.index], share=share[worst.index]).reset_index(drop=True)

@@ -1,0 +1,196 @@
+"""Structures, records and models made ready for runs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from rockflex._errors import InputError, SolverError
+from rockflex.modal import RockingProperties
+from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
+from rockflex.motion import GroundMotion, Suite
+from rockflex.response import Response, respond
+from rockflex.solve import Engine
+from rockflex.study._arguments import (
+    Structure,
+    check_options,
+    free_vibration_time,
+    is_structure,
+    properties_of,
+    sequence_of,
+)
+from rockflex.study._simulate import make_engine
+from rockflex.study.plans._intensity import MEASURES, intensity_measures, scaled_measures
+from rockflex.study.plans._records import record_group
+from rockflex.study.plans._tables import RESULTS, Columns, Row, kinds_of, peaks_of
+
+__all__ = ["Assumptions", "Bench", "bench_of", "check_different", "record_columns", "record_facts"]
+
+
+@dataclass(frozen=True)
+class Assumptions:
+    """What all runs of a study share; None of `free_vibration` is until settled."""
+
+    models: tuple[Model, ...]
+    free_vibration: float | None = 0.0
+    impact: ImpactLaw | None = None
+    bouc_wen: BoucWen | None = None
+    friction: bool = False
+
+
+class Bench:
+    """Structures, records and models, with their engines as they are needed.
+
+    A pickle holds no engine: it is small, and the engines are made anew where it goes.
+    """
+
+    def __init__(self, structures: Mapping[str, RockingProperties], motions: Suite, assumptions: Assumptions) -> None:
+        self.names, self.structures = list(structures), list(structures.values())
+        self.motions, self.assumptions = motions, assumptions
+        self.labels = [model.label for model in assumptions.models]
+        check_different("models", self.labels)
+        if assumptions.bouc_wen is not None and assumptions.free_vibration is None:
+            message = (
+                'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free vibration in '
+                "seconds."
+            )
+            raise InputError(message)
+        self._facts = record_facts(motions)
+        self._engines: dict[tuple[int, int], tuple[RockingModel, Engine] | str] = {}
+        self._measures: dict[tuple[int, int], dict[str, float]] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return vars(self) | {"_engines": {}, "_measures": {}}
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of a run."""
+        found: dict[str, type | Sequence[str]] = {"structure": self.names}
+        found |= record_columns(self.motions)
+        found |= {"model": self.labels, "scale": float}
+        found |= dict.fromkeys(MEASURES, float)
+        found |= {"status": str, **RESULTS, "nominal_limit": float}
+        if self.assumptions.friction:
+            found["required_friction"] = float
+        return found | {"error": str}
+
+    def measures(self, structure: int, record: int) -> dict[str, float]:
+        """Intensity measures of a record at the scale 1; computed once."""
+        found = self._measures.get((structure, record))
+        if found is None:
+            found = intensity_measures(self.structures[structure], self.motions[record])
+            self._measures[structure, record] = found
+        return found
+
+    def run(self, structure: int, record: int, model: int, scale: float) -> Row:
+        """Simulate one run; of one that cannot be solved the row holds the message, and no result."""
+        row: Row = {"structure": structure, **self._facts[record], "model": model, "scale": scale}
+        row |= scaled_measures(self.measures(structure, record), scale)
+        prepared = self._engines.get((structure, model))
+        if prepared is None:
+            prepared = self._engines[structure, model] = self._prepare(structure, model)
+        if isinstance(prepared, str):
+            return row | {"error": prepared}
+        tied, engine = prepared
+        motion, friction = self.motions[record], self.assumptions.friction
+        try:
+            solution = engine.run(
+                motion.acceleration * scale,
+                motion.dt,
+                free_vibration=self.assumptions.free_vibration,
+                history=friction,
+            )
+        except (SolverError, InputError) as error:
+            return row | {"error": str(error)}
+        response = respond(tied, motion.name, solution)
+        row |= {"status": response.status, **peaks_of(response)}
+        row["nominal_limit"] = tied.properties.nominal_overturning_rotation
+        return row | _friction(response) if friction else row
+
+    def _prepare(self, structure: int, model: int) -> tuple[RockingModel, Engine] | str:
+        """A model tied to a structure and its engine, or why there is none."""
+        given = self.assumptions
+        try:
+            tied = given.models[model].of(self.structures[structure], given.impact, given.bouc_wen)
+            return tied, make_engine(tied, "peaks")
+        except InputError as error:
+            return str(error)
+
+
+def _friction(response: Response) -> Row:
+    try:
+        return {"required_friction": response.required_friction}
+    except (SolverError, InputError) as error:
+        return {"error": f"No required friction: {error}"}
+
+
+def check_different(name: str, values: Sequence[str]) -> None:
+    """Raise an InputError if a value occurs more than once."""
+    repeated = [value for place, value in enumerate(values) if value in values[:place]]
+    if repeated:
+        message = f"{name}: {repeated[0]!r} occurs more than once. Give each once."
+        raise InputError(message)
+
+
+def record_facts(motions: Suite) -> list[Row]:
+    """What the rows of a table say of each record; the codes of its name and group."""
+    groups = list(dict.fromkeys(record_group(motion) for motion in motions))
+    facts: list[Row] = []
+    for place, motion in enumerate(motions):
+        info = motion.metadata
+        facts.append(
+            {
+                "record": place,
+                "group": groups.index(record_group(motion)),
+                "magnitude": None if info is None else info.magnitude,
+                "distance_km": None if info is None else info.distance_km,
+            }
+        )
+    return facts
+
+
+def record_columns(motions: Suite) -> Columns:
+    """Columns for what `record_facts` says."""
+    groups = list(dict.fromkeys(record_group(motion) for motion in motions))
+    return {"record": motions.names, "group": groups, **kinds_of("magnitude distance_km", float)}
+
+
+def bench_of(
+    structures: Mapping[str, Structure | RockingProperties]
+    | Structure
+    | RockingProperties
+    | Sequence[Structure | RockingProperties],
+    motions: GroundMotion | Suite | Sequence[GroundMotion],
+    models: str | Model | Sequence[str | Model],
+    free_vibration: float | Literal["settle"],
+    bouc_wen: BoucWen | None,
+    impact: ImpactLaw | None,
+    *,
+    friction: bool = False,
+) -> Bench:
+    """Check the arguments of a study in Python, and make them ready.
+
+    Raises
+    ------
+    InputError
+        If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
+        option is out of range.
+    """
+    check_options(bouc_wen, impact)
+    wanted = 'a label such as "2DOF-S", or a Model'
+    labels = sequence_of("models", models, lambda given: isinstance(given, str | Model), wanted)
+    chosen = tuple(map(parse_model, labels))
+    free = free_vibration_time(free_vibration)
+    suite = motions
+    if not isinstance(suite, Suite):
+        suite = Suite(sequence_of("motions", motions, lambda given: isinstance(given, GroundMotion), "a GroundMotion"))
+    return Bench(_named(structures), suite, Assumptions(chosen, free, impact, bouc_wen, friction))
+
+
+def _named(structures: Any) -> dict[str, RockingProperties]:
+    """Properties of structures by name: a mapping's own names, or "S1", "S2", ... of a sequence."""
+    wanted = "a structure such as a Frame, or RockingProperties"
+    names = [str(name) for name in structures] if isinstance(structures, Mapping) else []
+    listed = list(structures.values()) if isinstance(structures, Mapping) else structures
+    listed = sequence_of("structures", listed, is_structure, wanted)
+    names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
+    return {name: properties_of(each) for name, each in zip(names, listed, strict=True)}

@@ -1,0 +1,130 @@
+"""Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+
+from pydantic import Field, field_validator
+
+from rockflex.modal import RockingProperties
+from rockflex.models import BoucWen, ImpactLaw, Model
+from rockflex.motion import GroundMotion, Suite
+from rockflex.study._arguments import Structure, factors_of
+from rockflex.study.plans._bench import Bench, bench_of
+from rockflex.study.plans._plan import ChunkedPlan, run_plan
+from rockflex.study.plans._spec import StructuresSpec
+from rockflex.study.plans._tables import Columns, Row
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["CloudPlan", "CloudStudy", "run_cloud"]
+
+
+class CloudStudy(StructuresSpec):
+    """Cloud analysis (Silva & Stojadinović 2024, Section 3.2).
+
+    The table has one row a run, structures outermost, then records, models and scales. Its columns are those of
+    `run_cloud`.
+    """
+
+    study: Literal["cloud"] = Field("cloud", description='"cloud"')
+    scales: list[float] = Field([1.0], min_length=1, description="a list of factors on the acceleration")
+    friction: bool = Field(
+        False, description="true or false: whether to find the required friction too, which takes time"
+    )
+
+    @field_validator("scales")
+    @classmethod
+    def _finite(cls, scales: list[float]) -> list[float]:
+        return factors_of(scales, QUIET)
+
+    def plan(self) -> "CloudPlan":
+        """Build the structures, load the records, and cut the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a structure cannot be built or a record cannot be read; see also `run_cloud`.
+        """
+        return CloudPlan(self.bench(friction=self.friction), self.scales, self.runs_per_chunk)
+
+
+QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
+
+
+class CloudPlan(ChunkedPlan):
+    """The cross product of structures, records, models and scales, cut into chunks."""
+
+    def __init__(self, bench: Bench, scales: Sequence[float], per_chunk: int) -> None:
+        self.scales = factors_of(scales, max(bench.motions, key=lambda motion: motion.pga))
+        self.bench = bench
+        self._shape = (len(bench.names), len(bench.motions), len(bench.labels), len(self.scales))
+        super().__init__(bench.motions, math.prod(self._shape), per_chunk)
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs."""
+        return self.n_units
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        return self.bench.columns
+
+    def rows(self, unit: int) -> Iterator[Row]:
+        """Simulate one run."""
+        rest, scale = divmod(unit, len(self.scales))
+        rest, model = divmod(rest, len(self.bench.labels))
+        structure, record = divmod(rest, len(self.bench.motions))
+        yield self.bench.run(structure, record, model, self.scales[scale])
+
+
+def run_cloud(
+    structures: Mapping[str, Structure | RockingProperties]
+    | Structure
+    | RockingProperties
+    | Sequence[Structure | RockingProperties],
+    motions: GroundMotion | Suite | Sequence[GroundMotion],
+    models: str | Model | Sequence[str | Model] = "MDOF-S",
+    scales: float | Sequence[float] = 1.0,
+    free_vibration: float | Literal["settle"] = 0.0,
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
+    friction: bool = False,
+    workers: SupportsIndex | None = None,
+) -> "pd.DataFrame":
+    """Simulate every structure under every motion with every model at every scale, with intensity measures.
+
+    Parameters
+    ----------
+    structures
+        Structures by name, or in a sequence, of which they are called "S1", "S2", ...
+    motions
+        Motions whose names differ.
+    models, scales, free_vibration, bouc_wen, impact
+        As in `simulate_many`.
+    friction
+        Whether to find the friction that keeps the base from sliding (Eqs. 20-22), which needs every run's history.
+    workers
+        Number of threads; None for one a core.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a run. `structure`, `record`, `group` (shared by the components of one recording), `magnitude` and
+        `distance_km` where known, `model`, `scale`; measures of the scaled motion: `pga` (m/s²), `pgv` (m/s), `pgd`
+        (m), `arias` (m/s), `cav` (m/s), `sd_t1` (m) and `sa_t1` (m/s²) at the structure's first period and damping,
+        `relative_pga` = pga/(g tan α) and `relative_pgv` = p pgv/(g tan α) with g tan α = M_r/L_0^r and
+        p² = L_0^r g/I_θ; `status` and every scalar of `Response` by its name; `nominal_limit`, the rotation in rad of
+        `nominal_overturning`; `required_friction` where asked for; `error`. A run that cannot be solved has its message
+        there and no results. A run solved whose friction cannot be found has a message and no friction.
+
+    Raises
+    ------
+    InputError
+        If a label is unknown, a sequence is empty, two motions have the same name, or an argument is out of range.
+    """
+    given: Any = scales
+    bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, friction=friction)
+    return run_plan(CloudPlan(bench, given, per_chunk=64), workers)

@@ -1,0 +1,113 @@
+"""A study cut into chunks that can be computed anywhere."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Protocol, SupportsIndex
+
+from rockflex._checks import whole_number
+from rockflex.motion import Suite
+from rockflex.parallel import map_threads
+from rockflex.study.plans._records import checksums
+from rockflex.study.plans._tables import Columns, Row, Table, tabulate, to_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["ChunkedPlan", "Plan", "run_plan"]
+
+
+class Plan(Protocol):
+    """A study cut into chunks."""
+
+    @property
+    def n_chunks(self) -> int:
+        """Number of chunks."""
+        ...
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs in all of them, or an upper bound of it."""
+        ...
+
+    @property
+    def checksums(self) -> dict[str, str]:
+        """SHA-256 of each record's step and samples, by its name."""
+        ...
+
+    def chunk(self, number: int) -> Table:
+        """Compute a chunk: the same table, to the last bit, whenever and wherever it is computed."""
+        ...
+
+
+class ChunkedPlan(ABC):
+    """A plan of `n_units` units, each some rows of the table, that are computed `per_chunk` at a time.
+
+    A unit depends on its own number alone, so the size of the chunks changes no row.
+    """
+
+    def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
+        self.motions = motions
+        self.n_units = n_units
+        self.per_chunk = whole_number("the size of a chunk", per_chunk, 1)
+
+    @property
+    @abstractmethod
+    def n_runs(self) -> int:
+        """Number of runs in all chunks, or an upper bound of it."""
+
+    @property
+    @abstractmethod
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+
+    @abstractmethod
+    def rows(self, unit: int) -> Iterable[Row]:
+        """Compute the rows of one unit."""
+
+    @property
+    def n_chunks(self) -> int:
+        """Number of chunks."""
+        return math.ceil(self.n_units / self.per_chunk)
+
+    @property
+    def checksums(self) -> dict[str, str]:
+        """SHA-256 of each record's step and samples, by its name."""
+        return checksums(self.motions)
+
+    def chunk(self, number: SupportsIndex) -> Table:
+        """Compute a chunk: the same table, to the last bit, whenever and wherever it is computed.
+
+        Raises
+        ------
+        InputError
+            If there is no such chunk. A run that cannot be solved is a row with its message in `error`.
+        """
+        first = self.per_chunk * whole_number("number", number, 0, self.n_chunks - 1)
+        units = range(first, min(first + self.per_chunk, self.n_units))
+        return tabulate([row for unit in units for row in self.rows(unit)], self.columns)
+
+
+def run_plan(plan: Plan, workers: SupportsIndex | None = None) -> "pd.DataFrame":
+    """Compute all chunks of a plan on threads, and return them as one table, in order.
+
+    Parameters
+    ----------
+    plan
+        What `.plan()` of a study returns.
+    workers
+        Number of threads; None for one a core.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The rows of all chunks; see the study for its columns.
+    """
+    tables: dict[int, Table] = {}
+
+    def work(number: int) -> None:
+        tables[number] = plan.chunk(number)
+
+    for _ in map_threads(work, range(plan.n_chunks), workers):
+        pass
+    return to_frame(*(tables[number] for number in range(plan.n_chunks)))

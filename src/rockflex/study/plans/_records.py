@@ -1,0 +1,75 @@
+"""Which records a study runs through."""
+
+import hashlib
+from collections.abc import Iterable
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from pydantic import Field, model_validator
+
+from rockflex._errors import InputError
+from rockflex.motion import GroundMotion, Suite, load_suite, read_suite
+from rockflex.structure.file import Table
+
+__all__ = ["Records", "checksums", "record_group"]
+
+
+class Records(Table):
+    """Records by the names of embedded suites, from a folder, or both."""
+
+    suites: list[str] = Field(default_factory=list, description='a list of suites, such as "fema-p695-far-field"')
+    folder: str | None = Field(None, description="the path of a folder of records, in quotes")
+    include: list[str] = Field(["*"], description='a list of patterns of record names to keep, such as "FF-1-*"')
+
+    @model_validator(mode="after")
+    def _some(self) -> "Records":
+        if not self.suites and self.folder is None:
+            message = 'no record is named. Give suites = ["fema-p695-far-field"], folder = "...", or both.'
+            raise InputError(message)
+        return self
+
+    def load(self, base: Path) -> Suite:
+        """Load the records, those of the suites first; a path that is not absolute starts from `base`.
+
+        Raises
+        ------
+        InputError
+            If a suite is unknown, the folder or a file in it cannot be read, two records have the same name, or a
+            pattern of `include` fits none.
+        """
+        motions = [motion for name in self.suites for motion in load_suite(name)]
+        if self.folder is not None:
+            motions += read_suite(base / self.folder)
+        names = [motion.name for motion in motions]
+        for pattern in self.include:
+            if not any(fnmatchcase(name, pattern) for name in names):
+                message = (
+                    f"[records] include: no record's name fits {pattern!r}. There are {len(names)}, from {names[0]!r} "
+                    f"to {names[-1]!r}; * stands for any text and ? for one letter."
+                )
+                raise InputError(message)
+        return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))
+
+
+def record_group(motion: GroundMotion) -> str:
+    """Name that the components of one recording share: they are not independent of each other.
+
+    It is the record sequence number where that is known, else the earthquake and station, else the record's own name.
+    """
+    info = motion.metadata
+    if info is not None and info.rsn is not None:
+        return f"RSN{info.rsn}"
+    if info is not None and info.event is not None and info.station is not None:
+        return " ".join(str(part) for part in (info.event, info.year, info.station) if part is not None)
+    return motion.name
+
+
+def checksums(motions: Iterable[GroundMotion]) -> dict[str, str]:
+    """SHA-256 of each record's step and samples (little-endian doubles), by its name."""
+    return {motion.name: _checksum(motion) for motion in motions}
+
+
+def _checksum(motion: GroundMotion) -> str:
+    digest = hashlib.sha256(float(motion.dt).hex().encode())
+    digest.update(motion.acceleration.astype("<f8").tobytes())
+    return digest.hexdigest()

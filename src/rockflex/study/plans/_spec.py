@@ -1,0 +1,132 @@
+"""What every study's specification shares."""
+
+import math
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import Field, PrivateAttr, ValidationError, field_validator
+
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
+from rockflex.structure.file import StructureEntry, Table, problems
+from rockflex.study._arguments import free_vibration_time, properties_of
+from rockflex.study.plans._bench import Assumptions, Bench, check_different
+from rockflex.study.plans._records import Records
+
+__all__ = ["Spec", "StructuresSpec"]
+
+
+class BoucWenTable(Table):
+    """The arguments of `BoucWen`."""
+
+    yield_displacement: float = Field(description="D_y of the first mode, a number in m")
+    post_yield_ratio: float = Field(0.01, description="stiffness after yielding over that before, a number")
+    gamma: float = Field(0.5, description="γ of the hysteresis, a number")
+    beta: float = Field(0.5, description="β of the hysteresis, a number")
+    exponent: float = Field(8.0, description="n of the hysteresis, a number of at least 1")
+
+
+class Spec(Table):
+    """A study, as it stands in a file or is written in Python; tables within it are given as dictionaries.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or missing, or a value is not what its key takes; the message says it of each.
+    """
+
+    name: str = Field("", description="a name, in quotes")
+    records: Records = Field(description="a table of suites or a folder")
+    runs_per_chunk: int = Field(
+        256, ge=1, description="about how many runs to compute and store together, a whole number of at least 1"
+    )
+
+    _folder: Path = PrivateAttr(default_factory=Path)
+
+    def __init__(self, **content: Any) -> None:
+        try:
+            super().__init__(**content)
+        except ValidationError as error:
+            message = " ".join(problems(error, content, type(self)))
+            raise InputError(message) from error
+
+    def document(self) -> dict[str, Any]:
+        """Everything that determines the study, as JSON has it: infinite numbers as "inf", what is None left out."""
+        return _plain(self.model_dump(exclude_none=True))
+
+    def read_from(self, folder: Path) -> Self:
+        """Take the paths in it from a folder, in place of the working directory; return it."""
+        self._folder = folder
+        return self
+
+
+class StructuresSpec(Spec):
+    """A study of given structures: what it simulates, and how."""
+
+    structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
+    models: list[str] = Field(["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
+    free_vibration: float | Literal["settle"] = Field(
+        0.0, description='the free vibration after the record, a number in s or "settle"'
+    )
+    impact: Literal["simplified", "complete", "restitution"] | None = Field(
+        None, description='"simplified", "complete" or "restitution"'
+    )
+    restitution: float | None = Field(None, description="a number from 0 to 1")
+    bouc_wen: BoucWenTable | None = Field(None, description="a table")
+
+    @field_validator("models")
+    @classmethod
+    def _labels(cls, labels: list[str]) -> list[str]:
+        for label in labels:
+            parse_model(label)
+        return labels
+
+    @field_validator("free_vibration")
+    @classmethod
+    def _seconds(cls, value: float | Literal["settle"]) -> float | Literal["settle"]:
+        free_vibration_time(value)
+        return value
+
+    def bench(self, *, friction: bool = False) -> Bench:
+        """Build the structures and load the records.
+
+        Raises
+        ------
+        InputError
+            If one of either cannot be had, or the options contradict each other.
+        """
+        names = [entry.name or f"S{place}" for place, entry in enumerate(self.structures, start=1)]
+        check_different("the names of the structures", names)
+        properties: dict[str, RockingProperties] = {}
+        for place, entry in enumerate(self.structures, start=1):
+            try:
+                properties[names[place - 1]] = properties_of(entry.build(self._folder))
+            except InputError as error:
+                message = f"[[structures]] no. {place}{entry.name and f', {entry.name!r}'}: {error}"
+                raise InputError(message) from error
+        free = free_vibration_time(self.free_vibration)
+        yielding = None if self.bouc_wen is None else BoucWen(**self.bouc_wen.model_dump())
+        models = tuple(map(parse_model, self.models))
+        return Bench(
+            properties, self.records.load(self._folder), Assumptions(models, free, self._law(), yielding, friction)
+        )
+
+    def _law(self) -> ImpactLaw | None:
+        if (self.restitution is not None) != (self.impact == "restitution"):
+            message = 'restitution and impact = "restitution" go together. Give both or neither.'
+            raise InputError(message)
+        if self.restitution is not None:
+            return Restitution(self.restitution)
+        laws: dict[str | None, ImpactLaw] = {"simplified": VVELSimplified(), "complete": VVELComplete()}
+        return laws.get(self.impact)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value

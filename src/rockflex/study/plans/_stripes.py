@@ -1,0 +1,117 @@
+"""Multiple stripes: every record scaled to each of a few intensities."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Literal
+
+from pydantic import Field
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex.study._arguments import positive_numbers
+from rockflex.study.plans._bench import Bench
+from rockflex.study.plans._intensity import check_measure, factor_to
+from rockflex.study.plans._plan import ChunkedPlan
+from rockflex.study.plans._spec import StructuresSpec
+from rockflex.study.plans._tables import Columns, Row
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["StripePlan", "StripeStudy", "stripe_counts"]
+
+
+class StripeStudy(StructuresSpec):
+    """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
+
+    The table has the columns of `run_cloud` with the `level` of the stripe; `stripe_counts` counts it.
+    """
+
+    study: Literal["stripes"] = Field("stripes", description='"stripes"')
+    measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"')
+    levels: list[float] = Field(min_length=1, description="a list of levels of the measure, in SI units")
+
+    def plan(self) -> "StripePlan":
+        """Build the structures, load the records, and cut the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a structure cannot be built, a record cannot be read, the measure is unknown, a level is not positive,
+            or a record cannot be scaled to it.
+        """
+        return StripePlan(self.bench(), self.measure, self.levels, self.runs_per_chunk)
+
+
+class StripePlan(ChunkedPlan):
+    """The cross product of structures, records, models and levels, cut into chunks."""
+
+    def __init__(self, bench: Bench, measure: str, levels: Sequence[float], per_chunk: int) -> None:
+        check_measure(measure)
+        self.bench, self.measure = bench, measure
+        self.levels = positive_numbers("levels", levels, "")
+        for structure, name in enumerate(bench.names):
+            for record, motion in enumerate(bench.motions):
+                if not math.isfinite(factor_to(bench.measures(structure, record), measure, 1.0)):
+                    message = f"{motion.name!r} has no {measure} for {name!r}, so no scale takes it to a level."
+                    raise InputError(message)
+        runs = len(bench.names) * len(bench.motions) * len(bench.labels) * len(self.levels)
+        super().__init__(bench.motions, runs, per_chunk)
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs."""
+        return self.n_units
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        return {"level": float, **self.bench.columns}
+
+    def rows(self, unit: int) -> Iterator[Row]:
+        """Simulate one run."""
+        rest, place = divmod(unit, len(self.levels))
+        rest, model = divmod(rest, len(self.bench.labels))
+        structure, record = divmod(rest, len(self.bench.motions))
+        level = self.levels[place]
+        scale = factor_to(self.bench.measures(structure, record), self.measure, level)
+        yield self.bench.run(structure, record, model, scale) | {"level": level}
+
+
+def stripe_counts(
+    runs: "pd.DataFrame", limit: Literal["overturning", "nominal", "uplift"] | float = "overturning"
+) -> "pd.DataFrame":
+    """Count the runs of each stripe that exceed a limit, as fits of fragility take them.
+
+    Parameters
+    ----------
+    runs
+        What the plan of a `StripeStudy` gives.
+    limit
+        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a structure, model and level: `structure`, `model`, `level`, `n_exceeding`, `n_total`; runs that could
+        not be solved are in neither.
+
+    Raises
+    ------
+    InputError
+        If the limit is another word, or not positive.
+    """
+    solved = runs[runs["status"].notna()]
+    if limit == "overturning":
+        exceeds = solved["status"] == "overturned"
+    elif limit == "nominal":
+        exceeds = solved["nominal_overturning"]
+    elif limit == "uplift":
+        exceeds = solved["status"] != "no_uplift"
+    elif isinstance(limit, str):
+        message = f'limit must be "overturning", "nominal", "uplift" or a rotation in rad, but {limit!r} was given.'
+        raise InputError(message)
+    else:
+        exceeds = solved["max_rotation"] > positive("limit", limit, "rad")
+    counted = solved.assign(exceeds=exceeds.astype(bool)).groupby(["structure", "model", "level"], observed=True)
+    return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()

@@ -1,0 +1,160 @@
+"""``rockflex cloud``, ``ida``, ``stripes`` and ``population``: what is printed, kept and refused."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+import rockflex as rf
+from rockflex.cli import _study, app
+
+FRAME = """
+[structures.frame]
+n_stories = 2
+story_height = 3.0
+story_mass = 40e3
+base_mass = 40e3
+stiffness_ratio = inf
+period = 0.5
+aspect_ratio = 8.0
+damping_ratio = 0.02
+"""
+RECORDS = '[records]\nsuites = ["fema-p695-far-field"]\ninclude = ["FF-1-*", "FF-2-*", "FF-3-*"]\n'
+HEADS = {
+    "cloud": 'models = ["2DOF-S", "MDOF-S"]\nscales = [0.5, 1.0, 2.0]\n',
+    "incremental": 'models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n',
+    "stripes": 'models = ["2DOF-S"]\nmeasure = "pgv"\nlevels = [0.05, 0.2, 0.4, 2.0]\n',
+    "population": "pairs = 30\nseed = 5\n",
+}
+COMMANDS = {"cloud": "cloud", "incremental": "ida", "stripes": "stripes", "population": "population"}
+
+
+@pytest.fixture
+def study(tmp_path):
+    def write(kind, head=None):
+        structures = "" if kind == "population" else f'[[structures]]\nname = "S"\n{FRAME}'
+        file = tmp_path / f"{kind}.toml"
+        file.write_text(f'study = "{kind}"\n{HEADS[kind] if head is None else head}{RECORDS}{structures}')
+        return file
+
+    return write
+
+
+def invoke(*arguments, columns=220):
+    return CliRunner().invoke(app, [*map(str, arguments)], env={"COLUMNS": str(columns)})
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("cloud", ["Outcomes, and P(θ_max > 1e-4 rad)", "log y = c1 + c2 log PGV", "36 rows in"]),
+        ("incremental", ["Capacities to |θ| = π/2, lognormal", "PGA", "resurrections"]),
+        ("stripes", ["Runs beyond the limit at each level of pgv", "overturning", "/6", "24 rows in"]),
+        ("population", ["Pairs by outcome", "MDOF-S against 2DOF-S (Section 3.3)", "SRSS", "30 rows in"]),
+    ],
+)
+def test_every_kind_is_run_kept_and_told(study, tmp_path, kind, words):
+    file, folder = study(kind), tmp_path / "kept"
+    done = invoke(COMMANDS[kind], file, "--out", folder)
+    assert done.exit_code == 0, done.stderr
+    for word in words:
+        assert word in done.stdout
+    assert f"Kept in {folder}; rockflex figures {folder} draws it" in done.stderr
+    table = rf.run_study(file)
+    assert len(rf.StudyFolder.load(folder).frame()) == len(table)
+    again = invoke(COMMANDS[kind], file, "--out", folder)
+    assert "1 of 1 parts are in" in again.stderr
+    body = [line for line in done.stdout.splitlines() if " rows in " not in line]
+    assert [line for line in again.stdout.splitlines() if " rows in " not in line] == body
+
+
+def test_numbers_are_those_of_the_library(study):
+    file = study("cloud")
+    done = invoke("cloud", file, "--json")
+    document = json.loads(done.stdout)
+    assert document["rows"] == 36
+    assert document["failed"] == 0
+    assert document["study"]["scales"] == [0.5, 1.0, 2.0]
+    fits = rf.fit_clouds(rf.run_study(file))
+    (outcomes, lines) = (document[key] for key in document if key.startswith(("Outcomes", "log y")))
+    for fit, row, line in zip(fits, outcomes, lines, strict=True):
+        assert (row["model"], row["overturned"]) == (fit.model, fit.outcomes.n_overturned)
+        assert line["θ_max c2"] == fit.outcomes.rotation.c2
+        assert line["u_top c1"] == fit.top_displacement.c1
+
+
+def test_a_dry_run_counts_and_runs_nothing(study, tmp_path):
+    done = invoke("cloud", study("cloud"), "--out", tmp_path / "kept", "--dry-run")
+    assert "36 runs in 1 parts, 6 records; about" in done.stdout
+    assert not (tmp_path / "kept").exists()
+    document = json.loads(invoke("ida", study("incremental"), "--dry-run", "--json").stdout)
+    assert document["study"] == "incremental"
+    assert document["runs"] > 60
+    assert document["estimated_time"] > 0.0
+    assert "at most" in invoke("ida", study("incremental"), "--dry-run").stdout
+
+
+def test_the_wrong_command_names_the_right_one(study):
+    file = study("incremental")
+    done = invoke("cloud", file)
+    assert done.exit_code == 2
+    assert f'{file} says study = "incremental". Use rockflex ida {file}.' in done.stderr
+
+
+def test_rows_with_errors_are_told_and_strict_says_so(study):
+    file = study("cloud", 'models = ["2DOF-S", "7DOF-S"]\nscales = [1.0, 2.0]\n')
+    done = invoke("population", study("population"), "--strict")
+    assert done.exit_code == 0
+    done = invoke("cloud", file, "--strict")
+    assert done.exit_code == 1
+    assert "2DOF-S" in done.stdout
+    assert "No run of S with 7DOF-S was solved (12 rows): it has no fit" in done.stderr
+    assert "12 rows have an error, the first: Model 7DOF-S needs 6 modes, but the structure has 2." in done.stderr
+    assert invoke("cloud", file).exit_code == 0
+
+
+def test_a_cluster_that_does_not_answer(study, monkeypatch):
+    from rockflex.parallel import _dask
+
+    monkeypatch.setattr(_dask, "CONNECT", 0.2)
+    done = invoke("cloud", study("cloud"), "--dask", "tcp://127.0.0.1:9")
+    assert done.exit_code == 2
+    assert "No Dask scheduler answers at 'tcp://127.0.0.1:9'" in done.stderr
+
+
+def test_ctrl_c_says_what_is_kept(study, tmp_path, monkeypatch):
+    real = rf.study._conduct._here
+
+    def interrupted(plan, numbers, workers):
+        yield next(iter(real(plan, numbers, 1)))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(rf.study._conduct, "_here", interrupted)
+    file = study("cloud", HEADS["cloud"] + "runs_per_chunk = 8\n")
+    done = invoke("cloud", file, "--out", tmp_path / "kept")
+    assert done.exit_code == 130
+    assert f"Stopped. 1 of 5 parts are kept in {tmp_path / 'kept'}; the same command goes on." in done.stderr
+    assert "Stopped. Nothing is kept, as no --out was given." in invoke("cloud", file).stderr
+    monkeypatch.undo()
+    done = invoke("cloud", file, "--out", tmp_path / "kept")
+    assert f"1 of 5 parts are in {tmp_path / 'kept'} already" in done.stderr
+    assert done.exit_code == 0
+
+
+def test_a_lost_cluster_exits_with_one(study, monkeypatch):
+    def lost(*_arguments, **_options):
+        message = "The Dask scheduler at tcp://x was lost"
+        raise rf.ClusterError(message)
+
+    monkeypatch.setattr(rf.study._conduct, "map_dask", lost)
+    done = invoke("cloud", study("cloud"), "--dask", "tcp://x")
+    assert done.exit_code == 1
+    assert "Error: The Dask scheduler at tcp://x was lost" in done.stderr
+
+
+def test_help_has_examples():
+    for command in ("cloud", "ida", "stripes", "population"):
+        text = invoke(command, "--help").stdout
+        assert f"rockflex {command} study.toml --dry-run" in text
+        assert "--dask" in text
+    assert _study.epilog("ida").count("rockflex ida") == 3

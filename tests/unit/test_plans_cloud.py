@@ -1,0 +1,244 @@
+"""Cloud studies: each row against a single run, chunks against each other, measures of scaled motions."""
+
+import dataclasses
+import math
+import pickle
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+import rockflex as rf
+from rockflex.study.plans import CloudPlan, CloudStudy, record_group, run_cloud, run_plan
+from rockflex.study.plans._bench import bench_of
+from rockflex.study.plans._records import checksums
+
+FRAME = {
+    "n_stories": 3,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 40e3,
+    "stiffness_ratio": math.inf,
+    "period": 0.6,
+    "aspect_ratio": 8.0,
+    "damping_ratio": 0.02,
+}
+STRUCTURES = [{"name": "stiff", "frame": FRAME}, {"frame": {**FRAME, "period": 1.0, "stiffness_ratio": 0.0}}]
+RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-3-a"]}
+SUITE = rf.load_suite("fema-p695-far-field")
+
+
+def study(**changes):
+    content = {
+        "structures": STRUCTURES,
+        "records": RECORDS,
+        "models": ["MDOF-S", "2DOF-S"],
+        "scales": [1.0, 2.0],
+        "runs_per_chunk": 5,
+    }
+    return CloudStudy(**content | changes)
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return study().plan()
+
+
+@pytest.fixture(scope="module")
+def table(plan):
+    return run_plan(plan)
+
+
+def test_rows_are_single_runs_in_order(table):
+    frames = {"stiff": rf.Frame(**FRAME), "S2": rf.Frame(**STRUCTURES[1]["frame"])}
+    expected = [
+        (name, record, model, scale)
+        for name in frames
+        for record in ("FF-1-a", "FF-1-b", "FF-3-a")
+        for model in ("MDOF-S", "2DOF-S")
+        for scale in (1.0, 2.0)
+    ]
+    assert list(table[["structure", "record", "model", "scale"]].itertuples(index=False, name=None)) == expected
+    for row in table.itertuples():
+        run = rf.simulate(frames[row.structure], SUITE[row.record].scaled(row.scale), row.model, "peaks")
+        assert row.status == run.status
+        for name in ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear", "n_impacts"):
+            assert getattr(row, name) == getattr(run, name)
+        assert row.time_of_max_rotation == run.time_of_max_rotation
+        assert row.nominal_overturning == run.nominal_overturning == (row.max_rotation > row.nominal_limit)
+    assert table["error"].isna().all()
+    assert set(table["status"]) >= {"rocking", "overturned"}
+
+
+def test_measures_are_those_of_the_scaled_motion(table):
+    structures = {"stiff": rf.Frame(**FRAME).rocking(), "S2": rf.Frame(**STRUCTURES[1]["frame"]).rocking()}
+    for row in table.itertuples():
+        p, motion = structures[row.structure], SUITE[row.record].scaled(row.scale)
+        period = 2 * math.pi / p.omega[0]
+        for name in ("pga", "pgv", "pgd", "arias", "cav"):
+            assert getattr(row, name) == pytest.approx(getattr(motion, name), rel=1e-12)
+        assert row.sa_t1 == pytest.approx(motion.sa(period, 0.02), rel=1e-12)
+        assert row.sd_t1 == pytest.approx(motion.sd(period, 0.02), rel=1e-12)
+        tan_alpha = p.m_tot * p.half_width / p.l0r
+        assert row.relative_pga == pytest.approx(motion.pga / (9.81 * tan_alpha), rel=1e-12)
+        rate = math.sqrt(p.l0r * 9.81 / p.i_theta)
+        assert row.relative_pgv == pytest.approx(rate * motion.pgv / (9.81 * tan_alpha), rel=1e-12)
+
+
+def test_rigid_structure_lifts_at_a_relative_pga_of_one():
+    block = rf.rigid_block(0.2, 1.5)
+    motion = rf.one_sine_pulse(1.0, 1.0)
+    table = run_cloud(block, motion, "rigid", scales=[0.1, 1.0, 3.0])
+    lifting = table["pga"] / table["relative_pga"]
+    below, above = (run_cloud(block, motion, "rigid", scales=f * lifting[0] / motion.pga) for f in (0.999, 1.001))
+    assert (below["status"][0], above["status"][0]) == ("no_uplift", "rocking")
+    assert table["sa_t1"].isna().all()
+
+
+def test_facts_of_the_records(table):
+    assert table["group"].tolist() == [f"RSN{SUITE[name].metadata.rsn}" for name in table["record"]]
+    assert table["group"].nunique() == 2
+    assert (table["magnitude"] == [SUITE[name].metadata.magnitude for name in table["record"]]).all()
+    assert (table["distance_km"] == [SUITE[name].metadata.distance_km for name in table["record"]]).all()
+
+
+def test_group_of_a_record():
+    motion = rf.GroundMotion([0, 1, 0], 0.01, "x")
+    assert record_group(motion) == "x"
+    assert record_group(dataclasses.replace(motion, metadata=rf.RecordInfo(event="Quake", station="A"))) == "Quake A"
+    known = rf.RecordInfo(event="Quake", year=1990, station="A", rsn=7)
+    assert record_group(dataclasses.replace(motion, metadata=known)) == "RSN7"
+    assert record_group(dataclasses.replace(motion, metadata=dataclasses.replace(known, rsn=None))) == "Quake 1990 A"
+
+
+def test_chunks_depend_on_nothing_but_their_number(plan):
+    assert (plan.n_runs, plan.n_chunks) == (24, 5)
+    fresh = study().plan()
+    backwards = [fresh.chunk(number) for number in reversed(range(5))][::-1]
+    copied = pickle.loads(pickle.dumps(plan))
+    assert not copied.bench._engines
+    for number, table in enumerate(backwards):
+        assert plan.chunk(number).equals(table)
+        assert copied.chunk(number).equals(table)
+        assert table.schema.equals(backwards[0].schema)
+    assert [len(table) for table in backwards] == [5, 5, 5, 5, 4]
+
+
+@pytest.mark.parametrize("size", [1, 7, 1000])
+def test_size_of_the_chunks_changes_no_row(plan, size):
+    other = study(runs_per_chunk=size).plan()
+    one, two = (pa.concat_tables([p.chunk(n) for n in range(p.n_chunks)]) for p in (plan, other))
+    assert one.equals(two)
+    assert run_plan(plan, workers=1).equals(run_plan(other, workers=2))
+
+
+def test_python_twin_gives_the_same_rows(table):
+    structures = {"stiff": rf.Frame(**FRAME), "S2": rf.Frame(**STRUCTURES[1]["frame"])}
+    motions = [SUITE[name] for name in ("FF-1-a", "FF-1-b", "FF-3-a")]
+    assert run_cloud(structures, motions, ["MDOF-S", "2DOF-S"], [1.0, 2.0]).equals(table)
+    assert run_cloud(list(structures.values()), motions)["structure"].unique().tolist() == ["S1", "S2"]
+
+
+def test_runs_that_cannot_be_solved_are_rows():
+    table = run_cloud(
+        rf.Frame(**FRAME), [SUITE[0], rf.GroundMotion([0.0, 1.0, 0.0], 1e6, "absurd")], ["5DOF-S", "2DOF-S"]
+    )
+    assert table["status"].isna().tolist() == [True, False, True, True]
+    assert table["error"][0].startswith("Model 5DOF-S needs 4 modes, but the structure has 3.")
+    assert "time step" in table["error"][3]
+    assert (
+        table["max_rotation"].isna().tolist() == table["n_impacts"].isna().tolist() == table["status"].isna().tolist()
+    )
+    assert table["pga"].notna().all()
+    assert table["n_impacts"].dtype == "Int64"
+    assert table["nominal_overturning"].dtype == "boolean"
+
+
+def test_friction():
+    motion = SUITE["FF-3-a"]
+    table = run_cloud(rf.Frame(**FRAME), motion, ["MDOF-S", "2DOF-C"], friction=True)
+    for row in table.itertuples():
+        run = rf.simulate(rf.Frame(**FRAME), motion, row.model)
+        assert row.required_friction == pytest.approx(run.required_friction, rel=1e-9)
+        assert row.max_rotation == pytest.approx(run.max_rotation, rel=1e-12)
+    assert "required_friction" not in run_cloud(rf.Frame(**FRAME), motion)
+
+
+def test_options_reach_the_runs():
+    motion, frame = SUITE["FF-3-a"], rf.Frame(**FRAME)
+    plan = study(
+        models=["2DOF-S"],
+        impact="restitution",
+        restitution=0.5,
+        bouc_wen={"yield_displacement": 0.01, "exponent": 4},
+        free_vibration=2.0,
+        scales=[1.0],
+        records={"suites": ["fema-p695-far-field"], "include": ["FF-3-a"]},
+    ).plan()
+    options = {"impact": rf.Restitution(0.5), "bouc_wen": rf.BoucWen(0.01, exponent=4.0), "free_vibration": 2.0}
+    run = rf.simulate(frame, motion, "2DOF-S", "peaks", **options)
+    for table in (run_plan(plan), run_cloud(frame, motion, "2DOF-S", **options)):
+        for name in ("max_rotation", "max_top_displacement", "max_base_shear"):
+            assert table[name][0] == getattr(run, name)
+    assert run.end_time == pytest.approx(motion.duration + 2.0)
+    complete = study(models=["2DOF-S"], impact="complete", structures=STRUCTURES[:1]).plan()
+    run = rf.simulate(frame, SUITE["FF-1-a"], "2DOF-S", "peaks", impact=rf.VVELComplete())
+    assert run_plan(complete)["max_rotation"][0] == run.max_rotation
+
+
+def test_mirrored_motion():
+    table = run_cloud(rf.Frame(**FRAME), SUITE[0], scales=[1.0, -1.0])
+    names = ["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "relative_pga", "relative_pgv", "max_rotation"]
+    assert table.loc[0, names].tolist() == pytest.approx(table.loc[1, names].tolist(), rel=1e-9)
+    assert (table[names] > 0).all(axis=None)
+
+
+def test_what_is_not_a_number_is_missing():
+    bench = bench_of(rf.rigid_block(0.2, 1.5), SUITE[0], "rigid", 0.0, None, None)
+    table = CloudPlan(bench, [1.0], 10).chunk(0)
+    assert (table["sa_t1"].null_count, table["pga"].null_count) == (1, 0)
+
+
+def test_checksums_follow_the_samples():
+    motions = [rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "a"), rf.GroundMotion([0.0, 1.0, 0.0], 0.02, "b")]
+    motions += [rf.GroundMotion([0.0, 1.0, 5e-324], 0.01, "c"), rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "d")]
+    sums = checksums(motions)
+    assert sums["a"] == sums["d"]
+    assert len(set(sums.values())) == 3
+    assert set(study().plan().checksums) == {"FF-1-a", "FF-1-b", "FF-3-a"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"structures": []}, "structures is empty. Give at least one."),
+        ({"structures": {"a": 3}}, "structures[0] is int. Expected a structure such as a Frame, or RockingProperties."),
+        ({"motions": 3}, "motions must be a GroundMotion, or a sequence of them, but int was given."),
+        ({"motions": [SUITE[0], SUITE[0]]}, "The motions of a suite need different names, but 'FF-1-a' occurs"),
+        ({"models": ["2DOF-S", "2DOF-S"]}, "models: '2DOF-S' occurs more than once. Give each once."),
+        ({"models": "2DOF-X"}, "Unknown model '2DOF-X'."),
+        ({"scales": []}, "scales must be one or more finite factors, but [] was given."),
+        ({"scales": math.inf}, "scales must be one or more finite factors, but inf was given."),
+        (
+            {"bouc_wen": rf.BoucWen(0.01), "free_vibration": "settle"},
+            'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free',
+        ),
+        ({"impact": 0.5}, "impact must be an impact law, but float was given."),
+    ],
+)
+def test_damaged_arguments(arguments, message):
+    given = {"structures": rf.Frame(**FRAME), "motions": SUITE[0]} | arguments
+    with pytest.raises(rf.InputError) as caught:
+        run_cloud(**given)
+    assert str(caught.value).startswith(message)
+
+
+def test_chunk_that_is_not_there(plan):
+    with pytest.raises(rf.InputError, match="number must be a whole number from 0 to 4, but 5 was given"):
+        plan.chunk(5)
+
+
+def test_every_number_of_a_response_is_a_column(table):
+    run = rf.simulate(rf.Frame(**FRAME), SUITE[0], output="peaks").peaks()
+    assert {name for name in run if name not in ("model", "motion")} <= set(table.columns)
+    assert np.isfinite(table[["max_rotation", "max_base_moment"]].to_numpy()).all()

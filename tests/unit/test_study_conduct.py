@@ -1,0 +1,127 @@
+"""A study from its specification to its table, in memory, in a folder, resumed, and estimated."""
+
+from pathlib import Path
+
+import pandas as pd
+import pyarrow.parquet as pq
+import pytest
+
+import rockflex as rf
+from rockflex.study.plans import ChunkedPlan
+
+FRAME = {
+    "n_stories": 3,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 40e3,
+    "stiffness_ratio": 0.0,
+    "period": 0.6,
+    "aspect_ratio": 8.0,
+    "damping_ratio": 0.02,
+}
+RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-2-*"]}
+STUDY = rf.CloudStudy(
+    structures=[{"name": "A", "frame": FRAME}],
+    records=RECORDS,
+    models=["2DOF-S", "2DOF-C", "5DOF-S"],  # the last has more modes than the structure: rows with errors
+    scales=[0.5, 1.5],
+    runs_per_chunk=5,
+)
+
+
+def test_in_memory_and_in_a_folder_alike(tmp_path):
+    seen: list[rf.Progress] = []
+    table = rf.run_study(STUDY, progress=seen.append)
+    assert len(table) == STUDY.plan().n_runs == 24
+    assert [each.done for each in seen] == [0, 1, 2, 3, 4, 5]
+    assert (seen[-1].parts, seen[-1].kept, seen[-1].runs) == (5, 0, 24)
+    assert table["error"].notna().sum() == 8
+    pd.testing.assert_frame_equal(rf.run_study(STUDY, tmp_path / "kept", workers=1), table)
+    single = rf.simulate(rf.Frame(**FRAME), rf.load_suite("fema-p695-far-field")["FF-1-b"].scaled(1.5), "2DOF-C")
+    row = table[(table["record"] == "FF-1-b") & (table["model"] == "2DOF-C") & (table["scale"] == 1.5)].iloc[0]
+    assert row["max_rotation"] == single.max_rotation
+
+
+def test_nothing_is_computed_twice(tmp_path, monkeypatch):
+    folder = tmp_path / "study"
+    whole = rf.run_study(STUDY, folder)
+    kept = {path.name: path.read_bytes() for path in (folder / "parts").iterdir()}
+    (folder / "parts" / "part-00001.parquet").unlink()
+    damaged = folder / "parts" / "part-00003.parquet"
+    damaged.write_bytes(damaged.read_bytes()[:-100])
+    computed: list[int] = []
+    real = ChunkedPlan.chunk
+    monkeypatch.setattr(ChunkedPlan, "chunk", lambda plan, number: computed.append(number) or real(plan, number))
+    seen: list[rf.Progress] = []
+    pd.testing.assert_frame_equal(rf.run_study(STUDY, folder, progress=seen.append), whole)
+    assert sorted(computed) == [1, 3]
+    assert (seen[0].kept, seen[-1].done, seen[-1].runs) == (3, 5, 10)
+    assert {path.name: path.read_bytes() for path in (folder / "parts").iterdir()} == kept
+
+
+def test_a_file_is_a_study(tmp_path):
+    file = tmp_path / "study.toml"
+    file.write_text(
+        'study = "population"\npairs = 6\nseed = 3\nruns_per_chunk = 4\n[records]\nsuites = ["el-centro-1940"]\n'
+    )
+    table = rf.run_study(file, tmp_path / "kept")
+    assert len(table) == 6
+    assert len(list((tmp_path / "kept" / "parts").iterdir())) == 3
+    assert pq.ParquetDataset(tmp_path / "kept" / "parts").read().num_rows == 6
+    pd.testing.assert_frame_equal(rf.run_study(str(file)), table)
+
+
+def test_a_changed_study_is_refused(tmp_path):
+    rf.run_study(STUDY, tmp_path / "kept")
+    other = rf.CloudStudy(**STUDY.document() | {"scales": [0.5, 2.0]})
+    with pytest.raises(rf.InputError, match=r"scales\[1\].*1\.5.*2\.0"):
+        rf.run_study(other, tmp_path / "kept")
+    assert rf.StudyFolder.load(tmp_path / "kept").finished
+
+
+def test_threads_and_a_cluster_exclude_each_other():
+    with pytest.raises(
+        rf.InputError, match=r"workers is for threads here, but 2 was given together with the cluster at"
+    ):
+        rf.run_study(STUDY, workers=2, dask="tcp://127.0.0.1:1")
+
+
+def test_an_interrupted_study_goes_on(tmp_path):
+    class EnoughError(Exception):
+        pass
+
+    def stop(now: rf.Progress) -> None:
+        if now.done == 2:
+            raise EnoughError
+
+    folder = tmp_path / "study"
+    with pytest.raises(EnoughError):
+        rf.run_study(STUDY, folder, workers=1, progress=stop)
+    assert len(rf.StudyFolder.load(folder).missing()) == 3
+    pd.testing.assert_frame_equal(rf.run_study(STUDY, folder), rf.run_study(STUDY))
+
+
+@pytest.mark.slow
+def test_a_cluster_gives_the_same_bits(tmp_path):
+    from dask_cluster import Cluster
+
+    here, there = tmp_path / "here", tmp_path / "there"
+    rf.run_study(STUDY, here)
+    (tmp_path / "logs").mkdir()
+    with Cluster(tmp_path / "logs") as cluster:
+        rf.run_study(STUDY, there, dask=cluster.address)
+    parts = [{path.name: path.read_bytes() for path in (folder / "parts").iterdir()} for folder in (here, there)]
+    assert parts[0] == parts[1]
+
+
+def test_time_is_estimated_from_a_sample():
+    one, two = rf.estimate_time(STUDY, workers=1), rf.estimate_time(STUDY, workers=2)
+    assert two > 0.0
+    assert one > 0.0
+    with pytest.raises(rf.InputError, match="workers must be a whole number of at least 1"):
+        rf.estimate_time(STUDY, workers=0)
+
+
+def test_what_is_written_is_named(tmp_path: Path):
+    rf.run_study(STUDY, tmp_path / "kept")
+    assert sorted(path.name for path in (tmp_path / "kept").iterdir()) == ["manifest.json", "parts", "spec.json"]
