@@ -11,6 +11,7 @@ from pathlib import Path
 
 import nonlinear
 import numpy as np
+import studies
 from numba import njit
 from rich.console import Console
 from rich.table import Table
@@ -44,7 +45,9 @@ def main() -> None:
         table.add_row(label, *(column[label] for column in columns))
     console.print(table)
     console.print(nonlinear.table(motion))
+    console.print(studies.table())
     console.print(memory())
+    console.print(studies.memory())
 
 
 def measure(n: int, motion: rf.GroundMotion) -> dict[str, str]:
