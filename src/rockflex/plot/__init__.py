@@ -1,25 +1,47 @@
 """Figures of results; matplotlib is imported here and nowhere else."""
 
+from rockflex.plot._agreement import plot_agreement
+from rockflex.plot._clouds import plot_clouds
+from rockflex.plot._combination import plot_modal_combination
 from rockflex.plot._energy import plot_energy
+from rockflex.plot._fragility import plot_fragility
+from rockflex.plot._frequency_curves import plot_frequency_equation
+from rockflex.plot._frequency_ratios import plot_frequency_ratios
 from rockflex.plot._history import plot_history
+from rockflex.plot._ida import plot_ida
 from rockflex.plot._mode_shapes import plot_mode_shapes
 from rockflex.plot._moment_rotation import plot_moment_rotation
+from rockflex.plot._moment_rotation_laws import plot_moment_rotation_laws
 from rockflex.plot._motion import plot_motion
+from rockflex.plot._population import plot_population
 from rockflex.plot._rocking_spectra import plot_overturning_spectrum, plot_rocking_spectrum
 from rockflex.plot._save import save_figure
 from rockflex.plot._spread import plot_spread
+from rockflex.plot._stripes import plot_stripes
+from rockflex.plot._tower import plot_tower
 from rockflex.plot._yielding import plot_hysteresis, plot_yielding
 
 __all__ = [
+    "plot_agreement",
+    "plot_clouds",
     "plot_energy",
+    "plot_fragility",
+    "plot_frequency_equation",
+    "plot_frequency_ratios",
     "plot_history",
     "plot_hysteresis",
+    "plot_ida",
+    "plot_modal_combination",
     "plot_mode_shapes",
     "plot_moment_rotation",
+    "plot_moment_rotation_laws",
     "plot_motion",
     "plot_overturning_spectrum",
+    "plot_population",
     "plot_rocking_spectrum",
     "plot_spread",
+    "plot_stripes",
+    "plot_tower",
     "plot_yielding",
     "save_figure",
 ]

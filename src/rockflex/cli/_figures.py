@@ -1,0 +1,96 @@
+"""``rockflex figures``: the figures of a study that is kept in a folder."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rockflex._errors import InputError
+from rockflex.cli import _options as options
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["EPILOG", "figures"]
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex cloud study.toml --out results
+
+rockflex figures results
+
+rockflex figures results --measure sa_t1 --format pdf --out manuscript"""
+
+FORMATS = ("png", "svg", "pdf")
+MEASURED = ("cloud", "incremental")
+
+
+def figures(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="Folder of a study, finished or not.", show_default=False)
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Where to. Default: FOLDER/figures.")
+    ] = None,
+    measure: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="Intensity measure of a cloud or an incremental study, such as sa_t1. Default: pgv."
+        ),
+    ] = None,
+    kind: Annotated[str, typer.Option("--format", metavar="|".join(FORMATS), help="Kind of the files.")] = "png",
+    force: options.Force = False,
+) -> None:
+    """Draw what a study found: fragility curves, clouds, capacities, or the agreement of models."""
+    if kind not in FORMATS:
+        message = f"--format must be one of {', '.join(FORMATS)}, but {kind!r} was given."
+        raise InputError(message)
+    from rockflex.cli._console import note
+    from rockflex.cli._output import check_folder, staged, versions
+    from rockflex.store import StudyFolder
+
+    target = folder / "figures" if out is None else out
+    check_folder(target, force=force)
+    study = StudyFolder.load(folder)
+    name = str(study.spec.get("study"))
+    if measure is not None and name not in MEASURED:
+        message = f"--measure is for cloud and incremental studies, but {folder} holds one of {name}. Leave it out."
+        raise InputError(message)
+    missing = len(study.missing())
+    table = study.frame(partial=True)
+    if missing:
+        note(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
+    document: dict[str, Any] = {
+        "versions": versions(),
+        "study": study.spec,
+        "parts": study.n_chunks,
+        "missing_parts": missing,
+    }
+    from rockflex.plot import save_figure
+
+    with staged(target, document, force=force) as stage:
+        for stem, figure in _figures(name, study.spec, table, measure or "pgv"):
+            save_figure(figure, stage / f"{stem}.{kind}")
+    note(f"Written to {target}")
+
+
+def _figures(study: str, spec: dict[str, Any], table: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, Any]]":
+    """Figures of a study with the stems of their files."""
+    from rockflex import plot
+
+    if study == "cloud":
+        yield "fragility", plot.plot_fragility(table, measure)
+        yield "rotation", plot.plot_clouds(table, "max_rotation", measure)
+        yield "top_displacement", plot.plot_clouds(table, "max_top_displacement", measure)
+    elif study == "incremental":
+        yield "capacities", plot.plot_ida(table, measure)
+    elif study == "stripes":
+        yield "stripes", plot.plot_stripes(table, measure=spec["measure"])
+    elif study == "population":
+        yield "population", plot.plot_population(table)
+        yield "agreement", plot.plot_agreement(table)
+        yield "modal_combination", plot.plot_modal_combination(table)
+    else:
+        message = f"There are no figures of a study of the kind {study!r}."
+        raise InputError(message)

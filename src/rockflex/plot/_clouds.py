@@ -1,0 +1,169 @@
+"""Clouds of response over intensity, and the lines through them."""
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError
+from rockflex.fragility import CloudFits, fit_clouds
+from rockflex.plot._study_tables import (
+    check_columns,
+    keys_of,
+    label_plainly,
+    looks_of,
+    measure_name,
+    names_in,
+    structure_panels,
+)
+from rockflex.plot._style import BLACK, Look, columns, styled
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockflex.fragility import CloudFit
+
+__all__ = ["plot_clouds"]
+
+_QUANTITIES = {
+    "max_rotation": r"$θ_{\mathrm{max}}$ [rad]",
+    "max_top_displacement": r"$u_{\mathrm{top,max}}$ [m]",
+}
+_TINY = 5.6
+_ROW = 0.056  # of the panel, from row to row of the numbers in it
+_CROSSES = 0.038  # and of the crosses
+
+
+def plot_clouds(
+    runs: "pd.DataFrame",
+    quantity: Literal["max_rotation", "max_top_displacement"] = "max_rotation",
+    measure: str = "pgv",
+    *,
+    threshold: float = 1e-4,
+    nominal: bool = False,
+) -> Figure:
+    """Plot the response of every run that rocked and stands over an intensity measure, a panel a structure.
+
+    The figure is that of Silva & Stojadinović 2024, Figs. 6 and 7: lines log(y) = c1 + c2 log(IM), with natural
+    logarithms, by least squares, and their dispersion σ. The numbers stand in the panel, with how many runs `n` rocked
+    and how many overturned (`OV`); those are crosses at the top, a row a model, as they have no peak to be shown.
+
+    Parameters
+    ----------
+    runs
+        The table of a cloud study, such as `run_cloud` returns.
+    quantity
+        ``"max_rotation"`` (Fig. 6) or ``"max_top_displacement"`` (Fig. 7).
+    measure
+        Column of the intensity measure.
+    threshold
+        Rotation in rad up to which a run counts as one without rocking.
+    nominal
+        Count runs as overturned that pass 0.7 atan(B/h*_1), and not only those that reach π/2.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes a structure, logarithmic both ways; rad or m over the measure in its unit.
+
+    Raises
+    ------
+    InputError
+        If the quantity is unknown, the table lacks a column or holds no solved run of a structure and model, or there
+        are too many structures or models.
+    """
+    if quantity not in _QUANTITIES:
+        message = f"quantity must be one of {', '.join(_QUANTITIES)}, but {quantity!r} was given."
+        raise InputError(message)
+    check_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
+    fits = fit_clouds(runs, measure, threshold=threshold, nominal=nominal)
+    looks = looks_of(names_in(fit.model for fit in fits))
+    names = names_in(fit.structure for fit in fits)
+    solved = runs[runs["status"].notna()]
+    structures, models = solved["structure"].astype(str), solved["model"].astype(str)
+    fell = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
+    rocked = ~fell & (solved["max_rotation"].to_numpy(dtype=float) > threshold)
+    with styled():
+        figure, panels = structure_panels(names, 2, 2.45, measure_name(measure), _QUANTITIES[quantity])
+        panels[0].set_xscale("log")
+        panels[0].set_yscale("log")
+        for axes in panels:
+            label_plainly(axes.xaxis)
+        _set_limits(panels[0], solved[rocked], solved[rocked | fell], quantity, measure, len(looks))
+        for axes, name in zip(panels, names, strict=True):
+            rows: list[tuple[str, str]] = []
+            for fit in (fit for fit in fits if fit.structure == name):
+                look, marker = looks[fit.model]
+                mine = ((structures == name) & (models == fit.model)).to_numpy(dtype=bool)
+                line = fit.outcomes.rotation if quantity == "max_rotation" else fit.top_displacement
+                _draw(axes, solved[mine & rocked], quantity, fit, line, look, marker)
+                _mark_fallen(
+                    axes, solved[mine & fell][measure].to_numpy(dtype=float), look, list(looks).index(fit.model)
+                )
+                rows.append((_numbers(fit, line), look.color))
+            _write(axes, rows)
+        handles = keys_of(looks)
+        if fell.any():
+            handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
+        labels = [str(handle.get_label()) for handle in handles]
+        figure.legend(handles=handles, loc="outside upper center", ncols=columns(labels, 40 + 40 * (len(names) > 1)))
+    return figure
+
+
+def _set_limits(
+    axes: Axes, rocked: "pd.DataFrame", seen: "pd.DataFrame", quantity: str, measure: str, n_models: int
+) -> None:
+    """Room for all points, for a row of crosses a model above them, and for the numbers below."""
+    im = seen[measure].to_numpy(dtype=float)
+    values = rocked[quantity].to_numpy(dtype=float)
+    values = values[values > 0.0]
+    low, high = (values.min(), values.max()) if values.size else (1e-4, 1e-1)
+    left, right = (im.min(), im.max()) if im.size else (0.1, 1.0)
+    below, above = 0.06 + _ROW * (n_models + 1), 0.06 + _CROSSES * n_models
+    height = max(float(np.log(high / low)), 0.5) / (1.0 - below - above)
+    axes.set_ylim(low * np.exp(-below * height), high * np.exp(above * height))
+    axes.set_xlim(left / 1.15, right * 1.15)
+
+
+def _draw(
+    axes: Axes, runs: "pd.DataFrame", quantity: str, fit: CloudFits, line: "CloudFit | None", look: Look, marker: str
+) -> None:
+    im = runs[fit.measure].to_numpy(dtype=float)
+    axes.plot(
+        im, runs[quantity].to_numpy(dtype=float), marker, color=look.color, markersize=2.4, markerfacecolor="none",
+        markeredgewidth=0.45, alpha=0.6, label=f"_{fit.model}",
+    )  # fmt: skip
+    if line is not None:
+        ends = np.array([im.min(), im.max()])
+        axes.plot(
+            ends, line.median(ends), color=look.color, linestyle=look.dashes, linewidth=1.3, label=fit.model,
+            zorder=3.0,
+        )  # fmt: skip
+
+
+def _mark_fallen(axes: Axes, im: NDArray[np.float64], look: Look, rank: int) -> None:
+    """Crosses of the runs that overturned, in the model's own row at the top."""
+    axes.plot(
+        im, np.full(im.size, 0.97 - _CROSSES * rank), "x", color=look.color, markersize=2.6, markeredgewidth=0.6,
+        transform=axes.get_xaxis_transform(), label="_overturned",
+    )  # fmt: skip
+
+
+def _numbers(fit: CloudFits, line: "CloudFit | None") -> str:
+    count, fallen = fit.outcomes.n_rocking, fit.outcomes.n_overturned
+    three = "     –     –     –" if line is None else f"{line.c1:6.2f}{line.c2:6.2f}{line.dispersion:6.2f}"
+    failed = f" ({fit.n_failed} failed)" if fit.n_failed else ""
+    return f"{fit.model[:9]:>9}{three}{count:5d}{fallen:4d}{failed}".replace("-0.00", " 0.00")
+
+
+def _write(axes: Axes, rows: list[tuple[str, str]]) -> None:
+    """The numbers of all models, the first on top, in the lower right corner."""
+    header = f"{'':9}{'c₁':>6}{'c₂':>6}{'σ':>6}{'n':>5}{'OV':>4}"
+    for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
+        axes.text(
+            0.985, 0.025 + _ROW * place, text, transform=axes.transAxes, color=color, fontsize=_TINY, ha="right",
+            family="DejaVu Sans Mono", bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
+        )  # fmt: skip

@@ -1,0 +1,175 @@
+"""Fragility curves of a cloud study."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, SupportsIndex
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from rockflex._checks import whole_number
+from rockflex._errors import InputError
+from rockflex.fragility import CloudFits, LogisticFit, fit_clouds
+from rockflex.plot._study_tables import keys_of, looks_of, measure_name, names_in, structure_panels
+from rockflex.plot._style import GRAY, SHADE, SMALL, Look, columns, styled
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["plot_fragility"]
+
+_POINTS = 400
+_END = np.log(0.995 / 0.005)  # logit at which a curve has arrived
+
+
+def plot_fragility(
+    clouds: "pd.DataFrame | Sequence[CloudFits]",
+    measure: str | None = None,
+    *,
+    level: float | None = None,
+    overturning: bool = False,
+    bins: SupportsIndex = 0,
+) -> Figure:
+    """Plot the probability that a structure rocks over an intensity measure, a panel a structure, a curve a model.
+
+    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of θ_max > 1e-4 rad. Where all runs rock,
+    or none, the line is flat; left of the weakest motion, in the shade, curves are extrapolated. For another threshold
+    give what `fit_clouds` returned with it.
+
+    Parameters
+    ----------
+    clouds
+        The table of a cloud study, such as `run_cloud` returns, or what `fit_clouds` made of it.
+    measure
+        Column of the intensity measure; default: ``"pgv"``, or the measure of the fits.
+    level
+        Confidence of bands around the curves, between 0 and 1. Default: no bands.
+    overturning
+        Whether to draw the probability of overturning too, as thin lines.
+    bins
+        Number of groups, of equally many runs of neighbouring intensities, whose fraction of rocking runs is marked;
+        needs the table. Default: none.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes a structure, over the measure in its unit.
+
+    Raises
+    ------
+    InputError
+        If the table lacks a column or holds no solved run of a structure and model, the fits are of several measures or
+        of another one, bins are asked of fits, or there are too many structures or models.
+    """
+    groups = whole_number("bins", bins, 0)
+    fits, runs = _fits(clouds, measure, groups)
+    looks = looks_of(names_in(fit.model for fit in fits))
+    names = names_in(fit.structure for fit in fits)
+    limit = _limit(fits, runs, whole=overturning or groups > 0)
+    with styled():
+        y = "probability" if overturning else rf"$P(θ_{{\mathrm{{max}}}}>{_power(fits[0].outcomes.threshold)})$"
+        figure, panels = structure_panels(names, 3, 2.1, measure_name(fits[0].measure), y)
+        for axes, name in zip(panels, names, strict=True):
+            for fit in (fit for fit in fits if fit.structure == name):
+                look, marker = looks[fit.model]
+                _draw(axes, fit, look, limit, level, overturning=overturning)
+                if runs is not None and groups:
+                    _mark(axes, _of(runs, fit), fit, marker, look.color, groups)
+            if runs is not None:
+                axes.axvspan(0.0, float(runs[fits[0].measure].min()), color=SHADE, linewidth=0.0, label="_no runs")
+            failed = sum(fit.n_failed for fit in fits if fit.structure == name)
+            if failed:
+                axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
+        panels[0].set_xlim(0.0, limit)
+        panels[0].set_ylim(-0.03, 1.03)
+        handles: list[Line2D | Patch] = [*keys_of(looks, symbols=False)]
+        if groups:
+            handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))
+        if overturning:
+            handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label="overturning"))
+        if runs is not None:
+            handles.append(Patch(color=SHADE, linewidth=0.0, label="no runs"))
+        labels = [str(handle.get_label()) for handle in handles]
+        figure.legend(handles=handles, loc="outside upper center", ncols=columns(labels, 42 + 44 * (len(names) > 1)))
+    return figure
+
+
+def _fits(
+    clouds: "pd.DataFrame | Sequence[CloudFits]", measure: str | None, groups: int
+) -> "tuple[list[CloudFits], pd.DataFrame | None]":
+    """The fits, and the solved runs where they are known."""
+    if hasattr(clouds, "columns"):
+        runs: pd.DataFrame = clouds  # pyright: ignore[reportAssignmentType]
+        found = fit_clouds(runs, measure or "pgv")
+        if not found:
+            message = "The table has no rows. Give what run_cloud returned."
+            raise InputError(message)
+        return found, runs[runs["status"].notna()]
+    given: list[Any] = list(clouds)
+    fits = [fit for fit in given if isinstance(fit, CloudFits)]
+    if not fits or len(fits) < len(given):
+        message = "clouds must be the table of a cloud study, or at least one fit of it from fit_clouds."
+        raise InputError(message)
+    measures = names_in(fit.measure for fit in fits)
+    if len(measures) > 1 or (measure is not None and measures != [measure]):
+        wanted = "one measure" if measure is None else repr(measure)
+        message = f"The fits are of {', '.join(measures)}, but {wanted} is to be shown. Fit the clouds with that one."
+        raise InputError(message)
+    if groups:
+        message = "bins counts runs, but only fits were given. Give the table of the study."
+        raise InputError(message)
+    return fits, None
+
+
+def _of(runs: "pd.DataFrame", fit: CloudFits) -> "pd.DataFrame":
+    return runs[(runs["structure"].astype(str) == fit.structure) & (runs["model"].astype(str) == fit.model)]
+
+
+def _limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
+    """End of the axis: where the curves of rocking have arrived, or the strongest motion if all is to be shown."""
+    ends: list[float] = []
+    for fit in fits:
+        rocks, falls = fit.outcomes.initiation, fit.outcomes.overturning
+        if isinstance(rocks, LogisticFit) and rocks.b1 > 0.0:
+            ends.append(float(np.exp((_END - rocks.b0) / rocks.b1)))
+        if whole and isinstance(falls, LogisticFit) and falls.b1 > 0.0:
+            ends.append(2.0 * falls.median)
+    if runs is None:
+        return max(ends, default=1.0)
+    strongest = float(runs[fits[0].measure].max())
+    return strongest if whole else min(max(ends, default=strongest), strongest)
+
+
+def _draw(axes: Axes, fit: CloudFits, look: Look, limit: float, level: float | None, *, overturning: bool) -> None:
+    im = np.linspace(limit / _POINTS, limit, _POINTS)
+    curves = [(fit.outcomes.initiation, 1.2, fit.model)]
+    if overturning:
+        curves.append((fit.outcomes.overturning, 0.6, "_overturning"))
+    for curve, width, label in curves:
+        if level is not None:
+            low, high = curve.band(im, level)
+            axes.fill_between(im, low, high, color=look.color, alpha=0.13, linewidth=0.0, label="_band")
+        axes.plot(im, curve.probability(im), color=look.color, linestyle=look.dashes, linewidth=width, label=label)
+
+
+def _mark(axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int) -> None:
+    """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
+    im = runs[fit.measure].to_numpy(dtype=float)
+    order = np.argsort(im, kind="stable")
+    rocks = runs["max_rotation"].to_numpy(dtype=float) > fit.outcomes.threshold
+    parts: list[NDArray[np.intp]] = [part for part in np.array_split(order, groups) if part.size]
+    axes.plot(
+        [float(np.exp(np.log(im[part]).mean())) for part in parts], [float(rocks[part].mean()) for part in parts],
+        marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7, label="_observed",
+    )  # fmt: skip
+
+
+def _power(threshold: float) -> str:
+    """The threshold as mathematics."""
+    digits, exponent = f"{threshold:.3e}".split("e")
+    digits = f"{float(digits):g}"
+    times = "" if digits == "1" else rf"{digits}\times"
+    return rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"

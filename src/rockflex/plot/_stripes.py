@@ -1,0 +1,117 @@
+"""Multiple stripes: fractions observed at each level, and the lognormal curve through them."""
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError, SolverError
+from rockflex.fragility import LognormalFragility, fit_stripes
+from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
+from rockflex.plot._style import Look, columns, styled
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["plot_stripes"]
+
+Array = NDArray[np.float64]
+
+_POINTS = 400
+_WORDS = {
+    "overturning": "P(overturning)",
+    "nominal": r"$P(θ_{\mathrm{max}}>0.7\,\mathrm{atan}(B/h^*_1))$",
+    "uplift": "P(uplift)",
+}
+
+
+def plot_stripes(
+    runs: "pd.DataFrame",
+    limit: Literal["overturning", "nominal", "uplift"] | float = "overturning",
+    measure: str = "level of the stripe",
+    *,
+    level: float | None = 0.9,
+) -> Figure:
+    """Plot the fraction of runs that exceed a limit in each stripe, a panel a structure, symbols and a curve a model.
+
+    The curves are those of `fit_stripes`; where the stripes determine none, there are symbols alone.
+
+    Parameters
+    ----------
+    runs
+        The table of a stripe study.
+    limit
+        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
+    measure
+        Name of the measure of the levels, such as ``"pgv"``, for the axis; the table does not say it.
+    level
+        Confidence of the bands around the curves, between 0 and 1; None for no bands.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes a structure, over the measure in its unit.
+
+    Raises
+    ------
+    InputError
+        If the table lacks a column or has no solved run, the limit is unknown, or there are too many structures or
+        models.
+    """
+    needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
+    check_columns(runs, needed, "the table of a stripe study")
+    from rockflex.study.plans import stripe_counts
+
+    counts = stripe_counts(runs, limit)
+    if not len(counts):
+        message = "No run was solved. See the column error of the table."
+        raise InputError(message)
+    looks = looks_of(names_in(runs["model"]))
+    names = names_in(runs["structure"])
+    end = 1.1 * float(counts["level"].max())
+    with styled():
+        y = _WORDS[limit] if isinstance(limit, str) else rf"$P(θ_{{\mathrm{{max}}}}>{limit:g}\ \mathrm{{rad}})$"
+        figure, panels = structure_panels(names, 3, 2.1, measure_name(measure), y)
+        for axes, name in zip(panels, names, strict=True):
+            notes: list[tuple[str, str]] = []
+            for model, (look, marker) in looks.items():
+                stripes = counts[(counts["structure"].astype(str) == name) & (counts["model"].astype(str) == model)]
+                if len(stripes):
+                    text = _draw(axes, stripes, model, look, marker, end, level)
+                    notes.append((text, look.color))
+            for place, (text, color) in enumerate(reversed(notes)):
+                axes.text(
+                    0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=6.5, color=color
+                )
+        panels[0].set_xlim(0.0, end)
+        panels[0].set_ylim(-0.03, 1.03)
+        figure.legend(handles=keys_of(looks), loc="outside upper center", ncols=columns(list(looks), 42))
+    return figure
+
+
+def _draw(
+    axes: Axes, stripes: "pd.DataFrame", model: str, look: Look, marker: str, end: float, level: float | None
+) -> str:
+    """Symbols, curve and band; return what to write of them."""
+    at, events, total = (stripes[name].to_numpy(dtype=float) for name in ("level", "n_exceeding", "n_total"))
+    axes.plot(
+        at, events / total, marker, color=look.color, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8,
+        label=f"_{model}",
+    )  # fmt: skip
+    fit = _fit(at, events, total)
+    if fit is None:
+        return "no curve fits"
+    im = np.linspace(end / _POINTS, end, _POINTS)
+    axes.plot(im, fit.probability(im), color=look.color, linestyle=look.dashes, label=model)
+    if level is not None:
+        axes.fill_between(im, *fit.band(im, level), color=look.color, alpha=0.13, linewidth=0.0, label="_band")
+    return f"median {fit.median:.3g}, β = {fit.beta:.2f}"
+
+
+def _fit(at: Array, events: Array, total: Array) -> LognormalFragility | None:
+    try:
+        return fit_stripes(at, events, total)
+    except (InputError, SolverError):
+        return None

@@ -1,0 +1,122 @@
+"""What figures of studies share: the columns they need, names of axes, and a panel a structure."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from rockflex._errors import InputError
+from rockflex.plot._style import literal, new_figure
+from rockflex.plot._surrogates import surrogate_looks
+from rockflex.plot._units import short
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockflex.plot._style import Look
+
+__all__ = [
+    "MARKERS",
+    "check_columns",
+    "keys_of",
+    "label_plainly",
+    "looks_of",
+    "measure_name",
+    "names_in",
+    "structure_panels",
+]
+
+MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8", "H")
+
+_MEASURES = {
+    "pga": "PGA [m/s²]",
+    "pgv": "PGV [m/s]",
+    "pgd": "PGD [m]",
+    "arias": "Arias intensity [m/s]",
+    "cav": "CAV [m/s]",
+    "sd_t1": r"$S_d(T_1)$ [m]",
+    "sa_t1": r"$S_a(T_1)$ [m/s²]",
+    "relative_pga": r"PGA/($g\,\tan α$)",
+    "relative_pgv": r"$p$ PGV/($g\,\tan α$)",
+}
+_MOST = 12  # panels in one figure
+
+
+def check_columns(table: object, columns: Iterable[str], source: str) -> None:
+    """Raise an InputError unless a table has rows and these columns; `source` says where to get one that has."""
+    lacking = [name for name in columns if name not in getattr(table, "columns", ())]
+    if lacking or not len(table):  # pyright: ignore[reportArgumentType]
+        lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
+        message = f"The table {lacks}. Give {source}."
+        raise InputError(message)
+
+
+def measure_name(measure: str) -> str:
+    """An intensity measure with its unit, for an axis; of another column its name."""
+    return _MEASURES.get(measure, literal(measure))
+
+
+def names_in(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
+    """Different names in a column, in the order in which they come."""
+    return list(dict.fromkeys(str(name) for name in column))
+
+
+def looks_of(models: Sequence[str]) -> "dict[str, tuple[Look, str]]":
+    """Give each model a line and a symbol of its own."""
+    looks = surrogate_looks(models)
+    return {model: (look, marker) for (model, look), marker in zip(looks.items(), MARKERS, strict=False)}
+
+
+def label_plainly(axis: Axis) -> None:
+    """Label a logarithmic axis of some decades at 1, 2 and 5, without exponents."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(_plain))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _plain(value: float, _: object) -> str:
+    return short(value)
+
+
+def keys_of(looks: "dict[str, tuple[Look, str]]", *, symbols: bool = True) -> list[Line2D]:
+    """Entries of a legend, one a model, of its line and its symbol."""
+    return [
+        Line2D(
+            [], [], color=look.color, linestyle=look.dashes,  # pyright: ignore[reportArgumentType]
+            marker=marker if symbols else "", markersize=3.5, markerfacecolor="none", markeredgewidth=0.7, label=model,
+        )
+        for model, (look, marker) in looks.items()
+    ]  # fmt: skip
+
+
+def structure_panels(names: Sequence[str], across: int, height: float, x: str, y: str) -> tuple[Figure, list[Axes]]:
+    """Figure with a panel a structure of a `height` in inches, `across` in a row, over the same axes.
+
+    Raises
+    ------
+    InputError
+        If there are too many for one figure.
+    """
+    if len(names) > _MOST:
+        message = f"{len(names)} structures are too many for one figure; {_MOST} fit. Plot fewer at a time."
+        raise InputError(message)
+    columns = min(across, len(names))
+    rows = math.ceil(len(names) / columns)
+    figure = new_figure(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    panels: list[Axes] = list(grid.flat)
+    for spare in panels[len(names) :]:
+        spare.remove()
+    for place, (axes, name) in enumerate(zip(panels, names, strict=False)):
+        axes.set_title(literal(name))
+        if place + columns >= len(names):
+            axes.set_xlabel(x)
+            axes.tick_params(labelbottom=True)
+        if place % columns == 0:
+            axes.set_ylabel(y)
+    return figure, panels[: len(names)]
