@@ -101,11 +101,14 @@ from .structure import from_matrices as from_matrices
 from .structure import from_modes as from_modes
 from .structure import rigid_block as rigid_block
 from .structure.file import read_structure as read_structure
+from .study import CombinedPeaks as CombinedPeaks
 from .study import InitialState as InitialState
 from .study import OverturningScales as OverturningScales
 from .study import Progress as Progress
+from .study import SecondMode as SecondMode
 from .study import estimate_time as estimate_time
 from .study import frequency_ratios as frequency_ratios
+from .study import modal_combination as modal_combination
 from .study import overturning_scales as overturning_scales
 from .study import overturning_spectrum as overturning_spectrum
 from .study import rocking_spectrum as rocking_spectrum

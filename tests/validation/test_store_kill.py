@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+import rockflex as rf
 from rockflex.store import StudyFolder
 from toy_study import ToyPlan, run_study
 
@@ -56,3 +57,32 @@ def test_killed_again_and_again_it_ends(tmp_path: Path) -> None:
             process.kill()
     run_study(str(study), ToyPlan(PLAN.n_chunks))
     pd.testing.assert_frame_equal(StudyFolder.load(study).frame(), PLAN.whole())
+
+
+def test_a_real_study_killed_at_random_moments_ends_alike(tmp_path: Path) -> None:
+    """Killed as often as it takes: each process goes on where the one before was stopped."""
+    spec, folder, draw = tmp_path / "study.toml", tmp_path / "killed", random.Random(7)
+    spec.write_text(
+        'study = "population"\npairs = 240\nruns_per_chunk = 12\n[records]\nsuites = ["fema-p695-far-field"]\n'
+    )
+    command = [sys.executable, "-m", "rockflex", "population", str(spec), "--out", str(folder), "--workers", "1"]
+    kills, kept = 0, 0
+    while True:
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            while process.poll() is None and len(list(folder.glob("parts/*.parquet"))) <= kept:
+                time.sleep(0.001)
+            time.sleep(draw.uniform(0.0, 0.05))
+            if process.poll() is None and kills < 8:
+                process.kill()
+                kills += 1
+            process.wait()
+        kept = len(list(folder.glob("parts/*.parquet")))
+        if process.returncode == 0:
+            break
+    assert kills > 0
+    undisturbed = rf.run_study(spec, tmp_path / "whole")
+    pd.testing.assert_frame_equal(rf.run_study(spec, folder), undisturbed)
+    parts = [
+        {path.name: path.read_bytes() for path in (place / "parts").iterdir()} for place in (folder, tmp_path / "whole")
+    ]
+    assert parts[0] == parts[1]

@@ -3,17 +3,21 @@
 from rockflex.study._conduct import Progress, estimate_time, run_study
 from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
+from rockflex.study._modal_combination import CombinedPeaks, SecondMode, modal_combination
 from rockflex.study._overturning import OverturningScales, overturning_scales, overturning_spectrum
 from rockflex.study._rocking_spectrum import rocking_spectrum
 from rockflex.study._simulate import simulate
 from rockflex.study._simulate_many import simulate_many
 
 __all__ = [
+    "CombinedPeaks",
     "InitialState",
     "OverturningScales",
     "Progress",
+    "SecondMode",
     "estimate_time",
     "frequency_ratios",
+    "modal_combination",
     "overturning_scales",
     "overturning_spectrum",
     "rocking_spectrum",

@@ -16,6 +16,7 @@ from rockflex.motion import GroundMotion, Suite
 from rockflex.response import Observables, Response, global_observables, respond
 from rockflex.solve import ExactEngine
 from rockflex.study._arguments import free_vibration_time
+from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study.plans._bench import record_columns, record_facts
 from rockflex.study.plans._plan import ChunkedPlan, run_plan
 from rockflex.study.plans._prototypes import STORY_MASS, Prototype, draw_prototype
@@ -101,15 +102,16 @@ class PopulationPlan(ChunkedPlan):
         motion = self.motions[drawn.record]
         properties = drawn.frame().rocking()
         row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
-        row |= _facts_of(drawn, properties) | self._facts[drawn.record] | _second_mode(properties, motion)
+        second = second_mode(properties, motion)
+        row |= _facts_of(drawn, properties) | self._facts[drawn.record] | _second_mode(properties, second)
         try:
-            all_modes, second = self._run(LinearModel("MDOF-S", properties), motion)
+            all_modes, second_peak = self._run(LinearModel("MDOF-S", properties), motion)
             one_mode, _ = self._run(LinearModel("2DOF-S", properties.truncated(1)), motion)
         except (SolverError, InputError) as error:
             return [row | {"error": str(error)}]
-        row |= {"status_mdof": all_modes.status, **peaks_of(all_modes, "_mdof"), "max_second_displacement_mdof": second}
+        row |= {"status_mdof": all_modes.status, **peaks_of(all_modes, "_mdof"), "max_second_displacement_mdof": second_peak}
         row |= {"status_2dof": one_mode.status, **peaks_of(one_mode, "_2dof")}
-        return [row | _combined(row)]
+        return [row | _combined(one_mode, second)]
 
     def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
         """Response, and the peak of the last of the model's first two modes."""
@@ -141,29 +143,24 @@ def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
     }
 
 
-def _second_mode(properties: RockingProperties, motion: GroundMotion) -> Row:
+def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
     omega = float(properties.omega[1])
-    period = 2.0 * math.pi / omega
-    sd = motion.sd(period, float(properties.zeta[1]))
     return {
-        "period_2": period,
-        "sd_2": sd,
-        "sa_2": omega**2 * sd,
+        "period_2": 2.0 * math.pi / omega,
+        "sd_2": second.displacement,
+        "sa_2": omega**2 * second.displacement,
         "top_ordinate_2": float(properties.top_ordinate[1]),
         "effective_mass_2": float(properties.effective_mass[1]),
         "effective_height_2": float(properties.effective_height[1]),
     }
 
 
-def _combined(row: Row) -> Row:
-    """Peaks of 2DOF-S and of the second mode on a fixed base, combined as the root of their squares (Section 3.4)."""
-    force = row["effective_mass_2"] * row["sa_2"]
-    second = {
-        "top_displacement": row["top_ordinate_2"] * row["sd_2"],
-        "base_shear": force,
-        "base_moment": row["effective_height_2"] * force,
+def _combined(rocking: Response, second: SecondMode) -> Row:
+    """Peaks of 2DOF-S and of the second mode on a fixed base, combined (Section 3.4)."""
+    peaks = combine(rocking, second)
+    return {
+        f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")
     }
-    return {f"srss_{name}": math.hypot(row[f"max_{name}_2dof"], value) for name, value in second.items()}
 
 
 def run_population(
