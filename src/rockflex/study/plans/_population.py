@@ -109,7 +109,8 @@ class PopulationPlan(ChunkedPlan):
             one_mode, _ = self._run(LinearModel("2DOF-S", properties.truncated(1)), motion)
         except (SolverError, InputError) as error:
             return [row | {"error": str(error)}]
-        row |= {"status_mdof": all_modes.status, **peaks_of(all_modes, "_mdof"), "max_second_displacement_mdof": second_peak}
+        row |= {"status_mdof": all_modes.status, **peaks_of(all_modes, "_mdof")}
+        row["max_second_displacement_mdof"] = second_peak
         row |= {"status_2dof": one_mode.status, **peaks_of(one_mode, "_2dof")}
         return [row | _combined(one_mode, second)]
 
