@@ -37,7 +37,14 @@ FOUNDATION = {
 FACES = {"cli", "__main__"}  # may import anything, and nothing below may import them or the package's front
 
 # The one place of each of these libraries.
-HOME = {"matplotlib": {"plot"}, "typer": {"cli"}, "rich": {"cli"}, "numba": {"_kernel"}, "distributed": {"parallel"}, "dask": {"parallel"}}
+HOME = {
+    "matplotlib": {"plot"},
+    "typer": {"cli"},
+    "rich": {"cli"},
+    "numba": {"_kernel"},
+    "distributed": {"parallel"},
+    "dask": {"parallel"},
+}
 NEVER_AT_IMPORT = {"pandas"}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),

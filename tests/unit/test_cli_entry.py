@@ -23,7 +23,18 @@ def python(*arguments, **variables):
     )
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["modes", "-h"], ["motion", "-h"], ["cloud", "-h"], ["--version"]])
+HELPS = [
+    ["--help"],
+    ["run", "--help"],
+    ["modes", "-h"],
+    ["motion", "-h"],
+    ["cloud", "-h"],
+    ["figures", "-h"],
+    ["--version"],
+]
+
+
+@pytest.mark.parametrize("arguments", HELPS)
 def test_help_imports_nothing_heavy(arguments):
     code = f"""
 import sys

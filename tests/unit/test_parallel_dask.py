@@ -1,7 +1,6 @@
 """A map over a Dask cluster of real processes: the same tables, whatever dies on the way."""
 
 import builtins
-import contextlib
 import functools
 import socket
 import time

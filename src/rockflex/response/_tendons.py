@@ -33,7 +33,8 @@ def tendon_forces(model: RockingModel, nodes: Array) -> Array:
 def largest_tendon_force(model: RockingModel, rotation: float) -> tuple[float, float]:
     """Largest force of any tendon in N, and over its yield force, up to a rotation |θ|.
 
-    Zero without tendons; the latter is NaN where no yield force is known. A tendon off the centre has a mirror image, so that one of the two is stretched by the longer arm.
+    Zero without tendons; the latter is NaN where no yield force is known. A tendon off the centre has a mirror image,
+    so that one of the two is stretched by the longer arm.
     """
     p = model.properties
     if not p.tendons:
