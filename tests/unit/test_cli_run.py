@@ -317,7 +317,7 @@ def test_bad_usage():
 
 
 def test_units_cover_every_number_of_a_run():
-    dimensionless = {"scale", "n_uplifts", "n_impacts"}
+    dimensionless = {"scale", "n_uplifts", "n_impacts", "tendon_utilisation"}
     named = {name.replace("time_of_max_*", "time_of_max_") for name in _run_output.UNITS}
     row = document(STRUCTURE, "el-centro-1940", "--model", "fixed")["runs"][0]
     for name, value in row.items():
