@@ -1,0 +1,180 @@
+"""The documentation against the package: its code runs and prints what it says, its links lead somewhere.
+
+Blocks of a page are run in their order, in one namespace and one folder: `python` as it stands, `sql` by DuckDB,
+`console` lines that begin with "$ rockflex". A `text` block right after a `python` block is what that prints. A block
+that begins with a comment such as "# structure.toml" is a file.
+"""
+
+import contextlib
+import io
+import re
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import rockflex
+from rockflex.cli import app
+from rockflex.study import plans
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted([*DOCS.glob("*.md"), *DOCS.glob("howto/*.md"), *DOCS.glob("theory/*.md")])
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"# ([\w-]+\.(?:toml|py|csv|txt))\b.*\n")
+LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
+GENERATED = ("gallery/", "../gallery/")
+
+
+@dataclass(frozen=True)
+class Block:
+    """One fenced block, and the output that stands right after it."""
+
+    language: str
+    source: str
+    line: int
+    output: str | None
+
+
+def blocks_of(text: str) -> list[Block]:
+    """The fenced blocks of a page in their order."""
+    found = list(BLOCK.finditer(text))
+    blocks = []
+    for match, after in zip(found, [*found[1:], None][: len(found)], strict=True):
+        printed = (
+            after is not None
+            and after[1] == "text"
+            and match[1] == "python"
+            and not text[match.end() : after.start()].strip()
+        )
+        line = text.count("\n", 0, match.start()) + 2
+        blocks.append(Block(match[1], match[2], line, after[2] if printed and after is not None else None))
+    return blocks
+
+
+def run_page(page: Path, folder: Path) -> list[tuple[Block, str]]:
+    """Run a page's blocks in `folder`, the working directory, and return what the python blocks printed."""
+    names: dict[str, object] = {"__name__": "__main__"}
+    printed = []
+    for block in blocks_of(page.read_text("utf-8")):
+        file = FILE.match(block.source)
+        if file is not None:
+            (folder / file[1]).write_text(block.source, "utf-8")
+            if block.language == "python":
+                compile(block.source, file[1], "exec")
+        elif block.language == "python":
+            code = compile("\n" * (block.line - 1) + block.source, str(page), "exec")
+            with contextlib.redirect_stdout(io.StringIO()) as out:
+                exec(code, names)
+            printed.append((block, out.getvalue()))
+        elif block.language == "sql":
+            import duckdb
+
+            duckdb.sql(block.source).fetchall()
+        elif block.language == "console":
+            for line in block.source.splitlines():
+                command = shlex.split(line.removeprefix("$ "), comments=True)
+                if line.startswith("$ rockflex") and "--dask" not in command:
+                    result = CliRunner().invoke(app, command[1:])
+                    assert result.exit_code == 0, f"{page.name}: {line}\n{result.output}"
+    return printed
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))
+def test_code_of_a_page_runs_and_prints_what_it_says(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for block, printed in run_page(page, tmp_path):
+        if block.output is not None:
+            lines = [line.rstrip() for line in printed.splitlines()]
+            assert lines == block.output.splitlines(), f"{page.name}, line {block.line}"
+
+
+@pytest.mark.parametrize(
+    "page",
+    [*PAGES, *sorted(DOCS.glob("*/*.md")), ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md"],
+    ids=lambda page: str(page.relative_to(ROOT)),
+)
+def test_links_lead_somewhere(page):
+    missing = []
+    for target in LINK.findall(page.read_text("utf-8")):
+        if "://" in target or target.startswith("mailto:"):
+            continue
+        if target.startswith(GENERATED):  # written by the build from a script of the same name
+            script = re.sub(r"^(?:\.\./)?gallery/(?:images/sphx_glr_)?(.*?)(?:_\d{3}\.png|\.rst)$", r"\1", target)
+            known = script == "index" or (ROOT / "examples" / "gallery" / f"{script}.py").exists()
+        else:
+            known = (page.parent / target).exists()
+        if not known:
+            missing.append(target)
+    assert missing == []
+
+
+def listed() -> list[str]:
+    """Names of the reference, in the order of its pages."""
+    return [
+        name
+        for page in sorted(DOCS.glob("api/*.md"))
+        for name in re.findall(r"^   rockflex\.(\S+)$", page.read_text("utf-8"), re.M)
+    ]
+
+
+def test_the_reference_has_every_public_name_once():
+    names = listed()
+    assert sorted(name for name in names if "." not in name) == sorted(rockflex.__all__)
+    assert len(set(names)) == len(names)
+    for name in names:
+        if "." in name:
+            place, _, last = name.rpartition(".")
+            assert last not in rockflex.__all__
+            assert place == "study.plans"
+            assert last in plans.__all__
+
+
+def test_every_page_is_in_a_table_of_contents():
+    entries = set()
+    for page in DOCS.rglob("*.md"):
+        for body in re.findall(r"^```\{toctree\}\n(.*?)^```$", page.read_text("utf-8"), re.MULTILINE | re.DOTALL):
+            for line in body.splitlines():
+                if line.strip() and not line.startswith(":"):
+                    entry = line.strip().removesuffix(">").rpartition("<")[2]
+                    entries |= {path.with_suffix("").resolve() for path in page.parent.glob(f"{entry}.md")}
+                    if not entry.endswith("*"):
+                        entries.add((page.parent / entry).resolve())
+    pages = {page.with_suffix("") for page in DOCS.rglob("*.md")} - {DOCS / "index"}
+    assert pages <= entries
+    assert all(Path(f"{entry}.md").exists() or "gallery" in entry.parts for entry in entries)
+
+
+@pytest.mark.parametrize("script", sorted((ROOT / "examples" / "gallery").glob("*.py")), ids=lambda path: path.stem)
+def test_a_script_of_the_gallery_has_its_heading(script):
+    source = script.read_text("utf-8")
+    compile(source, script.name, "exec")
+    heading, rule = source.removeprefix('"""').strip().splitlines()[:2]
+    assert source.startswith('"""')
+    assert set(rule) == {"="}
+    assert len(rule) >= len(heading)
+
+
+@pytest.mark.parametrize(
+    ("text", "languages", "outputs"),
+    [
+        ("```python\nprint(1)\n```\n\n```text\n1\n```\n", ["python", "text"], ["1\n", None]),
+        ("```python\nprint(1)\n```\nprose\n```text\n1\n```\n", ["python", "text"], [None, None]),
+        ("no block", [], []),
+    ],
+)
+def test_blocks_are_found(text, languages, outputs):
+    blocks = blocks_of(text)
+    assert [block.language for block in blocks] == languages
+    assert [block.output for block in blocks] == outputs
+
+
+def test_wrong_output_and_dead_links_are_seen(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("[nowhere](gone.md)\n\n```python\nprint(2)\n```\n\n```text\n1\n```\n", "utf-8")
+    ((block, printed),) = run_page(page, tmp_path)
+    assert printed != block.output
+    with pytest.raises(AssertionError, match=r"gone\.md"):
+        test_links_lead_somewhere(page)
