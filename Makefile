@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 WORKERS ?= 2
 
-.PHONY: demo figures test check lint types docs bench records clean help
+.PHONY: demo figures test check lint types docs validate bench records clean help
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 10
@@ -40,6 +40,10 @@ docs: $(READY)  ## the documentation, strictly; in build/docs
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	rm -rf docs/gallery docs/api/generated
 	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
+
+validate: $(READY)  ## the same frames in OpenSees; needs libblas3 and liblapack3; tables, and figures in out/opensees
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[opensees]'
+	$(BIN)/python validation/opensees/run.py
 
 bench: $(READY)  ## speed against SciPy and against the bare recurrence, as ratios
 	$(BIN)/python benchmarks/run.py

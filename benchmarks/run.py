@@ -11,6 +11,7 @@ from pathlib import Path
 
 import nonlinear
 import numpy as np
+import opensees
 import studies
 from numba import njit
 from rich.console import Console
@@ -46,6 +47,7 @@ def main() -> None:
     console.print(table)
     console.print(nonlinear.table(motion))
     console.print(studies.table())
+    console.print(opensees.table())
     console.print(memory())
     console.print(studies.memory())
 

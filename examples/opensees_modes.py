@@ -73,6 +73,7 @@ def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, 
     ops.numberer("Plain")
     ops.system("FullGeneral")  # the one that printA can print
     ops.algorithm("Linear")
+    ops.integrator("GimmeMCK", 0.0, 0.0, 1.0)  # else OpenSees warns that there is none
     ops.analysis("Transient")
     found: list[Float] = []
     for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):  # of mass, damping and stiffness in what is printed
@@ -139,8 +140,11 @@ def main() -> None:
     """Run the example, where OpenSeesPy is installed."""
     try:
         import openseespy.opensees as ops  # pyright: ignore[reportMissingImports]
-    except ImportError as error:
-        message = f"This example needs OpenSeesPy: pip install openseespy ({error})."
+    except (ImportError, RuntimeError) as error:  # RuntimeError: libraries that it is linked with are missing
+        message = (
+            "This example needs OpenSeesPy: pip install openseespy; on Debian also apt-get install libblas3 "
+            f"liblapack3 ({error})."
+        )
         raise SystemExit(message) from error
     run(ops)
 
