@@ -18,10 +18,9 @@ $(READY): pyproject.toml
 demo: $(READY)  ## structure #1 of Table 1 under two records; figures under out/demo
 	$(BIN)/python examples/demo.py
 
-figures: $(READY)  ## Figs. 3, 4, 10 to 12, 14 to 17 of the paper, and rocking spectra; under out/paper
-	$(BIN)/python examples/paper_figures_3_4_16_17.py
-	$(BIN)/python examples/uplifted_modes.py
-	$(BIN)/python examples/chimney.py
+figures: $(READY)  ## every table and figure of the paper, with a report; in out/paper
+	$(BIN)/rockflex reproduce --out out/paper --force
+	$(BIN)/python examples/rocking_spectra.py
 
 test: lint types $(READY)  ## lint, types and every test
 	$(BIN)/python -m pytest -n $(WORKERS)

@@ -58,6 +58,7 @@ from .motion import suite_names as suite_names
 from .parallel import ClusterError as ClusterError
 from .plot import plot_agreement as plot_agreement
 from .plot import plot_clouds as plot_clouds
+from .plot import plot_design as plot_design
 from .plot import plot_energy as plot_energy
 from .plot import plot_fragility as plot_fragility
 from .plot import plot_frequency_equation as plot_frequency_equation
@@ -116,18 +117,23 @@ from .study import run_study as run_study
 from .study import simulate as simulate
 from .study import simulate_many as simulate_many
 from .study.plans import CloudStudy as CloudStudy
+from .study.plans import DesignStudy as DesignStudy
 from .study.plans import IncrementalStudy as IncrementalStudy
 from .study.plans import PopulationStatistics as PopulationStatistics
 from .study.plans import PopulationStudy as PopulationStudy
 from .study.plans import Records as Records
 from .study.plans import StripeStudy as StripeStudy
+from .study.plans import TendonLevel as TendonLevel
+from .study.plans import design_table as design_table
 from .study.plans import draw_prototype as draw_prototype
 from .study.plans import incremental_capacities as incremental_capacities
 from .study.plans import load_study as load_study
 from .study.plans import population_statistics as population_statistics
 from .study.plans import run_cloud as run_cloud
+from .study.plans import run_design as run_design
 from .study.plans import run_incremental as run_incremental
 from .study.plans import run_population as run_population
+from .study.plans import smallest_width as smallest_width
 from .study.plans import stripe_counts as stripe_counts
 
 __version__: str

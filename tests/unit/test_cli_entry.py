@@ -30,6 +30,7 @@ HELPS = [
     ["motion", "-h"],
     ["cloud", "-h"],
     ["figures", "-h"],
+    ["reproduce", "-h"],
     ["--version"],
 ]
 

@@ -114,7 +114,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
     [
         (
             RECORDS + STRUCTURE,
-            'study must be one of "cloud", "population", "incremental", "stripes", but it is',
+            'study must be one of "cloud", "population", "incremental", "stripes", "design", but it is',
         ),
         (CLOUD.replace('"cloud"', '"clod"'), "study must be one of "),
         (CLOUD.replace('"cloud"', "7"), "study must be one of "),

@@ -8,7 +8,7 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _figures, _modes, _motion, _run, _study
+from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study
 from rockflex.cli._console import complain
 
 __all__ = ["app", "main"]
@@ -24,6 +24,8 @@ rockflex run structure.toml el-centro-1940 --model 2DOF-S,MDOF-S --scale 1.5 --o
 rockflex cloud study.toml --out study
 
 rockflex figures study
+
+rockflex reproduce --out out/paper
 
 [bold]Exit codes[/bold]
 
@@ -55,9 +57,11 @@ app = typer.Typer(
 app.command("run", epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
 app.command("modes", epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
-for command in (_study.cloud, _study.ida, _study.stripes, _study.population):
+for command in (_study.cloud, _study.ida, _study.stripes, _study.population, _study.design):
     app.command(command.__name__, epilog=_study.epilog(command.__name__), no_args_is_help=True)(command)
 app.command("figures", epilog=_figures.EPILOG, no_args_is_help=True)(_figures.figures)
+app.command("serve", epilog=_serve.EPILOG)(_serve.serve)
+app.command("reproduce", epilog=_reproduce.EPILOG)(_reproduce.reproduce)
 
 
 def _version(asked: bool) -> None:

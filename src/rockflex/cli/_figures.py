@@ -42,7 +42,7 @@ def figures(
     kind: Annotated[str, typer.Option("--format", metavar="|".join(FORMATS), help="Kind of the files.")] = "png",
     force: options.Force = False,
 ) -> None:
-    """Draw what a study found: fragility curves, clouds, capacities, or the agreement of models."""
+    """Draw what a study found: fragility curves, clouds, capacities, designs, or the agreement of models."""
     if kind not in FORMATS:
         message = f"--format must be one of {', '.join(FORMATS)}, but {kind!r} was given."
         raise InputError(message)
@@ -91,6 +91,12 @@ def _figures(study: str, spec: dict[str, Any], table: "pd.DataFrame", measure: s
         yield "population", plot.plot_population(table)
         yield "agreement", plot.plot_agreement(table)
         yield "modal_combination", plot.plot_modal_combination(table)
+    elif study == "design":
+        from rockflex.study.plans import design_tables
+
+        for limit, designs in design_tables(table, spec):
+            word = limit if isinstance(limit, str) else f"{limit:g} rad"
+            yield f"design_{'_'.join(word.split())}", plot.plot_design(designs, spec.get("target"))
     else:
         message = f"There are no figures of a study of the kind {study!r}."
         raise InputError(message)

@@ -1,4 +1,4 @@
-"""``rockflex cloud``, ``ida``, ``stripes`` and ``population``: studies from a TOML file."""
+"""``rockflex cloud``, ``ida``, ``stripes``, ``population`` and ``design``: studies from a TOML file."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,9 +13,16 @@ if TYPE_CHECKING:
 
     from rockflex.study.plans import Study
 
-__all__ = ["cloud", "epilog", "ida", "population", "stripes"]
+__all__ = ["cloud", "design", "epilog", "ida", "population", "stripes"]
 
-COMMANDS = {"cloud": "cloud", "incremental": "ida", "stripes": "stripes", "population": "population"}
+COMMANDS = {
+    "cloud": "cloud",
+    "incremental": "ida",
+    "stripes": "stripes",
+    "population": "population",
+    "design": "design",
+}
+
 
 def epilog(command: str) -> str:
     """Examples of a command."""
@@ -102,6 +109,20 @@ def population(
 ) -> None:
     """Run random structures under random records with MDOF-S and 2DOF-S, and compare the two."""
     _study("population", file, out, dry_run, dask, workers, any_version, json, strict)
+
+
+def design(
+    file: StudyFile,
+    out: Folder = None,
+    dry_run: DryRun = False,
+    dask: Dask = None,
+    workers: Workers = None,
+    any_version: AnyVersion = False,
+    json: options.Json = False,
+    strict: Strict = False,
+) -> None:
+    """Run a structure on bases of many widths and with several tendons, and find how wide the base must be."""
+    _study("design", file, out, dry_run, dask, workers, any_version, json, strict)
 
 
 def _study(

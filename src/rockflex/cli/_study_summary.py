@@ -30,6 +30,7 @@ def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bo
         "incremental": _incremental,
         "stripes": _stripes,
         "population": _population,
+        "design": _design,
     }
     tables = dict(findings[study.study](study, table))
     failed = int(table["error"].notna().sum())
@@ -170,6 +171,53 @@ def _population(_: "Study", pairs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]
     shown += ["max_rotation_mdof", "max_rotation_2dof", "share"]
     rows: Sequence[dict[Any, Any]] = found.outliers[shown].to_dict("records")
     yield "Largest disagreements in rotation", _words_first([_named(row) for row in rows])
+
+
+def _design(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+    from rockflex.study.plans import design_tables, smallest_width
+
+    asked = "annual rate" if study.hazard else f"P at {study.measure} = {study.level:g}"
+    value = "rate" if study.hazard else "probability"
+    designs: dict[tuple[str, str, float], dict[str, Any]] = {}
+    widths: Rows = []
+    for limit, table in design_tables(runs, study.document()):
+        word = limit if isinstance(limit, str) else f"{limit:g} rad"
+        for each in table.to_dict("records"):
+            words = {"tendon": each["tendon"], "model": each["model"]}
+            row = designs.setdefault(
+                (each["model"], each["tendon"], each["half_width"]),
+                {
+                    **words,
+                    "B [m]": each["half_width"],
+                    "h*/B": each["aspect_ratio"],
+                    "M_r [N m]": each["resisting_moment"],
+                    "M_b [N m]": each["median_base_moment"],
+                    "utilisation": each["median_tendon_utilisation"],
+                    "failed": each["n_failed"],
+                },
+            )
+            row |= {word: each[value], f"{word}, low": each["low"], f"{word}, high": each["high"]}
+        if study.target is None:
+            continue
+        for each in smallest_width(table, study.target).to_dict("records"):
+            widths.append(
+                {
+                    "limit": word,
+                    "tendon": each["tendon"],
+                    "model": each["model"],
+                    "outcome": each["outcome"],
+                    "B [m]": each["half_width"],
+                    "B, upper limit [m]": each["half_width_upper"],
+                }
+            )
+            if each["note"]:
+                note(f"{word}, {each['tendon']}, {each['model']}: {each['note']}")
+    yield (
+        f"Designs, and the {asked} of exceeding each limit; medians of all runs",
+        [_named(r) for r in designs.values()],
+    )
+    if widths:
+        yield f"Least half width from which on the {asked} is at most {study.target:g}", [_named(r) for r in widths]
 
 
 def _named(row: dict[Any, Any]) -> dict[str, Any]:

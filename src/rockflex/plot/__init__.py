@@ -3,6 +3,7 @@
 from rockflex.plot._agreement import plot_agreement
 from rockflex.plot._clouds import plot_clouds
 from rockflex.plot._combination import plot_modal_combination
+from rockflex.plot._design import plot_design
 from rockflex.plot._energy import plot_energy
 from rockflex.plot._fragility import plot_fragility
 from rockflex.plot._frequency_curves import plot_frequency_equation
@@ -24,6 +25,7 @@ from rockflex.plot._yielding import plot_hysteresis, plot_yielding
 __all__ = [
     "plot_agreement",
     "plot_clouds",
+    "plot_design",
     "plot_energy",
     "plot_fragility",
     "plot_frequency_equation",

@@ -2,6 +2,10 @@
 
 from rockflex.study.plans._agreement import PopulationStatistics, population_statistics
 from rockflex.study.plans._cloud import CloudPlan, CloudStudy, run_cloud
+from rockflex.study.plans._design import DesignPlan, DesignStudy, design_tables, run_design
+from rockflex.study.plans._design_levels import TendonLevel
+from rockflex.study.plans._design_table import design_table
+from rockflex.study.plans._design_width import smallest_width
 from rockflex.study.plans._incremental import (
     IncrementalPlan,
     IncrementalStudy,
@@ -20,6 +24,8 @@ __all__ = [
     "ChunkedPlan",
     "CloudPlan",
     "CloudStudy",
+    "DesignPlan",
+    "DesignStudy",
     "IncrementalPlan",
     "IncrementalStudy",
     "Plan",
@@ -31,15 +37,20 @@ __all__ = [
     "StripePlan",
     "StripeStudy",
     "Study",
+    "TendonLevel",
+    "design_table",
+    "design_tables",
     "draw_prototype",
     "incremental_capacities",
     "load_study",
     "population_statistics",
     "record_group",
     "run_cloud",
+    "run_design",
     "run_incremental",
     "run_plan",
     "run_population",
+    "smallest_width",
     "stripe_counts",
     "to_frame",
 ]

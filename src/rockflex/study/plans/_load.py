@@ -6,27 +6,30 @@ from pathlib import Path
 from rockflex._errors import InputError
 from rockflex.structure.file import read_toml
 from rockflex.study.plans._cloud import CloudStudy
+from rockflex.study.plans._design import DesignStudy
 from rockflex.study.plans._incremental import IncrementalStudy
 from rockflex.study.plans._population import PopulationStudy
 from rockflex.study.plans._stripes import StripeStudy
 
 __all__ = ["Study", "load_study"]
 
-Study = CloudStudy | PopulationStudy | IncrementalStudy | StripeStudy
+Study = CloudStudy | PopulationStudy | IncrementalStudy | StripeStudy | DesignStudy
 
 KINDS: dict[str, type[Study]] = {
     "cloud": CloudStudy,
     "population": PopulationStudy,
     "incremental": IncrementalStudy,
     "stripes": StripeStudy,
+    "design": DesignStudy,
 }
 
 
 def load_study(path: str | Path) -> Study:
     """Read a study from a TOML file.
 
-    Its key `study` is "cloud", "population", "incremental" or "stripes"; the others are the fields of `CloudStudy`,
-    `PopulationStudy`, `IncrementalStudy` or `StripeStudy`. Paths start from the folder of the file.
+    Its key `study` is "cloud", "population", "incremental", "stripes" or "design"; the others are the fields of
+    `CloudStudy`, `PopulationStudy`, `IncrementalStudy`, `StripeStudy` or `DesignStudy`. Paths start from the folder of
+    the file.
 
     Parameters
     ----------
@@ -35,7 +38,7 @@ def load_study(path: str | Path) -> Study:
 
     Returns
     -------
-    CloudStudy, PopulationStudy, IncrementalStudy or StripeStudy
+    CloudStudy, PopulationStudy, IncrementalStudy, StripeStudy or DesignStudy
         What the file says; `.plan()` makes it ready to run.
 
     Raises

@@ -1,0 +1,119 @@
+"""``rockflex reproduce``: every table and figure of the paper, each number beside the printed one."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rockflex.cli import _options as options
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rockflex.papers.silva_stojadinovic_2024 import Records, Result
+
+__all__ = ["EPILOG", "reproduce"]
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex reproduce --list
+
+rockflex reproduce --out out/paper
+
+rockflex reproduce table-3 figure-15
+
+rockflex reproduce figure-5 figure-9 --records peer --out mine
+
+What a verdict means stands at the head of the report."""
+
+TITLE = "Silva & Stojadinović (2024), computed anew"
+SOURCE = (
+    "Surrogate models for seismic response analysis of flexible rocking structures. Earthquake Engineering & "
+    "Structural Dynamics, doi 10.1002/eqe.4193."
+)
+
+
+def reproduce(
+    targets: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[TARGET]...", help="Tables and figures. Default: all.", show_default=False),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="DIR", help="Write report.html, report.md, numbers.csv and the figures there."
+        ),
+    ] = None,
+    records: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Folder of records, such as PEER's AT2 files, in place of those embedded."),
+    ] = None,
+    names: Annotated[bool, typer.Option("--list", help="List the targets and run nothing.")] = False,
+    force: options.Force = False,
+) -> None:
+    """Compute the tables and figures of the paper anew, and say of every printed number whether it reproduces."""
+    from rockflex.papers import silva_stojadinovic_2024 as paper
+
+    if names:
+        for target in paper.TARGETS:
+            typer.echo(f"{target:10}  {paper.title_of(target)}")
+        return
+    from rockflex.cli._console import note, progress
+    from rockflex.cli._output import check_folder
+
+    check_folder(out, force=force)
+    wanted = targets or list(paper.TARGETS)
+    for target in wanted:
+        paper.title_of(target)
+    given = paper.Records(records)
+    note(given.description)
+    with progress("Computing", len(set(wanted))) as advance:
+        results = paper.reproduce(wanted, given, lambda _: advance(1))
+    if out is None:
+        _print_numbers(results)
+    else:
+        _write(results, given, out, force=force)
+    _print_counts(results)
+    if out is not None:
+        note(f"Written to {out}: open {out / 'report.html'}")
+
+
+def _write(results: "list[Result]", records: "Records", out: Path, *, force: bool) -> None:
+    from rockflex.cli._console import progress
+    from rockflex.cli._output import staged, versions
+    from rockflex.papers.silva_stojadinovic_2024 import Verdict
+    from rockflex.report import Document, write_report
+
+    meanings = {str(verdict): verdict.meaning for verdict in Verdict}
+    document = Document(TITLE, SOURCE, records.description, versions(), meanings, results)
+    summary = {
+        "versions": versions(),
+        "records": records.description,
+        "targets": [result.name for result in results],
+        "numbers": document.counts,
+    }
+    figures = sum(len(result.figures) for result in results)
+    with staged(out, summary, force=force) as stage, progress("Drawing", figures) as advance:
+        write_report(document, stage, lambda _: advance(1))
+
+
+def _print_numbers(results: "Sequence[Result]") -> None:
+    from rockflex.cli._console import grid, output, show
+
+    console = output()
+    for result in results:
+        typer.echo(f"{result.name}: {result.title}")
+        rows = [
+            (n.name, n.printed, n.ours_as_text, n.unit, n.difference_as_text, str(n.verdict)) for n in result.numbers
+        ]
+        show(console, grid(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows))
+        typer.echo()
+
+
+def _print_counts(results: "Sequence[Result]") -> None:
+    from rockflex.cli._console import grid, output, show
+    from rockflex.papers.silva_stojadinovic_2024 import Verdict
+
+    rows = [(r.name, *(str(r.count(verdict)) for verdict in Verdict)) for r in results]
+    rows.append(("all", *(str(sum(r.count(verdict) for r in results)) for verdict in Verdict)))
+    show(output(), grid(("target", *map(str, Verdict)), rows))

@@ -1,0 +1,31 @@
+"""``rockflex serve``: the web page."""
+
+from typing import Annotated
+
+import typer
+
+__all__ = ["EPILOG", "serve"]
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex serve
+
+rockflex serve --port 9000 --open"""
+
+
+def serve(
+    port: Annotated[int, typer.Option("--port", "-p", help="TCP port.")] = 8080,
+    host: Annotated[
+        str,
+        typer.Option(help="Address to listen at. Others than this machine are let in only by an address of its own."),
+    ] = "127.0.0.1",
+    open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+) -> None:
+    """Serve the web page: structure, earthquake, response, fragility and design by hand."""
+    from rockflex.cli._console import note
+    from rockflex.web import serve as start
+
+    if host not in ("127.0.0.1", "localhost", "::1"):
+        note(f"The page is open to everybody who reaches {host}: it has no passwords.")
+    note(f"http://{host}:{port} (stop with Ctrl-C)")
+    start(port, host, open_browser=open_browser)

@@ -1,0 +1,1 @@
+"""Publications whose numbers and figures the library computes anew, one package each."""

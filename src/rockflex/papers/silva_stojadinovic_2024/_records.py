@@ -1,0 +1,57 @@
+"""The records in place of the paper's, and the one that it shares."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import rockflex as rf
+
+__all__ = ["Records"]
+
+SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
+
+
+@dataclass(frozen=True, eq=False)
+class Records:
+    """What the studies of Sections 3.2 to 3.4 run through, and El Centro 1940 of Sections 4.1.1 and 4.2.
+
+    Attributes
+    ----------
+    folder : Path or None
+        Folder of the user's records, such as PEER's AT2 files. None for the 72 components of FEMA P-695 without pulses.
+    """
+
+    folder: Path | None = None
+
+    @cached_property
+    def suite(self) -> rf.Suite:
+        """Records of the studies.
+
+        Raises
+        ------
+        InputError
+            If the folder or a file in it cannot be read.
+        """
+        return self.table.load(Path())
+
+    @property
+    def table(self) -> rf.Records:
+        """The same as a study's specification has it."""
+        given = {"suites": list(SUITES)} if self.folder is None else {"folder": str(self.folder)}
+        return rf.Records.model_validate(given)
+
+    @cached_property
+    def el_centro(self) -> rf.GroundMotion:
+        """El Centro 1940, north-south, as in Chopra."""
+        return rf.load_suite("el-centro-1940")[0]
+
+    @property
+    def description(self) -> str:
+        """One sentence for the report."""
+        count = len(self.suite)
+        studies = (
+            f"{count} records of the folder {self.folder.resolve().name}"
+            if self.folder is not None
+            else f"{count} components of FEMA P-695, far field and near field without pulses"
+        )
+        return f"Sections 3.2 to 3.4: {studies}, in place of the paper's 210. Section 4: El Centro 1940, north-south."

@@ -1,0 +1,41 @@
+"""What a target returns."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from rockflex.papers.silva_stojadinovic_2024._verdict import Number, Verdict
+
+__all__ = ["Result"]
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A table or figure computed anew.
+
+    Attributes
+    ----------
+    name, title : str
+        Of the target.
+    numbers : tuple of Number
+        Every printed number that belongs to it.
+    figures : mapping of str to callable
+        A function that draws the figure, by the stem of its file; nothing is drawn before it is called.
+    note : str
+        What the reader must know before the figures: assumptions that the paper leaves open.
+    """
+
+    name: str
+    title: str
+    numbers: tuple[Number, ...] = ()
+    figures: Mapping[str, Callable[[], Any]] = field(default_factory=dict[str, Callable[[], Any]])
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "numbers", tuple(self.numbers))
+        object.__setattr__(self, "figures", MappingProxyType(dict(self.figures)))
+
+    def count(self, verdict: Verdict) -> int:
+        """Numbers with a verdict."""
+        return sum(number.verdict is verdict for number in self.numbers)

@@ -1,0 +1,53 @@
+"""What Figures 3 and 4 share: what is not known of the two specimens, the runs, and the bands of what was varied."""
+
+from collections.abc import Callable, Iterable, Mapping
+from itertools import product
+from typing import Any
+
+import rockflex as rf
+
+__all__ = ["S1", "SPECIMEN_MODELS", "TWO_HZ", "combinations", "histories", "nominal", "spread", "widest"]
+
+SPECIMEN_MODELS = ("2DOF-C", "2DOF-C-SI", "2DOF-S", "MDOF-S")
+
+# Nominal values first. None of them is known of the specimens.
+TWO_HZ = {"base_mass_ratio": (0.1, 0.0, 0.05, 0.2, 0.3), "damping_ratio": (0.01, 0.005, 0.02)}
+S1 = {
+    "base_mass_ratio": (0.3, 0.1, 0.6),
+    "damping_ratio": (0.02, 0.005, 0.05),
+    "width_ratio": (0.2, 0.15, 0.25),
+    "effective_height": (1.0, 0.5, 2.0),
+    "spacing": (1.5, 1.3, 1.65),
+}
+
+Free = Mapping[str, tuple[float, ...]]
+Make = Callable[..., rf.RockingProperties]
+Run = Callable[[rf.RockingProperties, str], rf.Response]
+
+
+def nominal(free: Free) -> dict[str, float]:
+    """First value of each parameter."""
+    return {name: values[0] for name, values in free.items()}
+
+
+def combinations(free: Free) -> list[dict[str, float]]:
+    """Every combination of the values."""
+    return [dict(zip(free, values, strict=True)) for values in product(*free.values())]
+
+
+def histories(properties: rf.RockingProperties, run: Run) -> dict[str, rf.Response]:
+    """Responses of the four models, by their names."""
+    return {model: run(properties, model) for model in SPECIMEN_MODELS}
+
+
+def widest(values: Iterable[float]) -> float:
+    """Largest over least."""
+    found = list(values)
+    return max(found) / min(found)
+
+
+def spread(title: str, responses: Mapping[str, rf.Response], free: Free, make: Make, run: Run) -> Any:
+    """Figure of each model's response with the band of every combination."""
+    cases = [make(**case) for case in combinations(free)]
+    varied = [[run(case, model) for case in cases] for model in responses]
+    return rf.plot_spread(list(responses.values()), varied, panels=("rotation", "top_displacement"), title=title)

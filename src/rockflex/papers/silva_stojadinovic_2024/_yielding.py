@@ -1,0 +1,23 @@
+"""Structure #1 with Bouc-Wen hysteresis under El Centro, which Figures 16 and 17 share."""
+
+import numpy as np
+
+import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._records import Records
+from rockflex.papers.silva_stojadinovic_2024._structures import frame_of
+
+__all__ = ["STRONG", "WEAK", "largest_yielding", "run"]
+
+STRONG = 0.075  # m, D_1,y of Fig. 17
+WEAK = 0.035  # m, D_1,y of Fig. 16, which the paper does not give
+
+
+def run(records: Records, model: str, yield_displacement: float | None = None) -> rf.Response:
+    """Run structure #1; elastic without a yield displacement."""
+    law = None if yield_displacement is None else rf.BoucWen(yield_displacement)
+    return rf.simulate(frame_of("#1"), records.el_centro, model, bouc_wen=law)
+
+
+def largest_yielding(response: rf.Response) -> float:
+    """Largest |z|: 1 when it flows."""
+    return float(np.abs(response.yielding).max())

@@ -1,0 +1,30 @@
+"""The numbers of a report as a table for other programs."""
+
+import csv
+import io
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rockflex.report._document import Document
+
+__all__ = ["to_csv"]
+
+COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference", "criterion", "verdict", "note")
+
+
+def to_csv(document: "Document") -> str:
+    """Write one row a number, in UTF-8 with a head; `rockflex` has all digits, and is "inf" or "nan" where it is."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for section in document.sections:
+        for line in section.numbers:
+            ours = repr(line.ours) if math.isfinite(line.ours) else f"{line.ours:g}"
+            writer.writerow(
+                (
+                    section.name, line.place, line.name, line.printed, ours, line.unit, line.difference_as_text,
+                    line.criterion, str(line.verdict), line.note,
+                )
+            )  # fmt: skip
+    return out.getvalue()

@@ -1,0 +1,53 @@
+"""A report as one page of HTML: nothing is loaded, figures are drawn within, light and dark."""
+
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rockflex.report._svg import inline
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+    from rockflex.report._document import Document
+
+__all__ = ["to_html"]
+
+TEMPLATES = Path(__file__).parent / "templates"
+CLASSES = ("best", "good", "fair", "bad")  # of the verdicts, best first; the last one of a longer list is bad too
+
+
+def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
+    """Write the document as a page.
+
+    Parameters
+    ----------
+    document
+        What to show.
+    drawings
+        Text of the SVG file of each figure, by its stem.
+    """
+    from markupsafe import Markup, escape
+
+    labels = {stem: str(escape(s.title)) for s in document.sections for stem in s.figures}
+    figures = {stem: Markup(inline(drawings[stem], stem, label)) for stem, label in labels.items()}
+    verdicts = list(document.verdicts)
+    last = len(verdicts) - 1
+    looks = {name: CLASSES[-1 if place == last else min(place, 2)] for place, name in enumerate(verdicts)}
+    failing = [line for s in document.sections for line in s.numbers if str(line.verdict) == verdicts[-1]]
+    return _template().render(
+        document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
+    )
+
+
+@lru_cache(maxsize=1)
+def _template() -> "Template":
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    # Everything is escaped but the figures, which are ours.
+    loaded = Environment(
+        loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True, keep_trailing_newline=True,
+    )  # fmt: skip
+    return loaded.get_template("report.html.jinja")

@@ -1,0 +1,53 @@
+"""What a design is not to exceed, and measures in which that can be asked."""
+
+import math
+
+from rockflex._checks import real_or_nan
+from rockflex._errors import InputError
+from rockflex.study.plans._intensity import check_measure
+
+__all__ = ["OVERTURNED", "THRESHOLD", "check_limit", "check_same_for_all", "rotation_of"]
+
+OVERTURNED = 0.5 * math.pi
+THRESHOLD = 1e-4  # rad up to which a run counts as one without rocking
+RELATIVE = ("relative_pga", "relative_pgv")  # to the base, so of another motion for each width
+
+
+def check_limit(limit: float | str) -> None:
+    """Raise an InputError unless a limit is a rotation, "overturning", or a multiple of "nominal"."""
+    rotation_of(limit, 0.1)
+
+
+def check_same_for_all(measure: str) -> None:
+    """Raise an InputError unless there is such a measure, and a level of it is the same motion for every base."""
+    check_measure(measure)
+    if measure in RELATIVE:
+        message = f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1."
+        raise InputError(message)
+
+
+def rotation_of(limit: float | str, nominal: float) -> float:
+    """Rotation in rad of a limit, where `nominal` is 0.7 atan(B/h*_1) of the design; π/2 of "overturning".
+
+    Raises
+    ------
+    InputError
+        If it is no limit, or not from 1e-4 rad to below π/2.
+    """
+    words = limit.split() if isinstance(limit, str) else []
+    if words == ["overturning"]:
+        return OVERTURNED
+    rotation = real_or_nan(limit)
+    if words and words[-1] == "nominal" and len(words) <= 2:
+        try:
+            rotation = nominal * float(words[0] if len(words) == 2 else 1.0)
+        except ValueError:
+            rotation = math.nan
+    if not THRESHOLD <= rotation < OVERTURNED:
+        is_of = f" ({rotation:.3g} rad)" if words and math.isfinite(rotation) else ""
+        message = (
+            f"limit must be a rotation from {THRESHOLD:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
+            f'"nominal" or "0.5 nominal" in the same range, or "overturning", but {limit!r}{is_of} was given.'
+        )
+        raise InputError(message)
+    return rotation

@@ -1,0 +1,127 @@
+"""The narrowest base that meets a target."""
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["smallest_width"]
+
+Float = NDArray[np.float64]
+
+NEEDED = ("model", "tendon", "half_width", "prestress_ratio", "stiffness_ratio", "high")
+
+
+def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
+    """Find the least half width from which on every base meets a target, for each tendon.
+
+    Between the widest base that does not meet it and the next, the logarithm of the value is taken as a straight line
+    in B; where the next value is zero, the value itself is, which gives the wider base.
+
+    Parameters
+    ----------
+    table
+        What `design_table` returned.
+    target
+        Largest probability, or annual rate, of exceeding the limit.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a model and tendon: `model`, `tendon`, `prestress_ratio`, `stiffness_ratio` (missing where it differs
+        from base to base), `target`; `half_width` (m), NaN if the widest base does not meet the target;
+        `half_width_upper` (m), the same for the upper limit of the band; `outcome`: ``"met"``; ``"met more than
+        once"``, where narrower bases meet it too, but not all between; ``"all meet it"`` (the half width is then the
+        least there is, and a smaller one might do); or ``"not met"``. `monotone`, whether the value nowhere rises with
+        B; `note`, on bases that were left out for want of a value, on rises, and on narrower bases.
+
+    Raises
+    ------
+    InputError
+        If the table lacks a column, or the target is not positive.
+    """
+    import pandas as pd
+
+    value = "rate" if "rate" in table else "probability"
+    lacking = [name for name in (*NEEDED, value) if name not in table]
+    if lacking or not len(table):
+        lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
+        message = f"The table {lacks}. Give what design_table returned."
+        raise InputError(message)
+    wanted = positive("target", target, "1/year" if value == "rate" else "probability")
+    rows: list[dict[str, Any]] = []
+    for (model, tendon), group in table.groupby(["model", "tendon"], observed=True, sort=False):
+        designs = group.sort_values("half_width")
+        widths = designs["half_width"].to_numpy(float)
+        found = _least(widths, designs[value].to_numpy(float), wanted)
+        upper = _least(widths, designs["high"].to_numpy(float), wanted)
+        rows.append(
+            {
+                "model": str(model),
+                "tendon": str(tendon),
+                "prestress_ratio": _common(designs["prestress_ratio"]),
+                "stiffness_ratio": _common(designs["stiffness_ratio"]),
+                "target": wanted,
+                "half_width": found.half_width,
+                "half_width_upper": upper.half_width,
+                "outcome": found.outcome,
+                "monotone": found.monotone,
+                "note": found.note,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+class _Least(NamedTuple):
+    half_width: float
+    outcome: str
+    monotone: bool
+    note: str
+
+
+def _common(column: "pd.Series[Any]") -> float:
+    first = float(column.iloc[0])
+    return first if np.allclose(column, first, rtol=1e-9, atol=0.0) else math.nan
+
+
+def _least(widths: Float, values: Float, target: float) -> _Least:
+    """Least width, outcome, and what to know, from values at rising widths."""
+    known = np.isfinite(values)
+    notes = [] if known.all() else [f"{int((~known).sum())} of {known.size} bases have no value and were left out."]
+    b, y = widths[known], values[known]
+    rises = [(one, other) for (one, low), (other, high) in pairwise(zip(b, y, strict=True)) if high > low]
+    meets = y <= target
+    if rises:
+        one, other = rises[0]
+        times = "" if len(rises) == 1 else f" and {len(rises) - 1} times more"
+        notes.append(f"It does not fall everywhere: it rises between B = {one:.4g} and {other:.4g} m{times}.")
+    width, outcome = math.nan, "not met"
+    if meets.all() and b.size:
+        width, outcome = float(b[0]), "all meet it"
+        notes.append(f"Every base meets it; one below B = {b[0]:.4g} m might do.")
+    elif b.size and meets[-1]:
+        last = int(np.flatnonzero(~meets)[-1])
+        width, outcome = _between(b[last : last + 2], y[last : last + 2], target), "met"
+        if meets[:last].any():
+            outcome = "met more than once"
+            notes.append(f"Narrower bases meet it too, from B = {b[meets][0]:.4g} m, but {b[last]:.4g} m does not.")
+    elif b.size:
+        notes.append(f"The widest base, B = {b[-1]:.4g} m, has {y[-1]:.3g}.")
+        if meets.any():
+            notes.append(f"Narrower bases meet it, from B = {b[meets][0]:.4g} m.")
+    return _Least(width, outcome, not rises, " ".join(notes))
+
+
+def _between(b: Float, y: Float, target: float) -> float:
+    """Width at which a line through two values, the second at most the target, reaches it."""
+    if y[1] > 0.0:
+        y, target = np.log(y), math.log(target)
+    return float(b[0] + (b[1] - b[0]) * (y[0] - target) / (y[0] - y[1]))

@@ -1,0 +1,53 @@
+"""Targets use the public front of the library and nothing behind it; the report knows no target."""
+
+import ast
+import importlib
+from pathlib import Path
+
+import pytest
+
+import rockflex
+
+ROOT = Path(rockflex.__file__).parent
+PAPER = "rockflex.papers.silva_stojadinovic_2024"
+
+
+def imported(source):
+    """Modules of ours that a source imports, wherever it does."""
+    found = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found.add("." * node.level + (node.module or ""))
+    return {name for name in found if name.startswith((".", "rockflex"))}
+
+
+def beyond(source, allowed):
+    """What it imports of ours besides these modules and what is in them."""
+    return {name for name in imported(source) if not any(name == a or name.startswith(f"{a}.") for a in allowed)}
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "papers").rglob("*.py")), ids=lambda path: path.stem)
+def test_papers_use_the_public_front_alone(path):
+    others = imported(path.read_text("utf-8")) - {"rockflex"}
+    assert {name for name in others if not name.startswith("rockflex.papers")} == set()
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "report").rglob("*.py")), ids=lambda path: path.stem)
+def test_the_report_knows_figures_and_files(path):
+    assert beyond(path.read_text("utf-8"), {"rockflex.report", "rockflex.plot", "rockflex._files"}) == set()
+
+
+def test_the_walk_sees_what_is_forbidden():
+    source = "import rockflex as rf\ndef f():\n    from rockflex.solve import ExactEngine\n    from ..motion import x\n"
+    assert imported(source) == {"rockflex", "rockflex.solve", "..motion"}
+    assert beyond(source, {"rockflex.plot"}) == {"rockflex", "rockflex.solve", "..motion"}
+
+
+def test_every_target_is_a_module_and_every_such_module_a_target():
+    paper = importlib.import_module(PAPER)
+    files = {path.stem.replace("_", "-") for path in (ROOT / "papers" / PAPER.split(".")[-1]).glob("[a-z]*.py")}
+    assert files == set(paper.TARGETS)
+    titles = [paper.title_of(target) for target in paper.TARGETS]
+    assert len(set(titles)) == len(titles)

@@ -1,0 +1,115 @@
+"""The report of made-up results: pages that need nothing else, and the same numbers in all three."""
+
+import csv
+import io
+import re
+from dataclasses import replace
+
+import pytest
+from matplotlib.figure import Figure
+
+from page import Page, check_page
+from rockflex.papers.silva_stojadinovic_2024 import Result, Verdict
+from rockflex.papers.silva_stojadinovic_2024._verdict import compared, stated, statistic
+from rockflex.report import Document, to_csv, to_html, to_markdown, write_report
+from rockflex.report._svg import inline
+
+MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
+NUMBERS = (
+    compared("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
+    compared("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
+    statistic("R²", "Section 3.3", "0.99", 0.983, 0.978, 0.988),
+    stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", ground=Verdict.EQUIVALENT),
+)
+
+
+def drawing():
+    figure = Figure((3, 2))
+    axes = figure.subplots()
+    axes.plot([0, 1], [0, 1], marker="o")
+    axes.set_title("x$_1$")
+    return figure
+
+
+@pytest.fixture(scope="module")
+def document():
+    sections = [
+        Result("figure-3", "First & <only>", NUMBERS, {"figure-3": drawing, "figure-3-spread": drawing}, "A note_1."),
+        Result("table-1", "Second"),
+    ]
+    return Document("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, sections)
+
+
+@pytest.fixture(scope="module")
+def folder(document, tmp_path_factory):
+    out = tmp_path_factory.mktemp("report")
+    drawn = []
+    files = write_report(document, out, drawn.append)
+    assert drawn == ["figure-3", "figure-3-spread"]
+    assert [file.name for file in files] == [
+        "figure-3.svg", "figure-3-spread.svg", "report.html", "report.md", "numbers.csv",
+    ]  # fmt: skip
+    return out
+
+
+def test_the_page_stands_alone(folder):
+    text = (folder / "report.html").read_text("utf-8")
+    page = check_page(text, 2)
+    assert "prefers-color-scheme: dark" in text
+    assert "@media print" in text
+    assert "ω_1 <b>" in page.cells
+    assert "<b>Records" in text
+    assert text.count("First &amp; &lt;only&gt;") == 3  # heading and two figures
+    assert any('says "so" & <more>' in cell for cell in page.cells)
+
+
+def test_every_number_and_verdict_is_in_the_page(folder, document):
+    page = Page((folder / "report.html").read_text("utf-8"))
+    for line in NUMBERS:
+        for text in (line.place, line.name, line.printed, line.ours_as_text, line.difference_as_text, line.verdict):
+            assert str(text) in page.cells
+    assert document.counts == {
+        "reproduced": 1, "reproduced with other records": 1, "equivalent specimen": 1, "does not reproduce": 1,
+    }  # fmt: skip
+    assert page.cells.count("a|b & c_*") == 2  # among those that do not reproduce, and in its section
+
+
+def test_a_page_without_failures_has_no_list_of_them(document):
+    fine = replace(document, sections=[Result("table-1", "Second", NUMBERS[:1])])
+    text = to_html(fine, {})
+    check_page(text, 0)
+    assert 'id="failing"' not in text
+
+
+def test_markdown_holds_the_same(folder, document):
+    text = (folder / "report.md").read_text("utf-8")
+    assert text == to_markdown(document)
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 2  # of the two kinds of table
+    assert r"a\|b & c\_\*" in text
+    assert "**does not reproduce**" in text
+    for stem in re.findall(r"\]\(([^)]*)\)", text):
+        assert (folder / stem).is_file()
+
+
+def test_the_table_has_all_digits(folder, document):
+    text = (folder / "numbers.csv").read_text("utf-8")
+    assert text == to_csv(document)
+    rows = list(csv.DictReader(io.StringIO(text)))
+    assert [row["verdict"] for row in rows] == [str(line.verdict) for line in NUMBERS]
+    assert [float(row["rockflex"]) for row in rows] == [line.ours for line in NUMBERS]
+    assert rows[3]["rockflex"] == "inf"
+    assert rows[1]["note"] == 'says "so" & <more>'
+
+
+def test_inline_figures_do_not_share_names():
+    text = (
+        '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" width="3pt" height="2pt" viewBox="0 0 3 2">'
+        '<metadata>http://x</metadata><!-- c --><style type="text/css">*{a: b}</style><defs><path id="m1"/></defs>'
+        '<g id="g" clip-path="url(#p)"><use xlink:href="#m1"/>'
+        '<image xlink:href="data:image/png;base64,AA=="/></g></svg>'
+    )
+    assert inline(text, "f", "label") == (
+        '<svg viewBox="0 0 3 2" role="img" aria-label="label" class="drawing"><defs><path id="f-m1"/></defs>'
+        '<g id="f-g" clip-path="url(#f-p)"><use href="#f-m1"/><image href="data:image/png;base64,AA=="/></g></svg>'
+    )

@@ -1,0 +1,147 @@
+"""Printed numbers and verdicts: what is read from print, and that a wrong number does not pass."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._printed import range_of
+from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict, compared, stated, statistic
+
+
+@pytest.mark.parametrize(
+    ("printed", "low", "high"),
+    [
+        ("1.66", 1.655, 1.665),
+        ("−0.24", -0.245, -0.235),
+        ("-13", -13.5, -12.5),
+        ("0.90", 0.895, 0.905),
+        ("about 44", 43.5, 44.5),
+        ("approximately 2", 1.5, 2.5),
+        ("≈ 0.05", 0.045, 0.055),
+        ("24'178'750", 24178749.5, 24178750.5),
+        ("24 178 750", 24178749.5, 24178750.5),
+        ("580000/3", 579999.5 / 3, 580000.5 / 3),
+        ("+15", 14.5, 15.5),
+    ],
+)
+def test_a_value_stands_for_what_rounds_to_it(printed, low, high):
+    found = range_of(printed)
+    assert (found.low, found.high) == pytest.approx((low, high), rel=1e-12)
+    assert not found.is_bound
+    width = high - low
+    for inside in (low, high, 0.5 * (low + high)):
+        assert inside in found
+    for outside in (low - 1e-6 * width, high + 1e-6 * width, math.nan, math.inf):
+        assert outside not in found
+
+
+@pytest.mark.parametrize(
+    ("printed", "inside", "outside"),
+    [
+        ("≤ 3.2", (3.2, -5.0), (3.2000001, math.inf)),
+        ("< 5", (4.999,), (5.0, 5.1)),
+        ("> 2", (2.001, math.inf), (2.0, 1.0, -math.inf)),
+        ("≥ 1.0", (1.0, 7.0), (0.999,)),
+    ],
+)
+def test_bounds(printed, inside, outside):
+    found = range_of(printed)
+    assert found.is_bound
+    assert all(value in found for value in inside)
+    assert not any(value in found for value in (*outside, math.nan))
+
+
+def test_digits_may_be_cut_off_away_from_zero_only():
+    positive, negative = range_of("17.25", truncated=True), range_of("−1.18", truncated=True)
+    assert 17.2599 in positive
+    assert 17.2449 not in positive
+    assert -1.1899 in negative
+    assert -1.1749 not in negative
+    assert 17.2599 not in range_of("17.25")
+
+
+@pytest.mark.parametrize("printed", ["", "large", "1.2.3", "1.66 m", "8.485e6", "> large", "3 to 5"])
+def test_what_is_no_number_is_refused(printed):
+    with pytest.raises(rf.InputError) as raised:
+        range_of(printed)
+    message = str(raised.value)
+    assert "must read like '1.66', 'about 44', '580000/3' or '≤ 3.2'" in message
+    assert repr(printed) in message
+
+
+@given(st.floats(-1e4, 1e4), st.integers(0, 6))
+def test_every_number_reproduces_its_own_rounding_and_not_the_next(value, decimals):
+    printed = f"{value:.{decimals}f}"
+    step = 10.0**-decimals
+    assert compared("x", "y", printed, value).verdict is Verdict.REPRODUCED
+    for off in (1.01, -1.01):
+        line = compared("x", "y", printed, float(printed) + off * step)
+        assert line.verdict is Verdict.NOT
+        assert line.difference == pytest.approx(off * step, rel=1e-6, abs=1e-10)
+
+
+def test_a_wrong_number_does_not_come_out_as_reproduced():
+    line = compared("ω_1", "Section 4.1.1", "1.678", 1.65568, "rad/s")
+    assert line.verdict is Verdict.NOT
+    assert str(line.verdict) == "does not reproduce"
+    assert line.difference == pytest.approx(-0.02232)
+    assert line.difference_as_text == "−0.02232 (−1.3 %)"
+    assert line.ours_as_text == "1.65568"
+    assert compared("ω_1", "", "1.66", 1.65568).verdict is Verdict.REPRODUCED
+    assert compared("ω_1", "", "1.66", math.nan).verdict is Verdict.NOT
+
+
+def test_ground_of_a_value_that_agrees_and_of_one_that_does_not():
+    assert compared("B/h", "", "0.16", 0.16, ground=Verdict.EQUIVALENT).verdict is Verdict.EQUIVALENT
+    assert compared("μ", "", "0.27", 0.16, ground=Verdict.EQUIVALENT).verdict is Verdict.NOT
+
+
+def test_a_value_that_is_cut_off_says_so():
+    cut = compared("h*_3", "Table 3", "31.40", 31.4076, "m", truncated=True)
+    assert (cut.verdict, cut.criterion) == (Verdict.REPRODUCED, "cut off, not rounded, to it")
+    rounded = compared("h*_1", "Table 3", "141.63", 141.6332, "m", truncated=True)
+    assert (rounded.verdict, rounded.criterion) == (Verdict.REPRODUCED, "must round to it")
+    assert compared("h*_2", "Table 3", "51.33", 51.3422, "m", truncated=True).verdict is Verdict.NOT
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "verdict"),
+    [
+        (0.978, 0.988, Verdict.OTHER_RECORDS),
+        (0.994, 0.999, Verdict.OTHER_RECORDS),
+        (0.978, 0.984, Verdict.NOT),
+        (0.996, 0.999, Verdict.NOT),
+        (math.nan, math.nan, Verdict.NOT),
+    ],
+)
+def test_statistics_pass_by_their_interval_alone(low, high, verdict):
+    line = statistic("R²", "Section 3.3", "0.99", 0.983, low, high)
+    assert line.verdict is verdict
+    assert "must meet it" in line.criterion
+    assert line.difference == pytest.approx(-0.007)
+
+
+def test_statements_pass_by_their_criterion_alone():
+    assert stated("slope", "", "overestimates", 0.97, "< 1").verdict is Verdict.REPRODUCED
+    wrong = stated("ratio", "", "underestimates", 1.09, "< 1", ground=Verdict.OTHER_RECORDS)
+    assert wrong.verdict is Verdict.NOT
+    assert (wrong.difference, wrong.difference_as_text) == (None, "")
+    assert stated("friction", "", "higher than 2", math.inf, "> 2").ours_as_text == "∞"
+    assert stated("bound", "", "below", 1.0009, "≤ 1").ours_as_text == "1.001"
+
+
+def test_texts():
+    assert compared("n", "", "306", 118.0).ours_as_text == "118"
+    assert compared("n", "", "306", 118.0).difference_as_text == "−188 (−61 %)"
+    assert compared("x", "", "0.5", 0.5 + 1e-16).difference_as_text == "0"
+    assert compared("x", "", "≤ 3.2", 3.1).difference_as_text == ""
+    assert compared("x", "", "< 5", 148.13).difference_as_text == "+143.13 (+2863 %)"
+    assert compared("x", "", "0.1", -1e-9).ours_as_text == "−1.0e−09"
+    assert compared("x", "", "1", math.nan).ours_as_text == "none"
+    assert compared("x", "", "1", -math.inf).ours_as_text == "−∞"
+    assert isinstance(compared("x", "", "1", np.float64(1.0)).ours, float)
+    assert [verdict.meaning for verdict in Verdict] == list(dict.fromkeys(verdict.meaning for verdict in Verdict))
