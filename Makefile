@@ -37,7 +37,8 @@ types: $(READY)  ## pyright (strict) on src
 
 docs: $(READY)  ## the documentation, strictly; in build/docs
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
-	rm -rf docs/gallery docs/api/generated
+	rm -rf docs/gallery docs/api/generated docs/reproduced
+	$(BIN)/rockflex reproduce --out docs/reproduced
 	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
 
 validate: $(READY)  ## the same frames in OpenSees; needs libblas3 and liblapack3; tables, and figures in out/opensees

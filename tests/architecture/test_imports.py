@@ -35,7 +35,7 @@ FOUNDATION = {
     "_kernel",
     "_matrices",
 }  # every layer may import these; they only each other
-FACES = {"cli", "web", "papers", "__main__"}  # may import anything, and nothing below may import them or the package's front
+FACES = {"cli", "web", "papers", "__main__"}  # may import anything, and nothing below them or the front
 
 # The one place of each of these libraries.
 HOME = {
