@@ -159,9 +159,7 @@ def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
 def _combined(rocking: Response, second: SecondMode) -> Row:
     """Peaks of 2DOF-S and of the second mode on a fixed base, combined (Section 3.4)."""
     peaks = combine(rocking, second)
-    return {
-        f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")
-    }
+    return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
 
 
 def run_population(
