@@ -22,7 +22,8 @@ figures: $(READY)  ## every table and figure of the paper, with a report; in out
 	$(BIN)/rockflex reproduce --out out/paper --force
 	$(BIN)/python examples/rocking_spectra.py
 
-test: lint types $(READY)  ## lint, types and every test
+test: lint types $(READY)  ## lint, types and every test, those of the web page in a real browser if one can be had
+	-sh scripts/install_browser.sh
 	$(BIN)/python -m pytest -n $(WORKERS)
 
 check: lint types $(READY)  ## the quick subset, for the work between commits

@@ -46,13 +46,13 @@ HOME = {
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
-    "nicegui": {"web"},
-    "plotly": {"web"},
+    "starlette": {"web"},
+    "uvicorn": {"web"},
 }
 NEVER_AT_IMPORT = {"pandas"}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
-    *("distributed", "jinja2", "nicegui", "plotly"),
+    *("distributed", "jinja2", "starlette", "uvicorn"),
 }  # by `import rockflex`
 LONGEST = 300  # lines
 

@@ -1,0 +1,284 @@
+"""The server: questions in JSON, answers in JSON, and the files of the page. It keeps nothing of a visitor's state."""
+
+import logging
+from collections.abc import AsyncGenerator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import anyio
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.middleware.trustedhost import TrustedHostMiddleware
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from rockflex._errors import InputError, SolverError
+from rockflex.web._cloud import cloud_plan, cloud_view
+from rockflex.web._design import design_plan, design_view
+from rockflex.web._download import cloud_files, design_files, download
+from rockflex.web._forms import forms
+from rockflex.web._jobs import Job, Jobs
+from rockflex.web._limits import BODY, DURATION, FILE, FREEDOMS, MODELS, RUNS
+from rockflex.web._packing import plain
+from rockflex.web._presets import PRESETS
+from rockflex.web._records import PULSES, record_view, suite_view, suites
+from rockflex.web._refusal import Refusal
+from rockflex.web._response import response_view
+from rockflex.web._state import State, parse_json, parse_state
+from rockflex.web._structures import build, structure_view
+from rockflex.web._uploads import Uploads, read_matrices, read_record
+
+__all__ = ["LOOPBACK", "create"]
+
+STATIC = Path(__file__).parent / "static"
+LOOPBACK = ("127.0.0.1", "localhost")
+THREADS = 4  # answers computed at once: the kernels hold no lock, and long ones must not keep short ones waiting
+HEADERS = {
+    "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-cache",
+}
+
+Answer = Callable[[], Any]
+
+
+class Server:
+    """Answers to the page; besides uploads and running studies it keeps nothing."""
+
+    def __init__(self) -> None:
+        self.uploads, self.jobs = Uploads(), Jobs()
+        self._limiter: anyio.CapacityLimiter | None = None
+
+    async def _answer(self, work: Answer) -> Any:
+        """Compute off the event loop."""
+        if self._limiter is None:
+            self._limiter = anyio.CapacityLimiter(THREADS)
+        return await anyio.to_thread.run_sync(work, limiter=self._limiter)
+
+    async def about(self, _: Request) -> Response:
+        """Forms, presets, suites, pulses and limits."""
+        return JSONResponse(await self._answer(_about))
+
+    async def suite(self, request: Request) -> Response:
+        """Records of a suite."""
+        name = request.path_params["name"]
+        return JSONResponse(await self._answer(lambda: suite_view(name)))
+
+    async def state(self, request: Request) -> Response:
+        """Check the state of a link, and fill in what it leaves out."""
+        state = parse_state((await _content(request)).get("state"))
+        return JSONResponse(plain(state.model_dump(exclude_none=True)))
+
+    async def structure(self, request: Request) -> Response:
+        """Structure tab."""
+        state = parse_state((await _content(request)).get("state"))
+        return JSONResponse(await self._answer(lambda: structure_view(state.structure)))
+
+    async def record(self, request: Request) -> Response:
+        """Earthquake tab."""
+        state = parse_state((await _content(request)).get("state"))
+
+        def work() -> Any:
+            try:
+                built = build(state.structure)
+            except Refusal:
+                built = None  # the record can be looked at before the structure is right
+            return record_view(state, built, self.uploads)
+
+        return JSONResponse(await self._answer(work))
+
+    async def response(self, request: Request) -> Response:
+        """Response tab."""
+        content = await _content(request)
+        state, focus = parse_state(content.get("state")), str(content.get("focus", ""))[:40]
+        return JSONResponse(await self._answer(lambda: response_view(state, self.uploads, focus)))
+
+    async def upload(self, request: Request) -> Response:
+        """A record from a file, whose bytes are the body; its name and unit are in the query."""
+        body, query = await _body(request), request.query_params
+        name, units = query.get("name", "record"), query.get("units") or None
+        dt = _step(query.get("dt", ""))
+
+        def work() -> Any:
+            motion = read_record(name, body, units, dt)
+            key = self.uploads.add(motion, body, f"{units} {dt}")
+            return {"upload": key, "name": motion.name, "samples": motion.acceleration.size, "pga": motion.pga}
+
+        return JSONResponse(await self._answer(work))
+
+    async def matrices(self, request: Request) -> Response:
+        """Matrices from a file."""
+        body, query = await _body(request), request.query_params
+        name, part = query.get("name", "matrices"), query.get("part", "")
+        return JSONResponse(await self._answer(lambda: read_matrices(name, body, part)))
+
+    async def download(self, request: Request) -> Response:
+        """A file of what the page shows."""
+        state = parse_state((await _content(request)).get("state"))
+        what = request.path_params["what"]
+        return _file(*await self._answer(lambda: download(state, what, self.uploads)))
+
+    async def start(self, request: Request) -> Response:
+        """Start a study."""
+        kind = _kind(request)
+        state = parse_state((await _content(request)).get("state"))
+        plan = _STUDIES[kind][0]
+
+        def work() -> dict[str, str]:
+            return {"token": self.jobs.start(plan(state), kind)}
+
+        return JSONResponse(await self._answer(work))
+
+    async def progress(self, request: Request) -> Response:
+        """Progress of a study, and what follows from its runs so far for the questions in the state."""
+        kind, job = self._job(request)
+        state = parse_state((await _content(request)).get("state"))
+        return JSONResponse(await self._answer(lambda: _STUDIES[kind][1](job, state)))
+
+    async def study_file(self, request: Request) -> Response:
+        """Table or figure of a study."""
+        kind, job = self._job(request)
+        state = parse_state((await _content(request)).get("state"))
+        what = request.path_params["what"]
+        return _file(*await self._answer(lambda: _STUDIES[kind][2](job, state, what)))
+
+    async def cancel(self, request: Request) -> Response:
+        """Stop a study."""
+        self.jobs.cancel(request.path_params["token"])
+        return JSONResponse({})
+
+    def _job(self, request: Request) -> tuple[str, Job]:
+        kind, job = _kind(request), self.jobs.get(request.path_params["token"])
+        if job.kind != kind:
+            message = f"That study is not of the kind {kind}."
+            raise Refusal(message, 404)
+        return kind, job
+
+
+_STUDIES: dict[str, tuple[Any, Any, Any]] = {
+    "cloud": (cloud_plan, cloud_view, cloud_files),
+    "design": (design_plan, design_view, design_files),
+}
+"""How each kind of study is planned, looked at and taken away."""
+
+
+def _kind(request: Request) -> str:
+    kind = request.path_params["kind"]
+    if kind not in _STUDIES:
+        message = f"There is no study of the kind {kind[:40]!r}."
+        raise Refusal(message, 404)
+    return kind
+
+
+def create(host: str) -> Starlette:
+    """Return the application for a host name; one for this machine alone answers to no other name."""
+    server = Server()
+
+    @asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncGenerator[None]:
+        yield
+        server.jobs.close()
+
+    middleware = [Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3)]
+    if host in LOOPBACK:  # a foreign page whose name points here must not read the answers
+        middleware.insert(0, Middleware(TrustedHostMiddleware, allowed_hosts=[*LOOPBACK, "testserver"]))
+    routes = [
+        Route("/", _page),
+        Route("/api/about", server.about),
+        Route("/api/suite/{name}", server.suite),
+        Route("/api/state", server.state, methods=["POST"]),
+        Route("/api/structure", server.structure, methods=["POST"]),
+        Route("/api/record", server.record, methods=["POST"]),
+        Route("/api/response", server.response, methods=["POST"]),
+        Route("/api/upload", server.upload, methods=["POST"]),
+        Route("/api/matrices", server.matrices, methods=["POST"]),
+        Route("/api/download/{what}", server.download, methods=["POST"]),
+        Route("/api/study/{kind}", server.start, methods=["POST"]),
+        Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),
+        Route("/api/study/{kind}/{token}/{what}", server.study_file, methods=["POST"]),
+        Route("/api/job/{token}", server.cancel, methods=["DELETE"]),
+        Mount("/static", StaticFiles(directory=STATIC)),
+    ]
+    handlers: dict[Any, Any] = {
+        Refusal: _refused,
+        InputError: _unusable,
+        SolverError: _unusable,
+        Exception: _failed,
+    }
+    return Starlette(routes=routes, middleware=middleware, exception_handlers=handlers, lifespan=lifespan)
+
+
+async def _page(_: Request) -> Response:
+    return FileResponse(STATIC / "index.html", headers=HEADERS)
+
+
+def _about() -> dict[str, Any]:
+    pulses = {name: {"title": title, "fields": fields} for name, (title, _, fields) in PULSES.items()}
+    limits = {"file": FILE, "freedoms": FREEDOMS, "duration": DURATION, "models": MODELS, "runs": RUNS}
+    first = State.model_validate({"structure": PRESETS[0]["structure"]})
+    return forms() | {
+        "suites": suites(),
+        "pulses": pulses,
+        "limits": limits,
+        "state": plain(first.model_dump(exclude_none=True)),
+    }
+
+
+async def _body(request: Request) -> bytes:
+    """Body of a request, read no further than it may be long."""
+    chunks, size = list[bytes](), 0
+    async for chunk in request.stream():
+        size += len(chunk)
+        if size > BODY:
+            message = f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes."
+            raise Refusal(message, 413)
+        chunks.append(chunk)
+    return b"".join(chunks)
+
+
+async def _content(request: Request) -> dict[str, Any]:
+    """JSON object in the body; another type of content would let foreign pages ask without the browser's question."""
+    if request.headers.get("content-type", "").split(";")[0].strip() != "application/json":
+        message = "A request must be application/json."
+        raise Refusal(message, 415)
+    body = await _body(request)
+    content = await anyio.to_thread.run_sync(parse_json, body)
+    if not isinstance(content, dict):
+        message = "A request must be a JSON object."
+        raise Refusal(message, 400)
+    return content
+
+
+def _step(text: str) -> float | None:
+    if not text.strip():
+        return None
+    try:
+        return float(text)
+    except ValueError as error:
+        message = f"the sampling step must be a number in s, but {text[:40]!r} was given."
+        raise Refusal({"record.upload": message}) from error
+
+
+def _file(name: str, kind: str, content: bytes) -> Response:
+    return Response(content, media_type=kind, headers={"Content-Disposition": f'attachment; filename="{name}"'})
+
+
+async def _refused(_: Request, error: Exception) -> Response:
+    assert isinstance(error, Refusal)
+    return JSONResponse({"errors": error.errors}, status_code=error.status)
+
+
+async def _unusable(_: Request, error: Exception) -> Response:
+    return JSONResponse({"errors": {"": str(error)}}, status_code=422)
+
+
+async def _failed(_: Request, error: Exception) -> Response:
+    logging.getLogger(__name__).error("The page met an error", exc_info=error)
+    message = "The server met an error of its own; its log has the details."
+    return JSONResponse({"errors": {"": message}}, status_code=500)

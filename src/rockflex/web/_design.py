@@ -1,0 +1,137 @@
+"""The Design tab: how wide the base must be, with tendons and without."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockflex._errors import InputError, SolverError
+from rockflex.study.plans import DesignStudy, design_table, smallest_width
+from rockflex.web._cloud import UNITS, check_effort, table_of
+from rockflex.web._jobs import Job
+from rockflex.web._limits import RUNS
+from rockflex.web._packing import plain
+from rockflex.web._refusal import Refusal
+from rockflex.web._state import DesignChoice, State
+from rockflex.web._structures import build
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockflex.study.plans import ChunkedPlan
+
+__all__ = ["design_plan", "design_study", "design_table_of", "design_view", "limit_of"]
+
+RESAMPLES = 60  # while runs still come; then 200
+
+
+def limit_of(choice: DesignChoice) -> float | str:
+    """Return the limit as the library takes it."""
+    return choice.rotation if choice.limit == "rotation" else choice.limit
+
+
+def design_study(state: State) -> DesignStudy:
+    """Return the study of a state, as `rockflex design` runs it.
+
+    Raises
+    ------
+    Refusal
+        If it is not one.
+    """
+    choice = state.design
+    present = build(state.structure).properties
+    if choice.widest <= choice.narrowest:
+        message = f"it must be more than the narrowest, {choice.narrowest:g}, but {choice.widest:g} was given."
+        raise Refusal({"design.widest": message})
+    widths = np.linspace(choice.narrowest, choice.widest, choice.widths) * present.half_width
+    levels: list[dict[str, Any]] = []
+    if not present.tendons:  # else it keeps its own
+        for force in dict.fromkeys(choice.tendons):
+            name = f"F₀ = {force:g} W" if force else "no tendon"
+            stiffness = choice.stiffness if force else 0.0
+            levels.append({"prestress_ratio": force, "stiffness_ratio": stiffness, "name": name})
+    content: dict[str, Any] = {
+        "name": state.structure.name or "Design",
+        "structures": [state.structure.model_dump(exclude_none=True)],
+        "records": {"suites": list(choice.suites)},
+        "models": [choice.model],
+        "scales": list(choice.scales),
+        "half_widths": [float(f"{width:.6g}") for width in widths],
+        "tendons": levels,
+        "impact": None if state.impact == "model" else state.impact,
+        "measure": choice.measure,
+        "level": choice.at,
+        "limits": [limit_of(choice)],
+        "target": choice.target,
+        "runs_per_chunk": 24,
+    }
+    try:
+        return DesignStudy(**content)
+    except InputError as error:
+        raise Refusal({"design": str(error)}) from error
+
+
+def design_plan(state: State) -> "ChunkedPlan":
+    """Return the runs of a state's design study, cut into small chunks.
+
+    Raises
+    ------
+    Refusal
+        If it cannot be made, or has too many runs for a page, or takes too long.
+    """
+    built = build(state.structure)
+    try:
+        plan = design_study(state).plan()
+    except InputError as error:
+        raise Refusal({"design": str(error)}) from error
+    if plan.n_runs > RUNS:
+        message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use rockflex design."
+        raise Refusal({"design": message})
+    each = plan.n_runs // len(plan.motions)
+    check_effort(plan, built.properties, [state.design.model], each, "design")
+    return plan
+
+
+def design_table_of(job: Job, choice: DesignChoice) -> "pd.DataFrame | None":
+    """Return a row a design from the runs so far; None if there are none.
+
+    Raises
+    ------
+    Refusal
+        If the question cannot be answered.
+    """
+    runs = table_of(job)
+    if runs is None:
+        return None
+    try:
+        resamples = 200 if job.over else RESAMPLES
+        return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at, n_resamples=resamples)
+    except (InputError, SolverError) as error:
+        raise Refusal({"design": str(error)}) from error
+
+
+def design_view(job: Job, state: State) -> dict[str, Any]:
+    """Return progress, the probability over the half width for every tendon, and the answer."""
+    choice = state.design
+    view: dict[str, Any] = {
+        "status": job.status,
+        "message": job.message,
+        "done": job.runs,
+        "total": job.plan.n_runs,
+        "unit": UNITS[choice.measure],
+        "present": build(state.structure).properties.half_width,
+        "curves": [],
+        "answers": [],
+        "notes": [],
+    }
+    table = design_table_of(job, choice)
+    if table is None:
+        return plain(view)
+    for tendon, part in table.groupby("tendon", observed=True, sort=False):
+        names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
+        view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
+        view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
+    answers = smallest_width(table, choice.target)
+    view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
+        "records"
+    )
+    return plain(view)

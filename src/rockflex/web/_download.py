@@ -1,0 +1,230 @@
+"""Everything that can be taken away: figure, tables, study and program."""
+
+import csv
+import io
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex.web._cloud import cloud_study, table_of
+from rockflex.web._design import design_study, design_table_of
+from rockflex.web._jobs import Job
+from rockflex.web._records import motion_of
+from rockflex.web._refusal import Refusal
+from rockflex.web._response import responses
+from rockflex.web._script import cloud_script, design_script, response_script
+from rockflex.web._state import State
+from rockflex.web._toml import toml
+from rockflex.web._uploads import Uploads, clean_name
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["cloud_files", "design_files", "download", "svg"]
+
+
+def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes]:
+    """Return the name, the type and the content of a file.
+
+    Parameters
+    ----------
+    state
+        What the page shows.
+    what
+        ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``, ``"study"``,
+        ``"structure"``, ``"python"``, and ``"cloud-study"``, ``"cloud-python"``, ``"design-study"``,
+        ``"design-python"``.
+    uploads
+        Records of visitors.
+
+    Raises
+    ------
+    Refusal
+        If there is no such file, or the state cannot be simulated.
+    """
+    maker = _MAKERS.get(what)
+    if maker is None:
+        message = f"There is nothing to download by the name {what[:40]!r}."
+        raise Refusal(message, 404)
+    name, content = maker(state, uploads)
+    kinds = {".svg": "image/svg+xml", ".csv": "text/csv", ".toml": "application/toml", ".py": "text/x-python"}
+    data = content if isinstance(content, bytes) else content.encode()
+    return name, kinds[Path(name).suffix], data
+
+
+def svg(figure: Any) -> bytes:
+    """Return a figure as SVG."""
+    from rockflex.plot import save_figure
+
+    with TemporaryDirectory() as folder:
+        return save_figure(figure, Path(folder) / "figure.svg").read_bytes()
+
+
+def _figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    from rockflex.plot import plot_history
+
+    return "response.svg", svg(plot_history(responses(state, uploads)[2]))
+
+
+def _energy(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    from rockflex.plot import plot_energy
+
+    return "energy.svg", svg(plot_energy(responses(state, uploads)[2][0]))
+
+
+def _modes(state: State, _: Uploads) -> tuple[str, bytes]:
+    from rockflex.plot import plot_mode_shapes
+    from rockflex.web._structures import build
+
+    built = build(state.structure)
+    if built.modes is None:
+        message = "the shapes of the modes are not known, so there is no figure of them."
+        raise Refusal({"structure": message})
+    return "modes.svg", svg(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
+
+
+def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
+    _, motion, found = responses(state, uploads)
+    rows = [response.peaks() for response in found]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["record", "scale", *rows[0]])
+    writer.writerows([motion.name, state.scale, *row.values()] for row in rows)
+    return "peaks.csv", text.getvalue()
+
+
+def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    names = ("time", "side", "ground_acceleration", "rotation", "top_displacement", "base_moment", "base_shear")
+    units = ("s", "", "m/s2", "rad", "m", "N m", "N")
+    writer.writerow(["model", *(f"{name} ({unit})" if unit else name for name, unit in zip(names, units, strict=True))])
+    for response in responses(state, uploads)[2]:
+        columns = np.column_stack([getattr(response, name) for name in names])
+        writer.writerows([response.model, *(f"{value:.9g}" for value in row)] for row in columns.tolist())
+    return "histories.csv", text.getvalue()
+
+
+def _record(state: State, uploads: Uploads) -> tuple[str, str]:
+    motion = motion_of(state.record, uploads)
+    rows = zip(motion.time.tolist(), motion.acceleration.tolist(), strict=True)
+    lines = [f"{t!r},{a!r}" for t, a in rows]
+    return f"{clean_name(motion.name)}.csv", "\n".join(["time (s),acc (m/s2)", *lines, ""])
+
+
+def _structure_toml(state: State, _: Uploads) -> tuple[str, str]:
+    return "structure.toml", toml(state.structure.model_dump(exclude_none=True))
+
+
+def _study(state: State, uploads: Uploads) -> tuple[str, str]:
+    """The runs of the Response tab as a cloud study of one record."""
+    motion = motion_of(state.record, uploads)
+    head = "# rockflex cloud study.toml --out study\n"
+    records: dict[str, Any] = {"suites": [state.record.suite], "include": [motion.name]}
+    if state.record.source != "suite":
+        name = f"{clean_name(motion.name)}.csv"
+        head += f'# Put the record, which the page gives as "{name}", into the folder records beside this file.\n'
+        records = {"folder": "records"}
+    content: dict[str, Any] = {
+        "study": "cloud",
+        "name": state.structure.name or "Response",
+        "models": list(state.models),
+        "scales": [state.scale],
+        "free_vibration": state.free_vibration,
+    }
+    if state.impact != "model":
+        content["impact"] = state.impact
+    structure = state.structure.model_dump(exclude_none=True)
+    return "study.toml", head + toml(content | {"records": records, "structures": [structure]})
+
+
+def _python(state: State, uploads: Uploads) -> tuple[str, str]:
+    name = clean_name(motion_of(state.record, uploads).name) if state.record.source == "upload" else ""
+    return "response.py", response_script(state, name)
+
+
+def _cloud_study(state: State, _: Uploads) -> tuple[str, str]:
+    return "cloud.toml", "# rockflex cloud cloud.toml --out study\n" + toml(
+        cloud_study(state).model_dump(exclude_none=True)
+    )
+
+
+def _cloud_python(state: State, _: Uploads) -> tuple[str, str]:
+    return "cloud.py", cloud_script(state)
+
+
+def _design_study(state: State, _: Uploads) -> tuple[str, str]:
+    content = design_study(state).model_dump(exclude_none=True)
+    return "design.toml", "# rockflex design design.toml --out study\n" + toml(content)
+
+
+def _design_python(state: State, _: Uploads) -> tuple[str, str]:
+    return "design.py", design_script(state)
+
+
+def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
+    """Return the table or the figure of a cloud, as far as it has come.
+
+    Raises
+    ------
+    Refusal
+        If there is none yet.
+    """
+    runs = _runs(job)
+    if what == "table":
+        return "runs.csv", "text/csv", runs.to_csv(index=False).encode()
+    from rockflex.plot import plot_fragility
+
+    try:
+        figure = plot_fragility(runs, state.cloud.measure, level=state.cloud.level, overturning=True)
+        return "fragility.svg", "image/svg+xml", svg(figure)
+    except InputError as error:
+        raise Refusal(str(error)) from error
+
+
+def design_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
+    """Return the table or the figure of a design study, as far as it has come.
+
+    Raises
+    ------
+    Refusal
+        If there is none yet.
+    """
+    _runs(job)
+    table = design_table_of(job, state.design)
+    if what == "table" and table is not None:
+        return "design.csv", "text/csv", table.to_csv(index=False).encode()
+    from rockflex.plot import plot_design
+
+    try:
+        return "design.svg", "image/svg+xml", svg(plot_design(table, state.design.target))  # pyright: ignore[reportArgumentType]
+    except InputError as error:
+        raise Refusal(str(error)) from error
+
+
+def _runs(job: Job) -> "pd.DataFrame":
+    runs = table_of(job)
+    if runs is None:
+        message = "No run has come yet."
+        raise Refusal(message)
+    return runs
+
+
+_MAKERS: dict[str, Any] = {
+    "figure": _figure,
+    "energy": _energy,
+    "modes": _modes,
+    "peaks": _peaks,
+    "histories": _histories,
+    "record": _record,
+    "structure": _structure_toml,
+    "study": _study,
+    "python": _python,
+    "cloud-study": _cloud_study,
+    "cloud-python": _cloud_python,
+    "design-study": _design_study,
+    "design-python": _design_python,
+}

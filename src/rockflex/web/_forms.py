@@ -1,0 +1,114 @@
+"""The forms of structures, from the tables that structure files are read with."""
+
+import re
+import types
+import typing
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+from rockflex.structure.file import KINDS, Table, TendonTable
+from rockflex.web._limits import INFINITE, RANGES
+from rockflex.web._packing import plain
+from rockflex.web._presets import PRESETS
+
+__all__ = ["forms"]
+
+TITLES = {
+    "frame": "Frame of equal stories",
+    "fish_bone": "Frame of unequal stories",
+    "wall_frame": "Wall and frame",
+    "tapered_tower": "Tapered tower",
+    "cantilever": "Cantilever with a mass at its tip",
+    "beam": "Beam, perhaps tapered",
+    "lumped": "Lumped masses",
+    "matrices": "Mass and stiffness matrices",
+    "modes": "Modes of a finite element model",
+    "properties": "Rocking parameters",
+    "block": "Rigid block",
+}
+SYMBOLS = {
+    "n_stories": "Stories",
+    "n_modes": "Modes",
+    "n_elements": "Elements",
+    "aspect_ratio": "Slenderness h*₁/B",
+    "i_theta": "I_θ",
+    "l0r": "L₀ʳ",
+    "m_tot": "Total mass",
+    "zeta": "Damping ratio",
+    "omega": "ω",
+    "z": "Heights z",
+}
+_UNIT = re.compile(r"\bin (kg m²|kg/m³|kg/m|kg m|kg|N m²|N m/rad|N/m²|N/m|N|rad/s|rad|m|s)(?=[\s,;:(]|$)")
+_TAIL = re.compile(r",? an? (whole )?number( or one for each \w+)?( from 0 to inf| such as [\d.]+)?( in [^,()]+)?$")
+
+
+def forms() -> dict[str, Any]:
+    """Return the fields of every kind of structure and of a tendon, and the presets."""
+    kinds = {name: {"title": TITLES.get(name, name), "fields": _fields(table)} for name, table in KINDS.items()}
+    return plain({"kinds": kinds, "tendon": _fields(TendonTable), "presets": PRESETS})
+
+
+def _fields(table: type[Table]) -> list[dict[str, Any]]:
+    return [_field(name, field) for name, field in table.model_fields.items()]
+
+
+def _field(name: str, field: FieldInfo) -> dict[str, Any]:
+    description = field.description or ""
+    unit = _UNIT.search(description) or _UNIT.search(" in " + description.split(" in ")[0])
+    low, high = RANGES.get(name, (None, None))
+    default = None if field.is_required() else field.get_default(call_default_factory=True)
+    return {
+        "name": name,
+        "label": SYMBOLS.get(name, name.replace("_", " ").capitalize()),
+        "unit": unit[1] if unit else "",
+        "help": _help(description),
+        "type": _type(field.annotation),
+        "choices": _choices(field.annotation),
+        "required": field.is_required(),
+        "default": None if hasattr(default, "model_fields") else default,
+        "low": low,
+        "high": high,
+        "infinite": name in INFINITE,
+    }
+
+
+def _help(description: str) -> str:
+    """What a field is, without what it is written as."""
+    text = _TAIL.sub("", description).strip()
+    text = re.sub(r", or the path of a .*$", "", text)
+    begins = text[:1].upper() if text[1:2].islower() or text[1:2] == " " else text[:1]  # not ω or h*_1
+    return f"{begins}{text[1:]}."
+
+
+def _parts(annotation: Any) -> list[Any]:
+    """The kinds of value that a field takes."""
+    origin = get_origin(annotation)
+    if origin is typing.Annotated:
+        return _parts(get_args(annotation)[0])
+    if origin in (typing.Union, types.UnionType):
+        return [part for each in get_args(annotation) for part in _parts(each)]
+    return [annotation]
+
+
+def _type(annotation: Any) -> str:
+    """How a field is filled in: the simplest form that takes all of its kinds."""
+    parts = _parts(annotation)
+    if any(get_origin(part) is Literal for part in parts):
+        return "choice"
+    if bool in parts:
+        return "flag"
+    lists = [part for part in parts if get_origin(part) is list]
+    if any(get_origin(get_args(part)[0]) is list for part in lists):
+        return "matrix"
+    if any(get_args(part) == (int,) for part in lists):
+        return "indices"
+    if lists:
+        return "number or list" if float in parts else "list"
+    if int in parts and float not in parts:
+        return "whole"
+    return "number" if float in parts else "table"
+
+
+def _choices(annotation: Any) -> list[str]:
+    return [str(value) for part in _parts(annotation) if get_origin(part) is Literal for value in get_args(part)]

@@ -1,0 +1,116 @@
+"""Studies that run in the background, chunk by chunk, while the page looks at what has come so far."""
+
+import logging
+import secrets
+from collections import OrderedDict
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from threading import Event, Lock
+from time import monotonic
+from typing import Any
+
+from rockflex._errors import InputError, SolverError
+from rockflex.study.plans import Plan
+from rockflex.web._refusal import Refusal
+
+__all__ = ["Job", "Jobs"]
+
+KEPT = 40  # jobs that are remembered
+WAITING = 12  # jobs that may wait or run at once
+FORGOTTEN = 30.0  # s without a look after which a job stops: its page was closed
+
+
+@dataclass
+class Job:
+    """A study that is computed by one thread and read by others; `tables` only grows."""
+
+    plan: Plan
+    kind: str
+    status: str = "waiting"
+    message: str = ""
+    tables: list[Any] = field(default_factory=list[Any])
+    runs: int = 0
+    cancelled: Event = field(default_factory=Event)
+    seen: float = field(default_factory=monotonic)
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing more will come."""
+        return self.status in ("done", "cancelled", "failed")
+
+    def compute(self) -> None:
+        """Compute chunk after chunk until done, cancelled or forgotten."""
+        self.status = "running"
+        try:
+            for number in range(self.plan.n_chunks):
+                if self.cancelled.is_set() or monotonic() - self.seen > FORGOTTEN:
+                    self.status = "cancelled"
+                    return
+                table = self.plan.chunk(number)
+                self.tables.append(table)
+                self.runs += table.num_rows
+            self.status = "done"
+        except (InputError, SolverError) as error:
+            self.status, self.message = "failed", str(error)
+        except Exception:
+            logging.getLogger(__name__).exception("A study of the page failed")
+            self.status, self.message = "failed", "The server met an error of its own; its log has the details."
+
+
+class Jobs:
+    """Jobs by their tokens, which nobody can guess; one runs at a time, so that the other core answers."""
+
+    def __init__(self) -> None:
+        self._jobs: OrderedDict[str, Job] = OrderedDict()
+        self._lock = Lock()
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="study")
+
+    def start(self, plan: Plan, kind: str) -> str:
+        """Queue a job, and return its token.
+
+        Raises
+        ------
+        Refusal
+            If too many are waiting.
+        """
+        with self._lock:
+            if sum(not job.over for job in self._jobs.values()) >= WAITING:
+                message = "The server is busy with the studies of others. Try again in a minute."
+                raise Refusal(message, 503)
+            token = secrets.token_urlsafe(18)
+            job = self._jobs[token] = Job(plan, kind)
+            while len(self._jobs) > KEPT:
+                old = next((key for key, each in self._jobs.items() if each.over), token)
+                del self._jobs[old]
+        self._pool.submit(job.compute)
+        return token
+
+    def get(self, token: str) -> Job:
+        """Return a job, and note that somebody looks at it.
+
+        Raises
+        ------
+        Refusal
+            If there is none with that token.
+        """
+        with self._lock:
+            job = self._jobs.get(token)
+        if job is None:
+            message = "The server does not know this study (any more). Start it again."
+            raise Refusal(message, 404)
+        job.seen = monotonic()
+        return job
+
+    def cancel(self, token: str) -> None:
+        """Stop a job after the chunk that is being computed; what has come stays."""
+        job = self.get(token)
+        job.cancelled.set()
+        if job.status == "waiting":
+            job.status = "cancelled"
+
+    def close(self) -> None:
+        """Stop all jobs."""
+        with self._lock:
+            for job in self._jobs.values():
+                job.cancelled.set()
+        self._pool.shutdown(wait=False, cancel_futures=True)

@@ -1,0 +1,14 @@
+"""What the page is told when something given cannot be used."""
+
+from collections.abc import Mapping
+
+__all__ = ["Refusal"]
+
+
+class Refusal(Exception):  # noqa: N818 - an answer, not a failure
+    """Messages by the dotted path of the field at fault, such as ``structure.frame.period``; empty for none of them."""
+
+    def __init__(self, errors: Mapping[str, str] | str, status: int = 422) -> None:
+        self.errors = {"": errors} if isinstance(errors, str) else dict(errors)
+        self.status = status
+        super().__init__("; ".join(f"{path}: {text}" if path else text for path, text in self.errors.items()))

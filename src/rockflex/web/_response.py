@@ -1,0 +1,150 @@
+"""The Response tab: models side by side, thinned to what a screen can show; the peaks are the true ones."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError, SolverError
+from rockflex.models import ImpactLaw, VVELComplete, VVELSimplified
+from rockflex.motion import GroundMotion
+from rockflex.response import History, Response
+from rockflex.study import simulate
+from rockflex.web._limits import check_run, effort
+from rockflex.web._packing import envelope, pack, plain
+from rockflex.web._records import motion_of
+from rockflex.web._refusal import Refusal
+from rockflex.web._state import State
+from rockflex.web._structures import Built, build
+from rockflex.web._uploads import Uploads
+
+__all__ = ["PEAK_ROWS", "impact_of", "response_view", "responses"]
+
+Array = NDArray[np.float64]
+
+POINTS = 1600  # of a history, events aside
+EVENTS = 600  # nodes of events kept, at most
+LEDGER = 5e6  # effort of an energy ledger: about a second
+
+PEAK_ROWS = (
+    ("max_rotation", "θ_max", "rad"),
+    ("max_top_displacement", "u_top,max", "m"),
+    ("max_base_moment", "M_b,max", "N m"),
+    ("max_base_shear", "V_b,max", "N"),
+)
+
+
+def impact_of(state: State) -> ImpactLaw | None:
+    """Return the impact law of a state; None for the model's own."""
+    laws: dict[str, ImpactLaw] = {"simplified": VVELSimplified(), "complete": VVELComplete()}
+    return laws.get(state.impact)
+
+
+def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list[Response]]:
+    """Simulate what a state asks for.
+
+    Raises
+    ------
+    Refusal
+        If a run cannot be made, or takes too long.
+    """
+    built = build(state.structure)
+    motion = motion_of(state.record, uploads).scaled(state.scale)
+    found: list[Response] = []
+    for label in state.models:
+        check_run(built.properties, motion, label, state.free_vibration)
+        try:
+            found.append(
+                simulate(built.structure, motion, label, free_vibration=state.free_vibration, impact=impact_of(state))
+            )
+        except (InputError, SolverError) as error:
+            raise Refusal({"models": f"{label}: {error}"}) from error
+    return built, motion, found
+
+
+def response_view(state: State, uploads: Uploads, focus: str = "") -> dict[str, Any]:
+    """Return histories, events and peaks of all models; the energy of the one named `focus`, or of the first."""
+    built, motion, found = responses(state, uploads)
+    main = next((r for r in found if r.model == focus), found[0])
+    p = built.properties
+    return plain(
+        {
+            "motion": motion.name,
+            "duration": motion.duration,
+            "kind": state.structure.kind,
+            "heights": built.heights,
+            "half_width": p.half_width,
+            "shapes_known": built.modes is not None,
+            "tendons": [tendon.position for tendon in p.tendons],
+            "nominal": p.nominal_overturning_rotation,
+            "models": [_curves(built, response) for response in found],
+            "energy": _energy(main, effort(p, motion, main.model, state.free_vibration)),
+        }
+    )
+
+
+def _curves(built: Built, response: Response) -> dict[str, Any]:
+    history = response.history
+    assert history is not None  # asked for in `responses`
+    kept = _kept(history)
+    modal = history.modal_displacement[kept]
+    points = modal @ built.shapes[:, : modal.shape[1]].T
+    return {
+        "label": response.model,
+        "status": response.status,
+        "peaks": response.peaks(),
+        "lifts": history.model.lifts,
+        "fall_time": _fall_time(history),
+        "uplift_times": history.uplift_times[:EVENTS],
+        "impact_times": history.impact_times[:EVENTS],
+        "t": pack(history.time[kept]),
+        "side": pack(history.side[kept]),
+        "rotation": pack(history.rotation[kept]),
+        "top_displacement": pack(history.top_displacement[kept]),
+        "base_moment": pack(history.base_moment[kept]),
+        "base_shear": pack(history.base_shear[kept]),
+        "points": pack(points),
+    }
+
+
+def _kept(history: History) -> NDArray[np.intp]:
+    """Nodes that are sent: the extremes of every stretch, and both sides of the events."""
+    curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear]
+    kept = envelope(curves, POINTS)
+    events = np.flatnonzero(np.diff(history.time) == 0.0)[: EVENTS // 2]
+    return np.unique(np.concatenate((kept, events, events + 1)))
+
+
+def _fall_time(history: History) -> float | None:
+    """Time at which the rotation passes that of balance for good, if it does."""
+    p = history.model.properties
+    if p.rocking_stiffness >= 0.0:
+        return None
+    balance = -p.resisting_moment / p.rocking_stiffness
+    inside = np.flatnonzero(np.abs(history.rotation) <= balance)
+    if not inside.size or inside[-1] == history.time.size - 1:
+        return None
+    return float(history.time[inside[-1] + 1])
+
+
+def _energy(response: Response, work: float) -> dict[str, Any]:
+    """Energies over time, stacked in the browser; a note in their place where they would take long."""
+    history = response.history
+    assert history is not None  # asked for in `responses`
+    if work > LEDGER:
+        note = "The energy of so many modes over so long a time is left out here."
+        return {"label": response.model, "note": note}
+    try:
+        ledger = history.energy
+    except InputError as error:
+        return {"label": response.model, "note": str(error)}
+    names = ("kinetic", "strain", "gravity", "tendons", "damped", "lost", "input")
+    curves = {name: np.asarray(getattr(ledger, name)) for name in names}
+    kept = envelope([curves["kinetic"], curves["strain"]], 1000)
+    kept = np.unique(np.concatenate((kept, np.flatnonzero(np.diff(ledger.lost) != 0.0)[:EVENTS] + 1)))
+    return {
+        "label": response.model,
+        "t": pack(history.time[kept]),
+        **{name: pack(values[kept]) for name, values in curves.items()},
+        "closing_error": ledger.closing_error,
+    }

@@ -1,0 +1,157 @@
+"""The Python lines that repeat what the page shows."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from rockflex.modal import Tendon
+from rockflex.structure import LumpedMasses
+from rockflex.structure.file import StructureEntry
+from rockflex.web._design import design_study, limit_of
+from rockflex.web._records import PULSES
+from rockflex.web._state import PulseChoice, State
+
+__all__ = ["cloud_script", "design_script", "record_file", "response_script"]
+
+
+def response_script(state: State, upload_name: str = "record") -> str:
+    """Return a program that simulates what the Response tab shows, in `responses` by model."""
+    extra = f", free_vibration={state.free_vibration!r}"
+    if state.impact != "model":
+        law = {"simplified": "VVELSimplified", "complete": "VVELComplete"}[state.impact]
+        extra += f", impact=rf.{law}()"
+    return "\n".join(
+        [
+            "import numpy as np",
+            "import rockflex as rf",
+            "",
+            *_structure(state.structure),
+            *_motion(state, upload_name),
+            "",
+            f"models = {list(state.models)!r}",
+            f"responses = {{model: rf.simulate(structure, motion, model{extra}) for model in models}}",
+            "for model, response in responses.items():",
+            "    print(model, response.status)",
+            '    print(f"  largest rotation {response.max_rotation:.6g} rad at {response.time_of_max_rotation:.4f} s")',
+            '    print(f"  largest top displacement {response.max_top_displacement:.6g} m")',
+            '    print(f"  largest base moment {response.max_base_moment:.6g} N m")',
+            '    print(f"  largest base shear {response.max_base_shear:.6g} N")',
+            'rf.save_figure(rf.plot_history(responses.values()), "response.svg")',
+            "",
+        ]
+    )
+
+
+def cloud_script(state: State) -> str:
+    """Return a program that repeats the cloud of the Fragility tab, with its table in `runs`."""
+    cloud = state.cloud
+    records = " + ".join(f"list(rf.load_suite({name!r}))" for name in cloud.suites)
+    law = {"simplified": ", impact=rf.VVELSimplified()", "complete": ", impact=rf.VVELComplete()"}.get(state.impact, "")
+    lines = [
+        "import numpy as np",
+        "import rockflex as rf",
+        "",
+        *_structure(state.structure),
+        f"motions = {records}",
+        f"runs = rf.run_cloud(structure, motions, {list(cloud.models)!r}, scales={list(cloud.scales)!r}, "
+        f'free_vibration="settle"{law})',
+        f"im = np.geomspace(runs[{cloud.measure!r}].min(), runs[{cloud.measure!r}].max(), 60)",
+        "curves = {}",
+        f"for fit in rf.fit_clouds(runs, {cloud.measure!r}, nominal={cloud.limit == 'nominal'}):",
+    ]
+    if cloud.limit == "rotation":
+        lines.append(f"    curves[fit.model] = fit.outcomes.exceedance(im, {cloud.rotation!r})")
+    else:
+        curve = "initiation" if cloud.limit == "rocking" else "overturning"
+        lines.append(f"    curves[fit.model] = fit.outcomes.{curve}.probability(im)")
+    return "\n".join([*lines, "print(curves)", ""])
+
+
+def design_script(state: State) -> str:
+    """Return a program that repeats the Design tab, with its chart in `table` and its answer in `answer`."""
+    study = design_study(state)
+    choice = state.design
+    records = " + ".join(f"list(rf.load_suite({name!r}))" for name in choice.suites)
+    levels = [
+        f"TendonLevel({each.prestress_ratio!r}, {each.stiffness_ratio!r}, name={each.name!r})" for each in study.tendons
+    ]
+    law = {"simplified": ", impact=rf.VVELSimplified()", "complete": ", impact=rf.VVELComplete()"}.get(state.impact, "")
+    return "\n".join(
+        [
+            "import numpy as np",
+            "import rockflex as rf",
+            "from rockflex.study.plans import TendonLevel, smallest_width",
+            "",
+            *_structure(state.structure),
+            f"motions = {records}",
+            f"half_widths = {study.half_widths!r}",
+            f"tendons = [{', '.join(levels)}]",
+            f"runs = rf.run_design(structure, motions, half_widths, tendons, {choice.model!r}, "
+            f"scales={list(choice.scales)!r}{law})",
+            f"table = rf.design_table(runs, {limit_of(choice)!r}, measure={choice.measure!r}, at={choice.at!r})",
+            f"answer = smallest_width(table, {choice.target!r})",
+            "print(answer)",
+            f'rf.save_figure(rf.plot_design(table, {choice.target!r}), "design.svg")',
+            "",
+        ]
+    )
+
+
+def record_file(upload_name: str) -> str:
+    """Name of the file in which the page gives an uploaded record back."""
+    return f"{upload_name}.csv"
+
+
+def _structure(entry: StructureEntry) -> list[str]:
+    makes = type(entry.table).makes
+    given: Any = entry.table
+    arguments = {name: value for name, value in given.arguments("").items() if value is not None}
+    inner = ", ".join(f"{name}={_literal(value)}" for name, value in arguments.items())
+    lines = [f"structure = rf.{makes.__name__}({inner})"]
+    if entry.tendons:
+        tendons = [_literal(Tendon(**each.model_dump())) for each in entry.tendons]
+        held = f"[{', '.join(tendons)}]"
+        if entry.kind in ("properties", "block"):
+            lines += ["from dataclasses import replace", f"structure = replace(structure, tendons={held})"]
+        else:
+            lines.append(f"structure = rf.Restrained(structure, {held})")
+    return lines
+
+
+def _motion(state: State, upload_name: str) -> list[str]:
+    choice = state.record
+    if choice.source == "upload":
+        line = f"motion = rf.read_motion({record_file(upload_name)!r})  # the page gives it: Record (CSV)"
+    elif choice.source == "pulse":
+        line = f"motion = rf.{_pulse(choice.pulse)}"
+    else:
+        line = f"motion = rf.load_suite({choice.suite!r})[{choice.name!r}]"
+    return [line, f"motion = motion.scaled({state.scale!r})"]
+
+
+def _pulse(p: PulseChoice) -> str:
+    return PULSES[p.shape][1].format(a=repr(p.amplitude), T=repr(p.period), g=repr(p.gamma), n=repr(p.nu))
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, float) and math.isinf(value):
+        return "np.inf"
+    if isinstance(value, LumpedMasses):
+        parts: dict[str, Any] = {"heights": value.heights, "masses": value.masses, "rotary": value.rotary}
+        inner = ", ".join(f"{name}={_literal(np.asarray(each).tolist())}" for name, each in parts.items())
+        return f"rf.LumpedMasses({inner})"
+    if isinstance(value, Tendon):
+        inner = f"initial_force={value.initial_force!r}, stiffness={value.stiffness!r}, position={value.position!r}"
+        return f"rf.Tendon({inner}" + (
+            f", yield_force={value.yield_force!r})" if value.yield_force is not None else ")"
+        )
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key!r}: {_literal(each)}' for key, each in value.items())}}}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(_literal(each) for each in value)}]" if isinstance(value, list) else _tuple(value)
+    return repr(value)
+
+
+def _tuple(values: tuple[Any, ...]) -> str:
+    return f"({', '.join(_literal(each) for each in values)},)"

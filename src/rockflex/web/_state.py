@@ -1,0 +1,215 @@
+"""Everything that the page shows, as one value: what a link holds."""
+
+import json
+import math
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import Field, StringConstraints, ValidationError
+
+from rockflex.models import parse_model
+from rockflex.structure.file import StructureEntry, Table
+from rockflex.web._limits import MODELS, check_numbers
+from rockflex.web._refusal import Refusal
+
+__all__ = ["CloudChoice", "DesignChoice", "PulseChoice", "RecordChoice", "State", "parse_json", "parse_state"]
+
+Name = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
+Scale = Annotated[float, Field(ge=0.01, le=20.0, description="a number from 0.01 to 20")]
+Labels = Annotated[list[Name], Field(min_length=1, max_length=MODELS, description="a list of one to four models")]
+Measure = Literal["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "relative_pga", "relative_pgv"]
+Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a list of one to four suites")]
+
+
+class PulseChoice(Table):
+    """A mathematical pulse."""
+
+    shape: Literal[
+        "ricker_symmetric", "ricker_antisymmetric", "one_sine", "one_cosine", "half_sine", "rectangular", "mavroeidis"
+    ] = Field("ricker_antisymmetric", description="the name of a pulse")
+    amplitude: float = Field(
+        2.0, ge=-50.0, le=50.0, description="the peak acceleration in m/s² (of a Mavroeidis pulse: velocity in m/s)"
+    )
+    period: float = Field(1.0, ge=0.05, le=20.0, description="the period in s, from 0.05 to 20")
+    gamma: float = Field(1.5, ge=1.0, le=5.0, description="the number of oscillations γ, from 1 to 5")
+    nu: float = Field(0.0, ge=-math.pi, le=math.pi, description="the phase ν in rad, from -π to π")
+
+
+class RecordChoice(Table):
+    """A ground motion: one of a suite, a pulse, or an upload by its checksum."""
+
+    source: Literal["suite", "pulse", "upload"] = Field("suite", description='"suite", "pulse" or "upload"')
+    suite: Name = Field("el-centro-1940", description="the name of a suite")
+    name: Name = Field("EL-CENTRO-1940-NS", description="the name of a record")
+    pulse: PulseChoice = Field(default_factory=lambda: PulseChoice.model_validate({}), description="a table")
+    upload: Annotated[str, StringConstraints(pattern=r"^([0-9a-f]{64})?$")] = Field(
+        "", description="the checksum of a file"
+    )
+
+
+class CloudChoice(Table):
+    """A cloud analysis, and what is read from it."""
+
+    suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
+    scales: list[Scale] = Field(
+        [0.5, 1.0, 2.0], min_length=1, max_length=20, description="one to twenty scale factors from 0.01 to 20"
+    )
+    models: Labels = Field(["MDOF-S"], description="a list of one to four models")
+    measure: Measure = Field("pgv", description="an intensity measure")
+    limit: Literal["rocking", "rotation", "nominal", "overturning"] = Field("rocking", description="a limit state")
+    rotation: float = Field(0.01, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
+    level: float = Field(0.9, ge=0.5, le=0.99, description="the confidence of the bands, from 0.5 to 0.99")
+
+
+class DesignChoice(Table):
+    """A search for the width of the base."""
+
+    suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
+    scales: list[Scale] = Field(
+        [1.0, 2.0], min_length=1, max_length=5, description="one to five scale factors from 0.01 to 20"
+    )
+    model: Name = Field("2DOF-S", description="a model")
+    narrowest: float = Field(1.0, ge=0.2, le=2.0, description="the narrowest base over the present one, from 0.2 to 2")
+    widest: float = Field(3.0, ge=1.0, le=10.0, description="the widest base over the present one, from 1 to 10")
+    widths: int = Field(8, ge=3, le=20, description="how many widths, from 3 to 20")
+    tendons: list[Annotated[float, Field(ge=0.0, le=5.0)]] = Field(
+        [0.0, 0.2], min_length=1, max_length=4, description="one to four initial forces over the weight, from 0 to 5"
+    )
+    stiffness: float = Field(0.5, ge=0.0, le=100.0, description="the tendon's stiffness over L_0^r g/B², from 0 to 100")
+    measure: Literal["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1"] = Field(
+        "pgv", description="an intensity measure"
+    )
+    at: float = Field(0.6, gt=0.0, le=1e4, description="the intensity in its SI unit, above 0")
+    limit: Literal["rotation", "nominal", "overturning"] = Field("rotation", description="a limit state")
+    rotation: float = Field(0.02, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
+    target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
+
+
+class State(Table):
+    """All that the page shows."""
+
+    tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
+        "structure", description="the name of a tab"
+    )
+    structure: StructureEntry = Field(description="a table")
+    record: RecordChoice = Field(default_factory=lambda: RecordChoice.model_validate({}), description="a table")
+    scale: Scale = 1.0
+    models: Labels = Field(["MDOF-S", "2DOF-S", "fixed"], description="a list of one to four models")
+    free_vibration: float = Field(
+        5.0, ge=0.0, le=60.0, description="the free vibration after the record in s, from 0 to 60"
+    )
+    impact: Literal["model", "simplified", "complete"] = Field(
+        "model", description='"model", "simplified" or "complete"'
+    )
+    cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
+    design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
+
+
+def parse_json(body: bytes) -> Any:
+    """Read JSON; infinite and absurd numbers are kept for the checks of fields.
+
+    Raises
+    ------
+    Refusal
+        If it is not JSON, or nested too deep.
+    """
+    try:
+        return json.loads(body, parse_int=lambda text: int(text) if len(text) < 16 else float(text))
+    except (ValueError, RecursionError) as error:
+        message = f"The request is no JSON that can be read: {str(error)[:200]}."
+        raise Refusal(message, 400) from error
+
+
+def parse_state(content: Any) -> State:
+    """Check what came from a form or a link.
+
+    Raises
+    ------
+    Refusal
+        With a message for each field at fault.
+    """
+    if not isinstance(content, dict):
+        message = "The link does not hold a state of the page."
+        raise Refusal(message)
+    values = _infinite(content)
+    try:
+        state = State.model_validate(values)
+    except ValidationError as error:
+        raise Refusal(_messages(error, values)) from error
+    except RecursionError as error:
+        message = "The link is nested too deep."
+        raise Refusal(message) from error
+    check_numbers("structure", state.structure.model_dump(exclude={"name"}))
+    for path, labels in (
+        ("models", state.models),
+        ("cloud.models", state.cloud.models),
+        ("design.model", [state.design.model]),
+    ):
+        try:
+            for label in labels:
+                parse_model(label)
+        except ValueError as error:
+            raise Refusal({path: str(error)}) from error
+        if len(set(labels)) < len(labels):
+            raise Refusal({path: "the same model is chosen twice."})
+    return state
+
+
+def _infinite(value: Any) -> Any:
+    """Put numbers in the place of "inf", which JSON cannot write."""
+    if isinstance(value, dict):
+        return {str(key): _infinite(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_infinite(each) for each in value]
+    return math.inf if value == "inf" else value
+
+
+def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:
+    """What is wrong with each field, in a sentence."""
+    found: dict[str, str] = {}
+    for problem in error.errors():
+        path, description, given = _place(problem["loc"], content)
+        if problem["type"] == "extra_forbidden":
+            said = "it is not known here."
+        elif problem["type"] == "missing":
+            said = f"it is missing: {description}."
+        elif problem["type"] == "value_error":
+            said = str(problem.get("ctx", {}).get("error", problem["msg"]))
+        else:
+            said = f"it must be {description}, but {_short(given)} was given."
+        found[path] = said
+    return found
+
+
+def _place(location: tuple[int | str, ...], content: Any) -> tuple[str, str, Any]:
+    """Path, description and value of the field that a problem is in; what a union or a list adds is left out."""
+    table: type[Table] | None = State
+    path: list[str] = []
+    description, given = "a table", content
+    for key in location:
+        if isinstance(key, int):
+            if table is None or not isinstance(given, list) or key >= len(given):
+                break
+            path.append(str(key))
+            given = given[key]
+            continue
+        if table is None:
+            break
+        path.append(key)
+        given = given.get(key) if isinstance(given, dict) else None
+        field = table.model_fields.get(key)
+        if field is None:
+            break
+        description = field.description or "something else"
+        table = _table_in(field.annotation)
+    return ".".join(path), description, given
+
+
+def _table_in(annotation: Any) -> type[Table] | None:
+    if isinstance(annotation, type) and not get_args(annotation) and issubclass(annotation, Table):
+        return annotation
+    return next((found for part in get_args(annotation) if (found := _table_in(part)) is not None), None)
+
+
+def _short(value: Any) -> str:
+    text = str(value) if isinstance(value, int | float) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,179 @@
+"""The Structure tab: what a structure is, its modes, and how many of them it needs."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError
+from rockflex.modal import ModalProperties, RockingProperties, adequacy, uplifted_modes
+from rockflex.structure.file import Structure, StructureEntry
+from rockflex.web._packing import plain
+from rockflex.web._refusal import Refusal
+
+__all__ = ["Built", "build", "structure_view"]
+
+DRAWN = 40  # heights of a structure, at most
+SHOWN = 6  # modes drawn
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """A structure ready to be simulated and drawn.
+
+    Attributes
+    ----------
+    structure
+        The structure itself.
+    properties
+        Its parameters with all modes.
+    modes
+        Its modes on a fixed base; None where they are not known, or it has none.
+    heights
+        Heights of the points drawn, in m, from the base to the top, shape (m,).
+    shapes
+        Displacement of these points for a unit of each D_n, shape (m, n).
+    """
+
+    structure: Structure | RockingProperties
+    properties: RockingProperties
+    modes: ModalProperties | None
+    heights: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+
+
+def build(entry: StructureEntry) -> Built:
+    """Build a structure, or take it from those built lately.
+
+    Raises
+    ------
+    Refusal
+        If it cannot be built, with the message beside the field that it names.
+    """
+    try:
+        return _build(json.dumps(entry.model_dump(exclude_none=True)))
+    except InputError as error:
+        raise Refusal(_beside(entry, str(error))) from error
+    except (ArithmeticError, MemoryError, RuntimeError, ValueError) as error:  # of linear algebra, at absurd numbers
+        message = "the modes cannot be computed from these numbers; check their sizes and units."
+        raise Refusal({"structure": message}) from error
+
+
+@lru_cache(maxsize=64)
+def _build(text: str) -> Built:
+    entry = StructureEntry.model_validate(json.loads(text))
+    structure = entry.build()
+    if isinstance(structure, RockingProperties):
+        return Built(structure, structure, None, *_straight(entry, structure))
+    properties, modes = structure.rocking(), structure.modal()
+    kept = np.unique(np.linspace(0, modes.heights.size - 1, min(DRAWN, modes.heights.size)).astype(int))
+    shapes = (modes.shapes * modes.participation)[kept, : properties.n_modes]
+    heights = np.concatenate(([0.0], modes.heights[kept]))
+    shapes = np.vstack((np.zeros(shapes.shape[1]), shapes))
+    # The heights of freedoms may come in any order.
+    order = np.argsort(heights, kind="stable")
+    return Built(structure, properties, modes, heights[order], shapes[order])
+
+
+def _straight(entry: StructureEntry, p: RockingProperties) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Shape of a structure of which only the top's displacement is known: a straight line."""
+    if p.n_modes:
+        height = float(np.abs(p.effective_height).max()) * 1.25
+    else:
+        table: Any = entry.table
+        height = 2.0 * float(table.half_diagonal) * float(np.cos(table.slenderness))
+    return np.array([0.0, height]), np.vstack((np.zeros(p.n_modes), p.top_ordinate))
+
+
+def structure_view(entry: StructureEntry) -> dict[str, Any]:
+    """Return what the tab shows of a structure: its outline, parameters, modes and what they are good for."""
+    built = build(entry)
+    p = built.properties
+    view: dict[str, Any] = {
+        "name": entry.name,
+        "kind": entry.kind,
+        "heights": built.heights,
+        "shapes": built.shapes[:, :SHOWN].T,
+        "shapes_known": built.modes is not None,
+        "half_width": p.half_width,
+        "tendons": [tendon.position for tendon in p.tendons],
+        "properties": _parameters(p),
+        "modes": _modes(built),
+        "adequacy": None,
+    }
+    if p.n_modes:
+        base = getattr(entry.table, "base_mass", None)
+        try:
+            found = adequacy(p, base_mass=base)
+        except InputError:
+            found = adequacy(p)
+        view["adequacy"] = {
+            "reason": found.reason,
+            "model": found.model,
+            "model_for_shear": found.model_for_shear,
+        }
+    return plain(view)
+
+
+def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
+    """Parameters with symbols, units and meaning."""
+    falls = p.rocking_stiffness < 0.0
+    alpha = -p.resisting_moment / p.rocking_stiffness if falls else None
+    return [
+        {"symbol": "B", "value": p.half_width, "unit": "m", "help": "half the width of the base"},
+        {"symbol": "m_tot", "value": p.m_tot, "unit": "kg", "help": "total mass with the base"},
+        {"symbol": "M_r", "value": p.resisting_moment, "unit": "N m", "help": "moment at which the base lifts"},
+        {"symbol": "L₀ʳ", "value": p.l0r, "unit": "kg m", "help": "sum of mass times height"},
+        {"symbol": "I_θ", "value": p.i_theta, "unit": "kg m²", "help": "inertia about the pivot"},
+        {
+            "symbol": "a_lift",
+            "value": p.resisting_moment / p.l0r,
+            "unit": "m/s²",
+            "help": "slow ground acceleration that lifts the base",
+        },
+        {"symbol": "α", "value": alpha, "unit": "rad", "help": "rotation at which it no longer stands up by itself"},
+        {
+            "symbol": "θ_nom",
+            "value": p.nominal_overturning_rotation,
+            "unit": "rad",
+            "help": "nominal limit 0.7 atan(B/h*₁)",
+        },
+    ]
+
+
+def _modes(built: Built) -> list[dict[str, Any]]:
+    p = built.properties
+    if not p.n_modes:
+        return []
+    lifted = uplifted_modes(p).omega
+    return [
+        {
+            "period": 2.0 * np.pi / p.omega[n],
+            "effective_mass": p.effective_mass[n],
+            "mass_share": p.effective_mass[n] / p.m_tot,
+            "effective_height": p.effective_height[n],
+            "damping": p.zeta[n],
+            "uplifted_period": 2.0 * np.pi / lifted[n] if n < lifted.size and lifted[n] > 0.0 else None,
+        }
+        for n in range(p.n_modes)
+    ]
+
+
+def _beside(entry: StructureEntry, message: str) -> Mapping[str, str]:
+    """Put a message beside the field that it names, or under the form."""
+    said = message.removeprefix(f"[{entry.kind}]: ").removeprefix("[[tendons]]: ")
+    if message.startswith("[[tendons]]"):
+        return {"structure.tendons": said}
+    names = list(type(entry.table).model_fields)
+    spots = {name: said.find(name) for name in names if name in said}
+    if not spots:
+        return {"structure": said}
+    # Of names within each other, such as mass in story_mass, the longer one is meant.
+    first = min(
+        spots, key=lambda name: (spots[name] if said[spots[name] - 1 : spots[name]] != "_" else 1e9, -len(name))
+    )
+    return {f"structure.{entry.kind}.{first}": said}

@@ -1,0 +1,196 @@
+"""Files of visitors: judged before they are parsed, and kept in memory only."""
+
+import hashlib
+import io
+import re
+import zipfile
+from collections import OrderedDict
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex.motion import GroundMotion, read_motion
+from rockflex.web._limits import FILE, FREEDOMS, check_motion
+from rockflex.web._refusal import Refusal
+
+__all__ = ["Uploads", "read_matrices", "read_record"]
+
+KEPT = 64  # records in memory
+LINE = 100_000  # characters
+_LONG_NUMBER = re.compile(r"\d{65}")
+_LONG_BLANK = re.compile(r"[^\S\r\n]{201}")
+MATRICES = ("mass", "stiffness", "heights", "rotations")
+
+
+class Uploads:
+    """Records by the checksum of their file, the latest `KEPT` of all visitors.
+
+    Only who has a file, or a link of one who has, knows its checksum.
+    """
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[str, GroundMotion] = OrderedDict()
+        self._lock = Lock()
+
+    def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
+        """Keep a record, and return its checksum."""
+        key = hashlib.sha256(content + b"\0" + options.encode()).hexdigest()
+        with self._lock:
+            self._kept[key] = motion
+            self._kept.move_to_end(key)
+            while len(self._kept) > KEPT:
+                self._kept.popitem(last=False)
+        return key
+
+    def get(self, key: str) -> GroundMotion:
+        """Return a record.
+
+        Raises
+        ------
+        Refusal
+            If it is not there (any more).
+        """
+        with self._lock:
+            motion = self._kept.get(key)
+            if motion is not None:
+                self._kept.move_to_end(key)
+        if motion is None:
+            message = "the record of this link was a file, and a link does not hold files. Choose the file again."
+            raise Refusal({"record.upload": message}, 410)
+        return motion
+
+
+def read_record(name: str, content: bytes, units: str | None, dt: float | None) -> GroundMotion:
+    """Read a record from the bytes of a file.
+
+    Parameters
+    ----------
+    name
+        What the visitor calls the file; used in messages and as the motion's name, never as a path.
+    content
+        Its bytes.
+    units, dt
+        As in `read_motion`, or None.
+
+    Raises
+    ------
+    Refusal
+        If the file is too large, is built to keep readers busy, cannot be read, or holds too long a record.
+    """
+    shown = clean_name(name)
+    text = _decoded(shown, content)
+    try:
+        with TemporaryDirectory() as folder:
+            file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
+            file.write_text(text, "utf-8", newline="")
+            try:
+                motion = read_motion(file, units=units, dt=dt)
+            except InputError as error:
+                raise Refusal({"record.upload": str(error).replace(str(file), shown)}) from error
+    except OSError as error:
+        message = "the server could not keep the file for a moment. Try again."
+        raise Refusal({"record.upload": message}, 503) from error
+    named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", motion.metadata)
+    check_motion(named, "record.upload")
+    return named
+
+
+def clean_name(name: str) -> str:
+    """Return a name without folders and control characters, and not too long."""
+    last = re.split(r"[/\\]", name)[-1]
+    return re.sub(r"[^\w.()+ -]", "_", last)[:80].strip() or "record"
+
+
+def _decoded(name: str, content: bytes) -> str:
+    if len(content) > FILE:
+        message = f"{name} has {len(content) / 1e6:.1f} MB, but the page takes {FILE / 1e6:g} MB at most."
+        raise Refusal({"record.upload": message}, 413)
+    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
+    for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
+        try:
+            text = content.decode(encoding)
+            break
+        except UnicodeDecodeError:
+            continue
+    else:
+        message = f"{name} is no text file. A record is expected as AT2, CSV or columns of numbers."
+        raise Refusal({"record.upload": message})
+    # Some regular expressions of readers take the square of the length of what fits in part.
+    longest = max(map(len, re.split("[\r\n]", text)))
+    brackets = text.count("(") + text.count("[")
+    if longest > LINE or brackets > 1000 or _LONG_NUMBER.search(text) or _LONG_BLANK.search(text):
+        message = (
+            f"{name} does not look like a record: a line of more than {LINE} characters, a number of more than 64 "
+            "digits, more than 200 blanks in a row, or more than 1000 brackets."
+        )
+        raise Refusal({"record.upload": message})
+    return text
+
+
+def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
+    """Read matrices from a ``.npz`` with arrays mass, stiffness and heights, or one of them from a CSV file.
+
+    Raises
+    ------
+    Refusal
+        If the file is too large or cannot be read, or an array is.
+    """
+    shown = clean_name(name)
+    if len(content) > FILE:
+        message = f"{shown} has {len(content) / 1e6:.1f} MB, but the page takes {FILE / 1e6:g} MB at most."
+        raise Refusal({"structure": message}, 413)
+    try:
+        if shown.lower().endswith(".npz"):
+            return _from_npz(shown, content)
+        if part not in MATRICES:
+            message = f"say which of {', '.join(MATRICES)} the file {shown} holds."
+            raise Refusal({"structure": message})
+        return {
+            part: _numbers(shown, part, np.loadtxt(io.StringIO(content.decode("utf-8-sig")), delimiter=",", ndmin=2))
+        }
+    except Refusal:
+        raise
+    except Exception as error:  # the readers of damaged files raise many kinds
+        message = f"{shown} does not hold matrices that can be read: {str(error)[:200]}."
+        raise Refusal({"structure": message}) from error
+
+
+def _from_npz(name: str, content: bytes) -> dict[str, list[Any]]:
+    found: dict[str, list[Any]] = {}
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        for part in MATRICES:
+            if f"{part}.npy" not in archive.namelist():
+                continue
+            # A header may promise more than there is: it is read before any memory is taken.
+            with archive.open(f"{part}.npy") as file:
+                version = np.lib.format.read_magic(file)
+                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                shape, _, kind = read(file)
+            if kind.kind not in "fiu" or len(shape) > 2 or max(shape, default=0) > FREEDOMS:
+                message = (
+                    f"{name}: {part} is an array {shape} of {kind}, but numbers for up to {FREEDOMS} freedoms are "
+                    "expected."
+                )
+                raise Refusal({"structure": message})
+            with archive.open(f"{part}.npy") as file:
+                found[part] = _numbers(name, part, np.lib.format.read_array(file, allow_pickle=False))
+    if "stiffness" not in found:
+        message = f"{name} must hold the arrays mass, stiffness and heights, but it holds no stiffness."
+        raise Refusal({"structure": message})
+    return found
+
+
+def _numbers(name: str, part: str, array: Any) -> list[Any]:
+    values = np.asarray(array, dtype=np.float64)
+    if not np.isfinite(values).all() or values.size == 0 or max(values.shape) > FREEDOMS:
+        message = f"{name}: {part} must hold finite numbers for up to {FREEDOMS} freedoms."
+        raise Refusal({"structure": message})
+    if values.ndim == 2 and 1 in values.shape and part != "stiffness":
+        values = values.ravel()
+    if part == "rotations":
+        return values.ravel().astype(int).tolist()
+    return values.tolist()

@@ -1,0 +1,54 @@
+// Questions to the server. A refusal carries messages by the path of the field at fault.
+
+export class Refusal extends Error {
+  constructor(errors, status) {
+    super(Object.values(errors).join(" "));
+    this.errors = errors;
+    this.status = status;
+  }
+}
+
+async function checked(response) {
+  if (response.ok) return response;
+  let errors = { "": `The server answered ${response.status}.` };
+  try {
+    errors = (await response.json()).errors ?? errors;
+  } catch {
+    // not JSON: a proxy's page
+  }
+  throw new Refusal(errors, response.status);
+}
+
+async function request(path, options) {
+  let response;
+  try {
+    response = await fetch(path, options);
+  } catch {
+    throw new Refusal({ "": "The server does not answer. Is rockflex serve still running?" }, 0);
+  }
+  return checked(response);
+}
+
+export async function get(path) {
+  return (await request(path)).json();
+}
+
+export async function ask(path, body) {
+  const options = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  return (await request(path, options)).json();
+}
+
+export async function send(path, file) {
+  return (await request(path, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file })).json();
+}
+
+export async function drop(path) {
+  return (await request(path, { method: "DELETE" })).json();
+}
+
+export async function file(path, body) {
+  const options = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  const response = await request(path, options);
+  const name = /filename="([^"]*)"/.exec(response.headers.get("Content-Disposition") ?? "")?.[1] ?? "file";
+  return [name, await response.blob()];
+}

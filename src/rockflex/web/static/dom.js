@@ -1,0 +1,83 @@
+// Elements, numbers and small tools that every tab uses.
+
+export function h(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name === "class") element.className = value;
+    else if (["value", "checked", "disabled", "hidden", "textContent"].includes(name)) element[name] = value;
+    else element.setAttribute(name, value === true ? "" : value);
+  }
+  element.append(...children.flat(3).filter((child) => child !== null && child !== undefined && child !== false));
+  return element;
+}
+
+export function number(value, digits = 4) {
+  if (value === null || value === undefined || value === "") return "–";
+  const x = Number(value);
+  if (!Number.isFinite(x)) return x > 0 || value === "inf" ? "∞" : "–";
+  if (x === 0) return "0";
+  const size = Math.abs(x);
+  if (size >= 1e6 || size < 1e-4) {
+    const [mantissa, exponent] = x.toExponential(digits - 1).split("e");
+    return `${trim(mantissa)}·10${superscript(Number(exponent))}`.replace("-", "−");
+  }
+  return String(Number(x.toPrecision(digits))).replace("-", "−");
+}
+
+function trim(text) {
+  return text.includes(".") && !text.includes("e") ? text.replace(/\.?0+$/, "") : text;
+}
+
+function superscript(n) {
+  return String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+}
+
+export function decode(text) {
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = binary.charCodeAt(i);
+  return new Float32Array(bytes.buffer);
+}
+
+export function clone(value) {
+  return JSON.parse(JSON.stringify(value));
+}
+
+// Run `work` again and again with the newest wish only: what came between is skipped.
+export function latest(work) {
+  let running = false;
+  let wanted = false;
+  return async function again() {
+    wanted = true;
+    if (running) return;
+    running = true;
+    try {
+      while (wanted) {
+        wanted = false;
+        await work();
+      }
+    } finally {
+      running = false;
+    }
+  };
+}
+
+export function color(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+export function save(name, blob) {
+  const url = URL.createObjectURL(blob);
+  const link = h("a", { href: url, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
+// A symbol whose index follows an underscore, or a unit with one.
+export function symbol(text) {
+  return text.split(/(_[\w,θ]+)/).map((part) => (part.startsWith("_") ? h("sub", {}, part.slice(1)) : part));
+}

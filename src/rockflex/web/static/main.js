@@ -1,0 +1,190 @@
+// The page: its state, which the address holds, its tabs, and what they share.
+
+import { ask, file, get, Refusal } from "./api.js";
+import { clone, h, save } from "./dom.js";
+import { showErrors } from "./form.js";
+
+const TABS = [
+  ["structure", "Structure", "What rocks. Begin with one of the structures, or describe your own; the base stands on the ground and may lift."],
+  ["earthquake", "Earthquake", "What shakes it: a recorded earthquake, a pulse, or a file of yours, as strong as you scale it."],
+  ["response", "Response", "What happens: the structure on its base, drawn larger than life, in step with its rotation, forces and energy."],
+  ["fragility", "Fragility", "How likely it is: many earthquakes of all strengths, and the share of them that passes a limit."],
+  ["design", "Design", "How wide the base must be, and whether a tendon helps, for a limit that may be passed rarely enough."],
+];
+
+const view = document.getElementById("view");
+const banner = document.getElementById("banner");
+const made = {};
+
+export const app = {
+  about: null,
+  state: null,
+  uploads: {},
+  // Change part of the state and show what follows from it.
+  change(patch) {
+    merge(app.state, patch);
+    keep();
+    refresh();
+  },
+  // Ask the server something about the state; messages go beside the fields of `root`, or into its foot.
+  async ask(path, root, extra = {}) {
+    try {
+      const answer = await ask(path, { state: app.state, ...extra });
+      app.complain(root, {});
+      return answer;
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      app.complain(root, error.errors);
+      return null;
+    }
+  },
+  complain(root, errors) {
+    const left = showErrors(root, errors);
+    const foot = root.querySelector(".foot");
+    if (foot) foot.textContent = left.join(" ");
+  },
+  async download(path, root, extra = {}) {
+    try {
+      save(...(await file(path, { state: app.state, ...extra })));
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      app.complain(root, error.errors);
+    }
+  },
+  // Buttons that fetch files.
+  downloads(root, files, path = (what) => `/api/download/${what}`) {
+    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"),
+      files.map(([what, label]) => h("button", { type: "button", "data-file": what, onclick: () => app.download(path(what), root) }, label)));
+  },
+  go(tab) {
+    app.state.tab = tab;
+    keep();
+    show();
+  },
+};
+
+function merge(target, patch) {
+  for (const [key, value] of Object.entries(patch)) {
+    if (value === undefined) delete target[key];
+    else if (value && typeof value === "object" && !Array.isArray(value) && key !== "structure" && target[key]) merge(target[key], value);
+    else target[key] = value;
+  }
+}
+
+function encode(state) {
+  const bytes = new TextEncoder().encode(JSON.stringify(state));
+  let text = "";
+  for (const byte of bytes) text += String.fromCharCode(byte);
+  return btoa(text).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+function decoded(hash) {
+  const found = /^#s=([\w-]+)$/.exec(hash);
+  if (!found) return null;
+  const text = atob(found[1].replaceAll("-", "+").replaceAll("_", "/"));
+  return JSON.parse(new TextDecoder().decode(Uint8Array.from(text, (c) => c.charCodeAt(0))));
+}
+
+let written = "";
+
+function keep() {
+  written = `#s=${encode(app.state)}`;
+  history.replaceState(null, "", written);
+}
+
+async function open() {
+  banner.hidden = true;
+  let state = clone(app.about.state);
+  if (location.hash.startsWith("#s=")) {
+    try {
+      state = await ask("/api/state", { state: decoded(location.hash) });
+    } catch (error) {
+      const why = error instanceof Refusal ? Object.entries(error.errors).map(([path, text]) => (path ? `${path}: ${text}` : text)).join(" ") : "it is damaged.";
+      banner.textContent = `The link cannot be opened: ${why} The page shows its first structure instead.`;
+      banner.hidden = false;
+    }
+  }
+  app.state = state;
+  for (const key of Object.keys(made)) delete made[key];
+  keep();
+  await show();
+}
+
+async function show() {
+  const tab = app.state.tab;
+  for (const button of document.querySelectorAll("#tabs button")) {
+    const chosen = button.dataset.tab === tab;
+    button.setAttribute("aria-selected", String(chosen));
+    button.tabIndex = chosen ? 0 : -1;
+  }
+  for (const [name, each] of Object.entries(made)) if (name !== tab) each.leave?.();
+  if (!made[tab]) made[tab] = (await import(`./tabs/${tab}.js`)).default(app);
+  if (app.state.tab !== tab) return;
+  view.replaceChildren(h("p", { class: "help" }, TABS.find(([name]) => name === tab)[2]), made[tab].element);
+  view.dataset.shown = tab;
+  view.setAttribute("role", "tabpanel");
+  view.setAttribute("aria-label", TABS.find(([name]) => name === tab)[1]);
+  refresh();
+}
+
+function refresh() {
+  made[app.state.tab]?.refresh();
+}
+
+function tabs() {
+  const list = document.getElementById("tabs");
+  list.append(...TABS.map(([name, title]) => h("button", { type: "button", role: "tab", "data-tab": name, onclick: () => app.go(name) }, title)));
+  list.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const now = TABS.findIndex(([name]) => name === app.state.tab);
+    app.go(TABS[(now + step + TABS.length) % TABS.length][0]);
+    list.querySelector('[aria-selected="true"]').focus();
+  });
+}
+
+function theme(name) {
+  document.documentElement.dataset.theme = name;
+  if (app.state) {
+    for (const key of Object.keys(made)) made[key].repaint?.();
+    refresh();
+  }
+}
+
+function themes() {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  theme(localStorage.getItem("rockflex-theme") ?? (dark.matches ? "dark" : "light"));
+  document.getElementById("theme").addEventListener("click", () => {
+    const next = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    localStorage.setItem("rockflex-theme", next);
+    theme(next);
+  });
+}
+
+function copying() {
+  const button = document.getElementById("copy");
+  button.addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(location.href);
+      button.textContent = "Copied";
+    } catch {
+      button.textContent = "Copy it from the address";
+    }
+    setTimeout(() => (button.textContent = "Copy link"), 2000);
+  });
+}
+
+themes();
+tabs();
+copying();
+try {
+  app.about = await get("/api/about");
+  await open();
+  addEventListener("hashchange", () => {
+    if (location.hash !== written) open();
+  });
+} catch (error) {
+  view.replaceChildren(h("p", { class: "error" }, error.message));
+  if (!(error instanceof Refusal)) throw error;
+}
+globalThis.rockflexPage = app; // for tests of the page

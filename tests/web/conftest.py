@@ -1,0 +1,181 @@
+"""A server on a port of its own, and a real Chromium before it."""
+
+import json
+import os
+import shutil
+import threading
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+pytest.importorskip("starlette", reason="the web page needs the packages of rockflex[web]")
+pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "web: drives a real Chromium; skipped, with the reason, where there is none")
+
+
+class Client:
+    """Requests to the server, and what it answers."""
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+
+    def request(self, path: str, data: bytes | None = None, method: str | None = None, **headers: str):
+        names = {name.replace("_", "-"): value for name, value in headers.items()}
+        request = urllib.request.Request(self.url + path, data, names, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return answer.status, dict(answer.headers), answer.read()
+        except urllib.error.HTTPError as error:
+            with error:
+                return error.code, dict(error.headers), error.read()
+
+    def post(self, path: str, content: Any) -> tuple[int, Any]:
+        data = content if isinstance(content, bytes) else json.dumps(content).encode()
+        status, _, body = self.request(path, data, Content_Type="application/json")
+        return status, json.loads(body)
+
+    def ask(self, path: str, state: dict[str, Any], **extra: Any) -> Any:
+        status, answer = self.post(path, {"state": state, **extra})
+        assert status == 200, answer
+        return answer
+
+    def refused(self, path: str, state: Any) -> dict[str, str]:
+        status, answer = self.post(path, {"state": state})
+        assert 400 <= status < 500, (status, answer)
+        return answer["errors"]
+
+    def download(self, path: str, state: dict[str, Any]) -> tuple[str, bytes]:
+        status, headers, body = self.request(
+            path, json.dumps({"state": state}).encode(), Content_Type="application/json"
+        )
+        assert status == 200, body
+        return headers["content-disposition"].split('"')[1], body
+
+    def state(self, **changes: Any) -> dict[str, Any]:
+        """The first state of the page, changed."""
+        return json.loads(self.request("/api/about")[2])["state"] | changes
+
+    def wait(self, kind: str, token: str, state: dict[str, Any], seconds: float = 60.0) -> Any:
+        """Progress of a study once it is over."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            answer = self.ask(f"/api/study/{kind}/{token}", state)
+            if answer["status"] not in ("waiting", "running"):
+                return answer
+            time.sleep(0.1)
+        pytest.fail(f"The study took more than {seconds} s.")
+
+
+@pytest.fixture(scope="session")
+def server() -> Iterator[str]:
+    import uvicorn
+
+    from rockflex.web import make_app
+
+    running = uvicorn.Server(uvicorn.Config(make_app(), port=0, log_level="error"))
+    thread = threading.Thread(target=running.run, daemon=True)
+    thread.start()
+    while not running.started:
+        assert thread.is_alive(), "the server did not start"
+        time.sleep(0.02)
+    port = running.servers[0].sockets[0].getsockname()[1]
+    yield f"http://127.0.0.1:{port}"
+    running.should_exit = True
+    thread.join(10)
+
+
+@pytest.fixture(scope="session")
+def client(server: str) -> Client:
+    return Client(server)
+
+
+def chromium() -> str | None:
+    given = os.environ.get("ROCKFLEX_CHROMIUM")
+    names = (given,) if given else ("chromium", "chromium-browser", "google-chrome")
+    return next((found for name in names if (found := shutil.which(name))), None)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    sync_api = pytest.importorskip("playwright.sync_api", reason="no Playwright: pip install playwright")
+    with sync_api.sync_playwright() as playwright:
+        path = chromium()
+        if path is None and not os.path.exists(playwright.chromium.executable_path):  # noqa: PTH110
+            pytest.skip("no Chromium on this machine: run scripts/install_browser.sh")
+        launched = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield launched
+        launched.close()
+
+
+class Visitor:
+    """A page of one visitor, with what its console said."""
+
+    def __init__(self, page: Any, url: str) -> None:
+        self.page, self.url = page, url
+        self.said: list[str] = []
+        # A refusal is an answer, which Chromium writes to its console all the same.
+        page.on("console", lambda m: self.said.append(f"{m.type}: {m.text}") if self._matters(m) else None)
+        page.on("pageerror", lambda error: self.said.append(f"uncaught: {error}"))
+        page.on("request", lambda r: None if r.url.startswith((url, "blob:", "data:")) else self.said.append(r.url))
+
+    @staticmethod
+    def _matters(message: Any) -> bool:
+        return message.type in ("error", "warning") and "Failed to load resource" not in message.text
+
+    def open(self, link: str = "/") -> "Visitor":
+        self.page.goto(self.url + link)
+        self.page.wait_for_selector("#view > .columns")
+        return self
+
+    def tab(self, name: str) -> None:
+        self.page.click(f'[data-tab="{name}"]')
+        self.page.wait_for_selector(f'#view[data-shown="{name}"]')
+
+    def state(self) -> dict[str, Any]:
+        return self.page.evaluate("rockflexPage.state")
+
+    def fill(self, path: str, value: str) -> None:
+        box = self.page.locator(f'[data-path="{path}"] input[type="text"]').first
+        box.fill(value)
+        box.press("Enter")
+        box.blur()
+
+    def error(self, path: str) -> str:
+        found = self.page.locator(f'[data-path="{path}"] > .error')
+        found.first.wait_for(state="visible")
+        return found.first.inner_text()
+
+    def value(self, selector: str) -> float:
+        return float(self.page.locator(selector).first.get_attribute("data-value"))
+
+
+@pytest.fixture
+def visit(browser: Any, server: str) -> Iterator[Any]:
+    contexts, visitors = [], []
+
+    def new(link: str = "/", **options: Any) -> Visitor:
+        context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(20_000)
+        visitor = Visitor(page, server)
+        visitors.append(visitor)
+        return visitor.open(link)
+
+    yield new
+    said = [line for visitor in visitors for line in visitor.said]
+    for context in contexts:
+        context.close()
+    assert said == []
+
+
+@pytest.fixture
+def visitor(visit: Any) -> Visitor:
+    return visit()

@@ -1,0 +1,232 @@
+"""The server's answers: the library's own numbers, and refusals that keep it alive."""
+
+import base64
+import json
+import math
+import socket
+import tomllib
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import rockflex as rf
+from rockflex._errors import InputError
+from rockflex.web import make_app, serve
+from rockflex.web._presets import PRESETS
+
+FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
+EL_CENTRO = rf.load_suite("el-centro-1940")[0]
+CSV = b"time (s),acc (m/s2)\n" + b"".join(b"%.2f,%.4f\n" % (0.02 * i, 3.0 * math.sin(0.1 * i)) for i in range(400))
+
+
+def unpack(text: str) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(text), "<f4")
+
+
+def upload(client, content=CSV, **query):
+    path = "/api/upload?" + "&".join(f"{key}={value}" for key, value in ({"name": "mine.csv"} | query).items())
+    status, _, body = client.request(path, content)
+    return status, json.loads(body)
+
+
+def test_the_numbers_are_the_librarys(client) -> None:
+    state = client.state(scale=1.7, models=["MDOF-S", "2DOF-C", "fixed"])
+    answer = client.ask("/api/response", state)
+    for shown in answer["models"]:
+        response = rf.simulate(FRAME, EL_CENTRO.scaled(1.7), shown["label"], free_vibration=5.0)
+        assert shown["peaks"] == json.loads(json.dumps(response.peaks()))
+        time, rotation = unpack(shown["t"]), unpack(shown["rotation"])
+        assert np.isin(rotation, response.rotation.astype("f4")).all()
+        assert np.interp(time, response.time, response.top_displacement) == pytest.approx(
+            unpack(shown["top_displacement"]), abs=2e-3 * response.max_top_displacement
+        )
+        assert np.abs(rotation).max() == np.float32(np.abs(response.rotation).max())
+        assert shown["impact_times"] == response.impact_times[:600].tolist()
+        floors = FRAME.rocking().floors
+        points = unpack(shown["points"]).reshape(time.size, 6)
+        n = response.modal_displacement.shape[1]
+        whole = response.modal_displacement @ floors.displacement[:, :n].T
+        assert np.abs(points[:, 1:]).max() == pytest.approx(np.abs(whole).max(), rel=0.05)
+        assert (points[:, 0] == 0.0).all()
+    structure = client.ask("/api/structure", state)
+    assert structure["adequacy"]["reason"] == rf.adequacy(FRAME.rocking(), base_mass=40e3).reason
+    assert [mode["period"] for mode in structure["modes"]] == FRAME.modal().period.tolist()
+    measures = {each["name"]: each["value"] for each in client.ask("/api/record", state)["measures"]}
+    scaled = EL_CENTRO.scaled(1.7)
+    assert (measures["PGA"], measures["PGV"], measures["Arias"]) == (scaled.pga, scaled.pgv, scaled.arias)
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
+def test_every_preset_answers_on_every_tab(client, preset) -> None:
+    state = client.state(structure=json.loads(json.dumps(preset["structure"]).replace("Infinity", '"inf"')))
+    for path in ("/api/structure", "/api/record", "/api/response"):
+        json.dumps(client.ask(path, state), allow_nan=False)
+
+
+def test_overturning_is_told(client) -> None:
+    answer = client.ask("/api/response", client.state(scale=20.0, models=["2DOF-S"]))
+    (shown,) = answer["models"]
+    assert shown["status"] == "overturned"
+    assert 0.0 < shown["fall_time"] < shown["peaks"]["end_time"]
+
+
+def test_an_upload_is_simulated(client) -> None:
+    status, found = upload(client)
+    assert status == 200
+    state = client.state(record={"source": "upload", "upload": found["upload"]}, models=["2DOF-S"])
+    time = 0.02 * np.arange(400)
+    motion = rf.GroundMotion([float(f"{3.0 * math.sin(0.1 * i):.4f}") for i in range(400)], 0.02, name="mine")
+    assert time[-1] == motion.duration
+    shown = client.ask("/api/response", state)["models"][0]["peaks"]
+    expected = rf.simulate(FRAME, motion, "2DOF-S", free_vibration=5.0)
+    assert shown["max_rotation"] == pytest.approx(expected.max_rotation, rel=1e-9)
+    gone = state | {"record": {"source": "upload", "upload": "0" * 64}}
+    assert "Choose the file again" in client.refused("/api/response", gone)["record.upload"]
+
+
+def test_a_bad_upload_is_refused(client) -> None:
+    status, answer = upload(client, b"nothing\n")
+    assert (status, answer["errors"]["record.upload"][:8]) == (422, "mine.csv")
+    assert upload(client, dt="abc")[1]["errors"]["record.upload"].startswith("the sampling step must be a number")
+    assert upload(client, dt="-1")[0] == 422
+    assert upload(client, units="miles")[0] == 422
+    assert upload(client, name="../../../etc/passwd")[1]["name"] == "passwd"
+    assert upload(client, b"1" * 7_000_000)[0] == 413
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "text"),
+    [
+        ({"scale": 1e300}, "scale", "from 0.01 to 20"),
+        ({"free_vibration": 36_000.0}, "free_vibration", "from 0 to 60"),
+        ({"record": {"source": "suite", "suite": "../../x"}}, "record.suite", "No embedded suite is named"),
+        ({"record": {"suite": "el-centro-1940", "name": "X"}}, "record.name", "No motion of the suite"),
+        ({"record": {"source": "pulse", "pulse": {"period": 36_000.0}}}, "record.pulse.period", "from 0.05 to 20"),
+        ({"models": ["9DOF-S"]}, "models", "needs 8 modes, but the structure has 5"),
+        ({"models": ["2DOF-S-BW"]}, "models", "needs its hysteresis"),
+    ],
+)
+def test_absurd_requests_are_refused_beside_their_field(client, change, path, text) -> None:
+    assert text in client.refused("/api/response", client.state(**change))[path]
+
+
+def test_a_run_that_takes_too_long_is_refused(client) -> None:
+    tall = client.state()["structure"]
+    tall["frame"] |= {"n_stories": 200, "period": 5.0}
+    state = client.state(structure=tall, models=["MDOF-S"], record={"suite": "fema-p695-far-field", "name": "FF-12-a"})
+    assert "takes too long for a page" in client.refused("/api/response", state)["models"]
+    assert client.ask("/api/response", state | {"models": ["3DOF-S"]})["models"][0]["label"] == "3DOF-S"
+
+
+def test_what_is_no_question_is_refused(client) -> None:
+    assert client.request("/api/response", b"{}")[0] == 415
+    assert client.post("/api/response", b"[1, 2")[0] == 400
+    assert client.post("/api/response", b"[" * 200_000)[0] == 400
+    assert client.post("/api/response", [1])[0] == 400
+    assert client.post("/api/response", {})[0] == 422
+    assert client.post("/api/response", b'{"state": "' + b"x" * 7_000_000 + b'"}')[0] == 413
+    assert client.post("/api/study/nonsense", {})[0] == 404
+    assert client.post("/api/study/cloud/guess", {"state": client.state()})[0] == 404
+    assert client.request("/api/job/guess", method="DELETE")[0] == 404
+    assert client.post("/api/download/secrets", {"state": client.state()})[0] == 404
+    for path in ("/static/../_app.py", "/static/..%2f_app.py", "/static/%2e%2e/_app.py", "/etc/passwd"):
+        assert client.request(path)[0] == 404
+    assert client.request("/api/suite/..%2f..%2fetc")[0] in (404, 422)
+
+
+def test_nan_is_refused(client) -> None:
+    state = json.dumps({"state": client.state(scale=math.nan)}).encode()
+    assert client.post("/api/response", state)[1]["errors"]["scale"].startswith("it must be a number from 0.01")
+
+
+def test_only_this_machines_names_are_answered(client) -> None:
+    assert client.request("/", Host="evil.example")[0] == 400
+    assert client.request("/", Host="localhost:1")[0] == 200
+    assert make_app("0.0.0.0").user_middleware[0].cls.__name__ == "GZipMiddleware"
+
+
+def test_the_page_forbids_foreign_content(client) -> None:
+    _, headers, body = client.request("/")
+    assert "default-src 'self'" in headers["content-security-policy"]
+    assert "frame-ancestors 'none'" in headers["content-security-policy"]
+    assert b"http" not in body  # nothing from elsewhere
+
+
+def test_an_error_of_the_server_shows_no_traceback(client, monkeypatch) -> None:
+    def broken(*_):
+        raise RuntimeError("secret")
+
+    monkeypatch.setattr("rockflex.web._app.structure_view", broken)
+    status, answer = client.post("/api/structure", {"state": client.state()})
+    assert status == 500
+    assert answer == {"errors": {"": "The server met an error of its own; its log has the details."}}
+
+
+def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    _, found = upload(client)
+    states = [
+        client.state(scale=1.3, impact="complete", models=["2DOF-S", "fixed"]),
+        client.state(record={"source": "pulse", "pulse": {"shape": "mavroeidis", "amplitude": 0.6, "nu": 0.3}}),
+        client.state(record={"source": "upload", "upload": found["upload"]}, models=["2DOF-S"]),
+        client.state(structure=PRESETS[8]["structure"]),
+    ]
+    for state in states:
+        name, lines = client.download("/api/download/python", state)
+        assert name == "response.py"
+        if state["record"]["source"] == "upload":
+            name, record = client.download("/api/download/record", state)
+            (tmp_path / name).write_bytes(record)
+        space: dict = {}
+        exec(compile(lines, "response.py", "exec"), space)
+        shown = {each["label"]: each["peaks"] for each in client.ask("/api/response", state)["models"]}
+        for label, response in space["responses"].items():
+            for key in ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear"):
+                assert getattr(response, key) == pytest.approx(shown[label][key], rel=1e-9)
+        assert (tmp_path / "response.svg").read_text().startswith("<?xml")
+
+
+def test_the_study_repeats_the_numbers(client, tmp_path) -> None:
+    state = client.state(scale=1.3, models=["2DOF-S", "MDOF-S"])
+    name, content = client.download("/api/download/study", state)
+    (tmp_path / name).write_bytes(content)
+    table = rf.run_study(tmp_path / name)
+    shown = client.ask("/api/response", state)["models"]
+    assert table["max_rotation"].tolist() == [each["peaks"]["max_rotation"] for each in shown]
+
+
+def test_every_download_is_what_it_says(client) -> None:
+    state = client.state(models=["2DOF-S", "fixed"])
+    response = rf.simulate(FRAME, EL_CENTRO, "2DOF-S", free_vibration=5.0)
+    for what in ("figure", "energy", "modes"):
+        assert b"<svg" in client.download(f"/api/download/{what}", state)[1]
+    import io
+
+    peaks = pd.read_csv(io.BytesIO(client.download("/api/download/peaks", state)[1]))
+    assert peaks["max_rotation"][0] == response.max_rotation
+    histories = pd.read_csv(io.BytesIO(client.download("/api/download/histories", state)[1]))
+    mine = histories[histories["model"] == "2DOF-S"]
+    assert mine["rotation (rad)"].to_numpy() == pytest.approx(response.rotation, rel=1e-8, abs=1e-300)
+    _, structure = client.download("/api/download/structure", state)
+    assert tomllib.loads(structure.decode())["frame"]["stiffness_ratio"] == math.inf
+    block = client.state(structure={"block": {"slenderness": 0.2, "half_diagonal": 3.0}}, models=["rigid"])
+    assert "no figure of them" in client.refused("/api/download/modes", block)["structure"]
+
+
+def test_a_port_that_is_taken_or_absurd_is_told() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(
+            InputError, match=r"The page cannot listen at 127\.0\.0\.1, port .*: .* Choose another --port\."
+        ):
+            serve(taken.getsockname()[1])
+    with pytest.raises(InputError, match="port"):
+        serve(70_000)
+
+
+def test_missing_packages_are_named(monkeypatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == "uvicorn" else object())
+    with pytest.raises(InputError, match=r"The web page needs uvicorn\. Install it: pip install 'rockflex\[web\]'\."):
+        make_app()

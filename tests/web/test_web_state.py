@@ -1,0 +1,181 @@
+"""What a link or a form may hold, and what is said of the rest."""
+
+import json
+import math
+import tomllib
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rockflex.structure.file import KINDS
+from rockflex.web._forms import forms
+from rockflex.web._packing import envelope, plain
+from rockflex.web._presets import PRESETS
+from rockflex.web._refusal import Refusal
+from rockflex.web._state import State, parse_json, parse_state
+from rockflex.web._structures import build, structure_view
+from rockflex.web._toml import toml
+
+FRAME = PRESETS[0]["structure"]
+
+
+def errors(state):
+    with pytest.raises(Refusal) as caught:
+        parse_state(state)
+    return caught.value.errors
+
+
+def frame(**changes):
+    return {"structure": {"frame": FRAME["frame"] | changes}}
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
+def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
+    state = parse_state({"structure": preset["structure"]})
+    link = json.dumps(plain(state.model_dump(exclude_none=True)), allow_nan=False)
+    assert parse_state(parse_json(link.encode())) == state
+    view = structure_view(state.structure)
+    json.dumps(view, allow_nan=False)
+    assert view["modes"][0]["period"] == pytest.approx(2 * np.pi / build(state.structure).properties.omega[0])
+    assert view["adequacy"]["reason"]
+
+
+@pytest.mark.parametrize(
+    ("state", "path", "text"),
+    [
+        (frame(n_stories=1_000_000), "structure.frame.n_stories", "it must be from 1 to 200, but 1e+06 was given."),
+        (frame(n_stories=2.5), "structure.frame.n_stories", "it must be the number of stories, a whole number, but"),
+        (frame(period=math.nan), "structure.frame.period", "it must be from 0.01 to 60, but nan was given."),
+        (frame(period="inf"), "structure.frame.period", "it must be from 0.01 to 60, but inf was given."),
+        (frame(period="x" * 300), "structure.frame.period", "a number in s, but 'xxx"),
+        (frame(story_mass=None), "structure.frame.story_mass", "it must be the mass of each floor"),
+        (frame(wings=2), "structure.frame.wings", "it is not known here."),
+        ({"structure": {"frame": {}}}, "structure.frame.period", "it is missing: the first period on a fixed base"),
+        ({"structure": {}}, "structure", "one structure is expected"),
+        ({"structure": FRAME, "scale": 1e9}, "scale", "it must be a number from 0.01 to 20, but 1000000000.0"),
+        ({"structure": FRAME, "scale": math.nan}, "scale", "it must be a number from 0.01 to 20"),
+        ({"structure": FRAME, "free_vibration": 36_000}, "free_vibration", "from 0 to 60, but 36000 was given."),
+        ({"structure": FRAME, "models": ["5DOF-Q"]}, "models", "Unknown model '5DOF-Q'."),
+        ({"structure": FRAME, "models": ["2DOF-S"] * 2}, "models", "the same model is chosen twice."),
+        ({"structure": FRAME, "models": []}, "models", "it must be a list of one to four models, but [] was given."),
+        ({"structure": FRAME, "tab": "../../etc"}, "tab", "it must be the name of a tab, but '../../etc' was given."),
+        ({"structure": FRAME, "record": {"upload": "../x"}}, "record.upload", "it must be the checksum of a file"),
+        ({"structure": FRAME, "cloud": {"scales": [1.0] * 21}}, "cloud.scales", "one to twenty scale factors"),
+        ({"structure": FRAME, "design": {"widths": 1000}}, "design.widths", "how many widths, from 3 to 20, but 1000"),
+        ({"structure": FRAME | {"tendons": [{"stiffness": 1.0}]}}, "structure.tendons.0.initial_force", "is missing"),
+        ([], "", "The link does not hold a state of the page."),
+        ("<script>", "", "The link does not hold a state of the page."),
+    ],
+)
+def test_what_cannot_be_used_is_said_beside_its_field(state, path, text) -> None:
+    found = errors(state)
+    assert text in found[path]
+    assert "Traceback" not in found[path]
+
+
+def test_text_never_becomes_the_path_of_a_file() -> None:
+    matrices = {"mass": "/etc/passwd", "stiffness": "secret.npz", "heights": [3.0], "base_mass": 1.0}
+    found = errors({"structure": {"matrices": matrices | {"half_width": 1.0, "damping_ratio": 0.0}}})
+    assert found["structure.matrices.mass"] == "it must be numbers, not the name of a file: import the file instead."
+    assert "import the file" in found["structure.matrices.stiffness"]
+
+
+def test_lists_and_matrices_are_limited() -> None:
+    lumped = {"masses": [1.0] * 201, "stiffness": [[1.0]], "heights": [1.0], "base_mass": 1.0, "half_width": 1.0}
+    found = errors({"structure": {"lumped": lumped | {"damping_ratio": 0.0}}})
+    assert found["structure.lumped.masses"] == "it holds 201 values, but the page takes 200 at most."
+
+
+def test_errors_of_building_stand_beside_the_field_that_they_name() -> None:
+    tower = PRESETS[6]["structure"]["tapered_tower"]
+    state = parse_state({"structure": {"tapered_tower": tower | {"wall": 50.0}}})
+    with pytest.raises(Refusal) as caught:
+        structure_view(state.structure)
+    (path,) = caught.value.errors
+    assert path == "structure.tapered_tower.wall"
+    held = PRESETS[8]["structure"] | {"tendons": [{"position": 0.5, "initial_force": 1.0, "stiffness": 1.0}]}
+    with pytest.raises(Refusal) as caught:
+        structure_view(parse_state({"structure": held}).structure)
+    assert "structure.tendons" in caught.value.errors
+
+
+def test_json_that_is_none_is_refused() -> None:
+    for body in (b"{", b"\xff", b"[" * 100_000, b""):
+        with pytest.raises(Refusal, match="no JSON that can be read"):
+            parse_json(body)
+    assert parse_json(b'{"a": ' + b"9" * 5000 + b"}")["a"] == math.inf
+
+
+def test_the_forms_have_every_field_of_every_kind() -> None:
+    found = forms()
+    json.dumps(found, allow_nan=False)
+    assert set(found["kinds"]) == set(KINDS)
+    for kind, table in KINDS.items():
+        fields = {each["name"]: each for each in found["kinds"][kind]["fields"]}
+        assert set(fields) == set(table.model_fields)
+        assert all(each["help"] and each["label"] for each in fields.values())
+    period = next(each for each in found["kinds"]["frame"]["fields"] if each["name"] == "period")
+    assert (period["unit"], period["low"], period["high"], period["required"]) == ("s", 0.01, 60.0, True)
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@given(values)
+def test_any_value_is_a_state_or_a_refusal(value) -> None:
+    with suppress(Refusal):
+        assert isinstance(parse_state(value), State)
+
+
+FIELDS = [(kind, name) for kind, table in KINDS.items() for name in table.model_fields]
+
+
+@given(st.sampled_from(FIELDS), values)
+def test_any_value_in_any_field_of_a_structure_is_built_or_refused(field, value) -> None:
+    kind, name = field
+    first = next((p["structure"][kind] for p in PRESETS if kind in p["structure"]), {})
+    with suppress(Refusal):
+        structure_view(parse_state({"structure": {kind: first | {name: value}}}).structure)
+
+
+@given(
+    st.sampled_from([f for f in FIELDS if f[0] in ("frame", "tapered_tower", "cantilever", "wall_frame")]), st.floats()
+)
+def test_any_number_in_any_field_of_a_structure_is_built_or_refused(field, value) -> None:
+    kind, name = field
+    first = next(p["structure"][kind] for p in PRESETS if kind in p["structure"])
+    with suppress(Refusal):
+        structure_view(parse_state({"structure": {kind: first | {name: value}}}).structure)
+
+
+def test_a_thinned_curve_keeps_its_extremes() -> None:
+    rng = np.random.default_rng(1)
+    curves = [rng.normal(size=50_000), np.cumsum(rng.normal(size=50_000))]
+    kept = envelope(curves, 1000)
+    assert kept.size <= 1010
+    assert kept[0] == 0
+    assert kept[-1] == 49_999
+    assert (np.diff(kept) > 0).all()
+    for values in curves:
+        assert values[kept].max() == values.max()
+        assert values[kept].min() == values.min()
+
+
+@given(
+    st.dictionaries(
+        st.from_regex(r"[a-z][a-z_]{0,6}", fullmatch=True),
+        st.integers(-(10**9), 10**9) | st.floats(allow_nan=False) | st.booleans()
+        | st.text(st.characters(exclude_categories=["Cs", "Cc"])) | st.lists(st.floats(allow_nan=False), max_size=3),
+        max_size=4,
+    )
+)  # fmt: skip
+def test_toml_is_read_back(table) -> None:
+    content = {"a": 1.0, **table, "inner": table, "many": [table, {"x": {"y": [[1.0, 2.0]]}}]}
+    assert tomllib.loads(toml(content)) == content

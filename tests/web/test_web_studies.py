@@ -1,0 +1,175 @@
+"""Studies that the page runs: their numbers, their end, and their privacy."""
+
+import math
+import time
+
+import numpy as np
+import pytest
+
+import rockflex as rf
+from rockflex.study.plans import TendonLevel, smallest_width
+from rockflex.web._jobs import Job, Jobs
+from rockflex.web._refusal import Refusal
+
+FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
+CLOUD = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0], "models": ["2DOF-S"]}
+DESIGN = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0], "widths": 3, "tendons": [0.0, 0.2], "at": 0.8}
+
+
+@pytest.fixture(scope="module")
+def cloud(client):
+    state = client.state(cloud=CLOUD)
+    token = client.ask("/api/study/cloud", state)["token"]
+    answer = client.wait("cloud", token, state)
+    assert answer["status"] == "done"
+    return token
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return rf.run_cloud(FRAME, rf.load_suite(CLOUD["suites"][0]), "2DOF-S", free_vibration="settle")
+
+
+@pytest.mark.parametrize("limit", ["rocking", "rotation", "nominal", "overturning"])
+@pytest.mark.parametrize("measure", ["pgv", "sa_t1"])
+def test_curves_are_the_librarys_and_refitted_at_once(client, cloud, runs, limit, measure) -> None:
+    state = client.state(cloud=CLOUD | {"limit": limit, "measure": measure, "rotation": 0.02})
+    begun = time.perf_counter()
+    answer = client.ask(f"/api/study/cloud/{cloud}", state)
+    assert time.perf_counter() - begun < 5.0
+    (curve,) = answer["curves"]
+    (fit,) = rf.fit_clouds(runs, measure, nominal=limit == "nominal")
+    im = np.array(curve["im"])
+    if limit == "rotation":
+        expected = fit.outcomes.exceedance(im, 0.02)
+        assert (np.array(curve["low"]) <= np.array(curve["high"])).all()
+    else:
+        shown = fit.outcomes.initiation if limit == "rocking" else fit.outcomes.overturning
+        expected = shown.probability(im)
+        low, high = shown.band(im, 0.9)
+        assert np.array(curve["low"]) == pytest.approx(low)
+        assert np.array(curve["high"]) == pytest.approx(high)
+    assert np.array(curve["p"]) == pytest.approx(expected, rel=1e-9)
+    assert curve["n"] == len(runs)
+
+
+def test_files_of_a_cloud(client, cloud, tmp_path, monkeypatch, runs) -> None:
+    monkeypatch.chdir(tmp_path)
+    state = client.state(cloud=CLOUD)
+    assert b"max_rotation" in client.download(f"/api/study/cloud/{cloud}/table", state)[1]
+    assert b"<svg" in client.download(f"/api/study/cloud/{cloud}/figure", state)[1]
+    name, study = client.download("/api/download/cloud-study", state)
+    (tmp_path / name).write_bytes(study)
+    assert rf.run_study(tmp_path / name)["max_rotation"].tolist() == runs["max_rotation"].tolist()
+    space: dict = {}
+    exec(client.download("/api/download/cloud-python", state)[1], space)
+    (fit,) = rf.fit_clouds(runs, "pgv")
+    assert space["curves"]["2DOF-S"] == pytest.approx(fit.outcomes.initiation.probability(space["im"]))
+
+
+def test_a_cloud_is_cancelled(client) -> None:
+    state = client.state(cloud=CLOUD | {"models": ["MDOF-C-SI"], "scales": [1.0, 1.5, 2.0, 3.0, 5.0]})
+    token = client.ask("/api/study/cloud", state)["token"]
+    assert client.request(f"/api/job/{token}", method="DELETE")[0] == 200
+    answer = client.wait("cloud", token, state)
+    assert answer["status"] == "cancelled"
+    assert answer["done"] < answer["total"]
+
+
+def test_the_design_is_the_librarys(client, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    state = client.state(design=DESIGN)
+    token = client.ask("/api/study/design", state)["token"]
+    answer = client.wait("design", token, state)
+    assert answer["status"] == "done"
+    widths = [float(f"{share * FRAME.rocking().half_width:.6g}") for share in (1.0, 2.0, 3.0)]
+    levels = [TendonLevel(name="no tendon"), TendonLevel(0.2, 0.5, name="F₀ = 0.2 W")]
+    found = rf.run_design(FRAME, rf.load_suite(DESIGN["suites"][0]), widths, levels, "2DOF-S")
+    table = rf.design_table(found, 0.02, at=0.8)
+    shown = [value for curve in answer["curves"] for value in curve["probability"]]
+    assert shown == pytest.approx(table["probability"].tolist())
+    answers = smallest_width(table, 0.25)
+    assert [each["outcome"] for each in answer["answers"]] == answers["outcome"].tolist()
+    exec(client.download("/api/download/design-python", state)[1], space := {})
+    assert space["answer"]["half_width"].tolist() == pytest.approx(answers["half_width"].tolist(), nan_ok=True)
+    assert b"<svg" in client.download(f"/api/study/design/{token}/figure", state)[1]
+    assert b"half_width" in client.download(f"/api/study/design/{token}/table", state)[1]
+    assert client.post(f"/api/study/cloud/{token}", {"state": state})[0] == 404  # of another kind
+    name, study = client.download("/api/download/design-study", state)
+    (tmp_path / name).write_bytes(study)
+    assert rf.run_study(tmp_path / name)["max_rotation"].tolist() == found["max_rotation"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "path", "text"),
+    [
+        ("cloud", {"cloud": {"suites": ["nowhere"]}}, "cloud", "No embedded suite is named"),
+        ("cloud", {"cloud": {"scales": [1e9]}}, "cloud.scales", "one to twenty scale factors"),
+        ("design", {"design": {"narrowest": 2.0, "widest": 1.5}}, "design.widest", "more than the narrowest"),
+        ("design", {"design": {"model": "fixed"}}, "design", "cannot lift"),
+        ("design", {"design": {"rotation": 2.0}}, "design.rotation", "a rotation in rad"),
+    ],
+)
+def test_absurd_studies_are_refused(client, kind, change, path, text) -> None:
+    assert text in client.refused(f"/api/study/{kind}", client.state(**change))[path]
+
+
+def test_a_study_that_takes_too_long_is_refused(client) -> None:
+    tall = client.state()["structure"]
+    tall["frame"] |= {"n_stories": 100, "period": 4.0}
+    suites = ["fema-p695-far-field", "fema-p695-near-field-no-pulse"]
+    cloud = {"suites": suites, "scales": [0.5, 1.0, 1.5, 2.0], "models": ["MDOF-S"]}
+    found = client.refused("/api/study/cloud", client.state(structure=tall, cloud=cloud))
+    assert "takes too long for a page" in " ".join(found.values())
+
+
+class Plan:
+    """A plan whose chunks wait until they may end."""
+
+    n_chunks, n_runs, checksums = 100, 100, {}
+
+    def __init__(self, error=None) -> None:
+        self.error = error
+
+    def chunk(self, number):
+        time.sleep(0.01)
+        if self.error:
+            raise self.error
+        return type("Table", (), {"num_rows": 1})()
+
+
+def ended(job, seconds=5.0):
+    end = time.monotonic() + seconds
+    while not job.over and time.monotonic() < end:
+        time.sleep(0.01)
+    return job.status
+
+
+def test_a_job_that_nobody_looks_at_ends(monkeypatch) -> None:
+    monkeypatch.setattr("rockflex.web._jobs.FORGOTTEN", 0.05)
+    job = Job(Plan(), "cloud")
+    job.compute()
+    assert job.status == "cancelled"
+    assert 0 < job.runs < 100
+
+
+def test_a_failure_is_told_without_a_traceback(caplog) -> None:
+    job = Job(Plan(rf.InputError("The record is wrong.")), "cloud")
+    job.compute()
+    assert (job.status, job.message) == ("failed", "The record is wrong.")
+    job = Job(Plan(ZeroDivisionError("secret")), "cloud")
+    job.compute()
+    assert (job.status, job.message) == ("failed", "The server met an error of its own; its log has the details.")
+    assert "ZeroDivisionError" in caplog.text
+
+
+def test_jobs_are_many_but_limited() -> None:
+    jobs = Jobs()
+    tokens = [jobs.start(Plan(), "cloud") for _ in range(12)]
+    with pytest.raises(Refusal, match="busy with the studies of others"):
+        jobs.start(Plan(), "cloud")
+    jobs.cancel(tokens[-1])
+    assert jobs.get(tokens[-1]).status == "cancelled"
+    assert len(set(tokens)) == 12
+    jobs.close()
+    assert ended(jobs.get(tokens[0])) == "cancelled"

@@ -1,0 +1,159 @@
+"""Files of visitors: good ones are read as the library reads them, bad ones are refused, and quickly."""
+
+import io
+import time
+import zipfile
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rockflex as rf
+from rockflex.web._refusal import Refusal
+from rockflex.web._uploads import KEPT, Uploads, clean_name, read_matrices, read_record
+
+CSV = b"time (s),acc (g)\n0.00,0.0\n0.01,0.1\n0.02,-0.2\n0.03,0.0\n"
+AT2 = (
+    b"PEER\nNorthridge-01, 1/17/1994, Beverly, 9\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .0100 SEC\n"
+    + (b" .1000000E-01 -.2000000E-01 .3000000E-01 .0000000E+00\n")
+)
+
+
+def refusal(call, *arguments):
+    begun = time.perf_counter()
+    with pytest.raises(Refusal) as caught:
+        call(*arguments)
+    assert time.perf_counter() - begun < 3.0
+    (text,) = caught.value.errors.values()
+    assert "/tmp" not in text
+    return text
+
+
+def npz(**arrays):
+    file = io.BytesIO()
+    np.savez(file, **arrays)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize(("name", "content"), [("quake.csv", CSV), ("RSN1_X.AT2", AT2)])
+def test_a_record_is_what_the_library_reads(tmp_path, name, content) -> None:
+    (tmp_path / name).write_bytes(content)
+    motion, expected = read_record(name, content, None, None), rf.read_motion(tmp_path / name)
+    assert np.array_equal(motion.acceleration, expected.acceleration)
+    assert (motion.dt, motion.name) == (expected.dt, expected.name)
+
+
+def test_a_name_with_folders_is_no_path(tmp_path) -> None:
+    motion = read_record("../../etc/pass wd<b>.csv", CSV, None, None)
+    assert motion.name == "pass wd_b_"
+    assert clean_name("C:\\temp\\..\\a.csv") == "a.csv"
+    assert clean_name("/") == "record"
+    assert len(clean_name("x" * 500)) == 80
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        (b"", "is empty"),
+        (b"\x00\x01\x02" * 99, "is a binary file"),
+        (b"hello\nworld\n", "holds no numbers"),
+        (b"time (s),acc (g)\n0,1\n1,x\n", "expected a finite number"),
+        (b"time (s),acc (g)\n0,0\n0.01,nan\n0.02,0\n", "expected a finite number, but found 'nan'"),
+        (b"time (s),acc (g)\n0,0\n0.01,900\n0.02,0\n", "above 5 g"),
+        (b"0 1\n0.01 2\n0.02 1\n", "does not say the unit"),
+        (b"x" * 5_000_001, "has 5.0 MB, but the page takes 5 MB at most."),
+        (b"time (s),acc (g)\n" + b"".join(b"%.2f,0.1\n" % (0.01 * i) for i in range(30_002)), "300 s at most"),
+        (b"time (s),acc (g)\n" + b"".join(b"%.4f,0.1\n" % (1e-3 * i) for i in range(200_002)), "200000 samples"),
+    ],
+)
+def test_a_bad_record_is_refused_with_a_reason(content, text) -> None:
+    assert text in refusal(read_record, "mine.txt", content, None, None)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"(" * 2_000_000 + b"\n1.0\n2.0\n",
+        b"".join(b"(" * 5000 + b"\n" for _ in range(500)) + b"1 2\n",
+        b"1" * 1_000_000 + b"x\n",
+        b"NPTS= 4, DT= " + b"1" * 2_000_000 + b"x\n",
+        b"4" + b" " * 1_000_000 + b"0.01" + b" " * 1_000_000 + b"x\n",
+        b"1,2\n" + b"1" * 4_000_000 + b"\n",
+        b"\n".join(b"1." + b"1" * 60 + b"x" for _ in range(60_000)),
+        b"a" * 99_000 + b"\n" + b"[" * 990 + b"\n1.0 2.0\n",
+    ],
+    ids=range(8),
+)
+def test_a_file_made_to_keep_the_reader_busy_is_refused_at_once(content) -> None:
+    for name in ("mine.txt", "mine.at2"):
+        refusal(read_record, name, content, None, None)
+
+
+@given(st.binary(max_size=400) | st.text("0123456789.eE+-,; \t\n()[]#NPTSDT=", max_size=300).map(str.encode))
+def test_any_bytes_are_a_record_or_a_refusal(content) -> None:
+    for name in ("mine.at2", "mine.csv"):
+        with suppress(Refusal):
+            assert np.isfinite(read_record(name, content, "g", 0.01).acceleration).all()
+
+
+@given(st.data())
+def test_a_record_with_a_slip_is_read_or_refused(data) -> None:
+    content = bytearray(data.draw(st.sampled_from([CSV, AT2])))
+    for _ in range(data.draw(st.integers(1, 4))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    with suppress(Refusal):
+        read_record("mine.at2", bytes(content), None, None)
+
+
+def test_matrices_are_read() -> None:
+    m, k, h = np.diag([2.0, 3.0]), np.array([[4.0, -2.0], [-2.0, 2.0]]), np.array([3.0, 6.0])
+    found = read_matrices("fe.npz", npz(mass=m, stiffness=k, heights=h), "")
+    assert found == {"mass": m.tolist(), "stiffness": k.tolist(), "heights": h.tolist()}
+    assert read_matrices("k.csv", b"4,-2\n-2,2\n", "stiffness") == {"stiffness": k.tolist()}
+    assert read_matrices("h.csv", b"3\n6\n", "heights") == {"heights": [3.0, 6.0]}
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "part", "text"),
+    [
+        ("k.csv", b"4,-2\n-2,2\n", "soul", "say which of mass, stiffness, heights, rotations"),
+        ("k.csv", b"4,x\n", "mass", "does not hold matrices that can be read"),
+        ("k.csv", b"4,nan\n", "mass", "mass must hold finite numbers"),
+        ("k.csv", b"", "mass", "k.csv"),
+        ("k.npz", b"PK", "", "does not hold matrices that can be read"),
+        ("k.npz", npz(mass=np.eye(2)), "", "must hold the arrays mass, stiffness and heights"),
+        ("k.npz", npz(stiffness=np.eye(201)), "", "numbers for up to 200 freedoms are expected"),
+        ("k.npz", npz(stiffness=np.array(["a"])), "", "numbers for up to 200 freedoms are expected"),
+        ("k.npz", npz(stiffness=np.array([{}], dtype=object)), "", "numbers for up to 200 freedoms are expected"),
+        ("k.npz", b"x" * 5_000_001, "", "5 MB at most"),
+    ],
+)
+def test_bad_matrices_are_refused_with_a_reason(name, content, part, text) -> None:
+    assert text in refusal(read_matrices, name, content, part)
+
+
+def test_a_file_that_unpacks_to_gigabytes_is_refused_before_it_is_unpacked() -> None:
+    file = io.BytesIO()
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": (50_000, 50_000)})
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("stiffness.npy", header.getvalue() + bytes(4_000_000))
+    assert "numbers for up to 200 freedoms" in refusal(read_matrices, "k.npz", file.getvalue(), "")
+
+
+@given(st.binary(max_size=300))
+def test_any_bytes_are_matrices_or_a_refusal(content) -> None:
+    for name in ("k.npz", "k.csv"):
+        with suppress(Refusal):
+            read_matrices(name, content, "mass")
+
+
+def test_the_latest_records_are_kept_by_their_checksum() -> None:
+    kept, motion = Uploads(), rf.quiet_motion(1.0)
+    keys = [kept.add(motion, bytes([i]), "") for i in range(KEPT + 1)]
+    assert kept.get(keys[-1]) is motion
+    with pytest.raises(Refusal, match=r"a link does not hold files\. Choose the file again\.") as caught:
+        kept.get(keys[0])
+    assert caught.value.status == 410
