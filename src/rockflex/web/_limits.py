@@ -113,7 +113,7 @@ def check_motion(motion: GroundMotion, path: str) -> None:
 
 
 def effort(properties: RockingProperties, motion: GroundMotion, label: str, free_vibration: float = 0.0) -> float:
-    """Return about how much work a run is, in some 1e-7 s: samples n, modes k and the fastest ω_k, n k (k + ω_k dt/2)."""
+    """Return about how much work a run is, in some 1e-7 s: n k (k + ω_k dt/2) for n samples and k modes."""
     count = parse_model(label).n_modes
     modes = properties.n_modes if count is None else min(count, properties.n_modes)
     samples = motion.acceleration.size + free_vibration / motion.dt
