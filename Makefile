@@ -24,10 +24,10 @@ figures: $(READY)  ## every table and figure of the paper, with a report; in out
 
 test: lint types $(READY)  ## lint, types and every test, those of the web page in a real browser if one can be had
 	-sh scripts/install_browser.sh
-	$(BIN)/python -m pytest -n $(WORKERS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
 
 check: lint types $(READY)  ## the quick subset, for the work between commits
-	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
+	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not web"
 
 lint: $(READY)  ## ruff: style, docstrings, error messages
 	$(BIN)/ruff check .

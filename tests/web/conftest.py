@@ -8,6 +8,7 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,6 +21,13 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "web: drives a real Chromium; skipped, with the reason, where there is none")
 
 
+def pytest_collection_modifyitems(items):
+    here = Path(__file__).parent
+    for item in items:
+        if here in item.path.parents:  # one worker, so that servers and browsers do not keep each other waiting
+            item.add_marker(pytest.mark.xdist_group("web"))
+
+
 class Client:
     """Requests to the server, and what it answers."""
 
@@ -30,7 +38,7 @@ class Client:
         names = {name.replace("_", "-"): value for name, value in headers.items()}
         request = urllib.request.Request(self.url + path, data, names, method=method)
         try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
+            with urllib.request.urlopen(request, timeout=300) as answer:
                 return answer.status, dict(answer.headers), answer.read()
         except urllib.error.HTTPError as error:
             with error:
@@ -164,7 +172,7 @@ def visit(browser: Any, server: str) -> Iterator[Any]:
         context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(20_000)
+        page.set_default_timeout(180_000)
         visitor = Visitor(page, server)
         visitors.append(visitor)
         return visitor.open(link)

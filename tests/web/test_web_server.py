@@ -4,6 +4,7 @@ import base64
 import json
 import math
 import socket
+import time
 import tomllib
 
 import numpy as np
@@ -13,7 +14,10 @@ import pytest
 import rockflex as rf
 from rockflex._errors import InputError
 from rockflex.web import make_app, serve
+from rockflex.web._limits import effort
 from rockflex.web._presets import PRESETS
+
+HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 
 FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
@@ -117,6 +121,35 @@ def test_a_run_that_takes_too_long_is_refused(client) -> None:
     state = client.state(structure=tall, models=["MDOF-S"], record={"suite": "fema-p695-far-field", "name": "FF-12-a"})
     assert "takes too long for a page" in client.refused("/api/response", state)["models"]
     assert client.ask("/api/response", state | {"models": ["3DOF-S"]})["models"][0]["label"] == "3DOF-S"
+
+
+def test_a_very_narrow_base_is_refused_where_its_frequencies_keep_the_engine_busy(client) -> None:
+    narrow = PRESETS[10]["structure"]["lumped"] | {"half_width": 0.001}
+    state = client.state(structure={"lumped": narrow}, models=["MDOF-S"], free_vibration=60.0)
+    begun = time.perf_counter()
+    assert "a wider base or a shorter record" in client.refused("/api/response", state)["models"]
+    assert time.perf_counter() - begun < HANG
+
+
+def test_the_work_of_a_run_counts_the_frequencies_of_the_uplifted_structure() -> None:
+    motion = rf.GroundMotion(np.zeros(1001), 0.01)
+    for lifted, label in ((True, "MDOF-S"), (False, "fixed")):
+        p = FRAME.rocking()
+        fastest = rf.uplifted_modes(p).omega[-1] if lifted else p.omega[-1]
+        expected = 1001 * (25 + fastest * 0.01 * (20 + 5 / 3) + 20)
+        assert effort(p, motion, label) == pytest.approx(expected)
+
+
+def test_many_stories_are_judged_in_time(client) -> None:
+    tall = client.state()["structure"]
+    tall["frame"] |= {"n_stories": 120, "period": 4.0}
+    begun = time.perf_counter()
+    view = client.ask("/api/structure", client.state(structure=tall))
+    assert time.perf_counter() - begun < HANG
+    assert (
+        view["adequacy"]["reason"]
+        == rf.adequacy(rf.Frame(120, 3.0, 40e3, 40e3, math.inf, 4.0, 10.0, 0.02).rocking(30), base_mass=40e3).reason
+    )
 
 
 def test_what_is_no_question_is_refused(client) -> None:

@@ -11,6 +11,8 @@ from rockflex.study.plans import TendonLevel, smallest_width
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._refusal import Refusal
 
+HANG = 120.0  # s: a guard against what never ends, not a measure of speed
+
 FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
 CLOUD = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0], "models": ["2DOF-S"]}
 DESIGN = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0], "widths": 3, "tendons": [0.0, 0.2], "at": 0.8}
@@ -36,7 +38,7 @@ def test_curves_are_the_librarys_and_refitted_at_once(client, cloud, runs, limit
     state = client.state(cloud=CLOUD | {"limit": limit, "measure": measure, "rotation": 0.02})
     begun = time.perf_counter()
     answer = client.ask(f"/api/study/cloud/{cloud}", state)
-    assert time.perf_counter() - begun < 5.0
+    assert time.perf_counter() - begun < HANG
     (curve,) = answer["curves"]
     (fit,) = rf.fit_clouds(runs, measure, nominal=limit == "nominal")
     im = np.array(curve["im"])

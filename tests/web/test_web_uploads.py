@@ -14,6 +14,8 @@ import rockflex as rf
 from rockflex.web._refusal import Refusal
 from rockflex.web._uploads import KEPT, Uploads, clean_name, read_matrices, read_record
 
+HANG = 120.0  # s: a guard against what never ends, not a measure of speed
+
 CSV = b"time (s),acc (g)\n0.00,0.0\n0.01,0.1\n0.02,-0.2\n0.03,0.0\n"
 AT2 = (
     b"PEER\nNorthridge-01, 1/17/1994, Beverly, 9\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .0100 SEC\n"
@@ -25,7 +27,7 @@ def refusal(call, *arguments):
     begun = time.perf_counter()
     with pytest.raises(Refusal) as caught:
         call(*arguments)
-    assert time.perf_counter() - begun < 3.0
+    assert time.perf_counter() - begun < HANG
     (text,) = caught.value.errors.values()
     assert "/tmp" not in text
     return text

@@ -19,6 +19,7 @@ __all__ = ["Built", "build", "structure_view"]
 
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
+JUDGED = 30  # modes among which as many as are needed are looked for: the work grows with the fourth power
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,10 +108,11 @@ def structure_view(entry: StructureEntry) -> dict[str, Any]:
     }
     if p.n_modes:
         base = getattr(entry.table, "base_mass", None)
+        first = p.truncated(min(p.n_modes, JUDGED))
         try:
-            found = adequacy(p, base_mass=base)
+            found = adequacy(first, base_mass=base)
         except InputError:
-            found = adequacy(p)
+            found = adequacy(first)
         view["adequacy"] = {
             "reason": found.reason,
             "model": found.model,
@@ -149,7 +151,7 @@ def _modes(built: Built) -> list[dict[str, Any]]:
     p = built.properties
     if not p.n_modes:
         return []
-    lifted = uplifted_modes(p).omega
+    lifted = uplifted_modes(p, min(p.n_modes, 2 * JUDGED)).omega
     return [
         {
             "period": 2.0 * np.pi / p.omega[n],
