@@ -111,8 +111,8 @@ def test_a_cluster_gives_the_same_bits(tmp_path):
     here, there, spec = tmp_path / "here", tmp_path / "there", tmp_path / "study.toml"
     spec.write_text(
         'study = "cloud"\nmodels = ["2DOF-S", "2DOF-C", "MDOF-S"]\nscales = [0.5, 1.5]\nruns_per_chunk = 5\n'
-        '[records]\nsuites = ["fema-p695-far-field"]\ninclude = ["FF-1-*", "FF-2-*"]\n[[structures]]\n[structures.frame]\n'
-        + "\n".join(f"{name} = {value}" for name, value in FRAME.items())
+        '[records]\nsuites = ["fema-p695-far-field"]\ninclude = ["FF-1-*", "FF-2-*"]\n'
+        "[[structures]]\n[structures.frame]\n" + "\n".join(f"{name} = {value}" for name, value in FRAME.items())
     )
     # In a process of its own, which takes the kernels from the cache as the workers do: two processes that compile at
     # the same time may differ in how they fuse multiplications.
