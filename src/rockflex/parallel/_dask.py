@@ -2,6 +2,7 @@
 # pyright: reportUnknownParameterType=false
 # (pyarrow comes without types)
 
+import gc
 import pickle
 import time
 from collections.abc import Generator, Iterable
@@ -151,6 +152,11 @@ def _connected(address: str) -> Any:
     except ImportError as error:
         message = f"A Dask cluster needs the package {error.name!r}. Install it by pip install 'rockflex[cluster]'."
         raise InputError(message) from error
+    # A client that could not connect closes when it is collected. Collected while another one starts, it would wait for
+    # a lock that this very thread holds, for ever: so it is collected before, and none while a client starts.
+    gc.collect()
+    collects = gc.isenabled()
+    gc.disable()
     try:
         return Client(address, timeout=CONNECT, set_as_default=False, name="rockflex")
     except (OSError, ValueError, TypeError) as error:
@@ -159,6 +165,9 @@ def _connected(address: str) -> Any:
             'workers by `dask worker ADDRESS`, and give the address that it prints, such as "tcp://10.0.0.1:8786".'
         )
         raise InputError(message) from error
+    finally:
+        if collects:
+            gc.enable()
 
 
 def _first(client: Any, futures: list[Any]) -> list[Any]:
