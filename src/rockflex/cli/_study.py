@@ -1,5 +1,6 @@
 """``rockflex cloud``, ``ida``, ``stripes``, ``population`` and ``design``: studies from a TOML file."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -55,74 +56,48 @@ AnyVersion = Annotated[
 Strict = Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")]
 
 
-def cloud(
-    file: StudyFile,
-    out: Folder = None,
-    dry_run: DryRun = False,
-    dask: Dask = None,
-    workers: Workers = None,
-    any_version: AnyVersion = False,
-    json: options.Json = False,
-    strict: Strict = False,
-) -> None:
-    """Run every structure under every record at every scale, and fit regressions and fragility curves."""
-    _study("cloud", file, out, dry_run, dask, workers, any_version, json, strict)
+def _command(name: str, kind: str, summary: str) -> Callable[..., None]:
+    """The command of one kind of study: all take the same arguments."""
+
+    def command(
+        file: StudyFile,
+        out: Folder = None,
+        dry_run: DryRun = False,
+        dask: Dask = None,
+        workers: Workers = None,
+        any_version: AnyVersion = False,
+        json: options.Json = False,
+        strict: Strict = False,
+    ) -> None:
+        _study(kind, file, out, dry_run, dask, workers, any_version, json, strict)
+
+    command.__name__, command.__doc__ = name, summary
+    return command
 
 
-def ida(
-    file: StudyFile,
-    out: Folder = None,
-    dry_run: DryRun = False,
-    dask: Dask = None,
-    workers: Workers = None,
-    any_version: AnyVersion = False,
-    json: options.Json = False,
-    strict: Strict = False,
-) -> None:
-    """Scale every record until the structure overturns, and fit the capacities (incremental dynamic analysis)."""
-    _study("incremental", file, out, dry_run, dask, workers, any_version, json, strict)
-
-
-def stripes(
-    file: StudyFile,
-    out: Folder = None,
-    dry_run: DryRun = False,
-    dask: Dask = None,
-    workers: Workers = None,
-    any_version: AnyVersion = False,
-    json: options.Json = False,
-    strict: Strict = False,
-) -> None:
-    """Scale the records to levels of an intensity measure, and fit how many exceed a limit."""
-    _study("stripes", file, out, dry_run, dask, workers, any_version, json, strict)
-
-
-def population(
-    file: StudyFile,
-    out: Folder = None,
-    dry_run: DryRun = False,
-    dask: Dask = None,
-    workers: Workers = None,
-    any_version: AnyVersion = False,
-    json: options.Json = False,
-    strict: Strict = False,
-) -> None:
-    """Run random structures under random records with MDOF-S and 2DOF-S, and compare the two."""
-    _study("population", file, out, dry_run, dask, workers, any_version, json, strict)
-
-
-def design(
-    file: StudyFile,
-    out: Folder = None,
-    dry_run: DryRun = False,
-    dask: Dask = None,
-    workers: Workers = None,
-    any_version: AnyVersion = False,
-    json: options.Json = False,
-    strict: Strict = False,
-) -> None:
-    """Run a structure on bases of many widths and with several tendons, and find how wide the base must be."""
-    _study("design", file, out, dry_run, dask, workers, any_version, json, strict)
+cloud = _command(
+    "cloud",
+    "cloud",
+    "Run every structure under every record at every scale, and fit regressions and fragility curves.",
+)
+ida = _command(
+    "ida",
+    "incremental",
+    "Scale every record until the structure overturns, and fit the capacities (incremental dynamic analysis).",
+)
+stripes = _command(
+    "stripes", "stripes", "Scale the records to levels of an intensity measure, and fit how many exceed a limit."
+)
+population = _command(
+    "population",
+    "population",
+    "Run random structures under random records with MDOF-S and 2DOF-S, and compare the two.",
+)
+design = _command(
+    "design",
+    "design",
+    "Run a structure on bases of many widths and with several tendons, and find how wide the base must be.",
+)
 
 
 def _study(
