@@ -17,10 +17,7 @@ __all__ = ["cloud_script", "design_script", "record_file", "response_script"]
 
 def response_script(state: State, upload_name: str = "record") -> str:
     """Return a program that simulates what the Response tab shows, in `responses` by model."""
-    extra = f", free_vibration={state.free_vibration!r}"
-    if state.impact != "model":
-        law = {"simplified": "VVELSimplified", "complete": "VVELComplete"}[state.impact]
-        extra += f", impact=rf.{law}()"
+    extra = f", free_vibration={state.free_vibration!r}{_law(state)}"
     return "\n".join(
         [
             "import numpy as np",
@@ -47,7 +44,6 @@ def cloud_script(state: State) -> str:
     """Return a program that repeats the cloud of the Fragility tab, with its table in `runs`."""
     cloud = state.cloud
     records = " + ".join(f"list(rf.load_suite({name!r}))" for name in cloud.suites)
-    law = {"simplified": ", impact=rf.VVELSimplified()", "complete": ", impact=rf.VVELComplete()"}.get(state.impact, "")
     lines = [
         "import numpy as np",
         "import rockflex as rf",
@@ -55,7 +51,7 @@ def cloud_script(state: State) -> str:
         *_structure(state.structure),
         f"motions = {records}",
         f"runs = rf.run_cloud(structure, motions, {list(cloud.models)!r}, scales={list(cloud.scales)!r}, "
-        f'free_vibration="settle"{law})',
+        f'free_vibration="settle"{_law(state)})',
         f"im = np.geomspace(runs[{cloud.measure!r}].min(), runs[{cloud.measure!r}].max(), 60)",
         "curves = {}",
         f"for fit in rf.fit_clouds(runs, {cloud.measure!r}, nominal={cloud.limit == 'nominal'}):",
@@ -76,7 +72,6 @@ def design_script(state: State) -> str:
     levels = [
         f"TendonLevel({each.prestress_ratio!r}, {each.stiffness_ratio!r}, name={each.name!r})" for each in study.tendons
     ]
-    law = {"simplified": ", impact=rf.VVELSimplified()", "complete": ", impact=rf.VVELComplete()"}.get(state.impact, "")
     return "\n".join(
         [
             "import numpy as np",
@@ -88,7 +83,7 @@ def design_script(state: State) -> str:
             f"half_widths = {study.half_widths!r}",
             f"tendons = [{', '.join(levels)}]",
             f"runs = rf.run_design(structure, motions, half_widths, tendons, {choice.model!r}, "
-            f"scales={list(choice.scales)!r}{law})",
+            f"scales={list(choice.scales)!r}{_law(state)})",
             f"table = rf.design_table(runs, {limit_of(choice)!r}, measure={choice.measure!r}, at={choice.at!r})",
             f"answer = smallest_width(table, {choice.target!r})",
             "print(answer)",
@@ -101,6 +96,13 @@ def design_script(state: State) -> str:
 def record_file(upload_name: str) -> str:
     """Name of the file in which the page gives an uploaded record back."""
     return f"{upload_name}.csv"
+
+
+def _law(state: State) -> str:
+    """The argument that names an impact law; none where the model has its own."""
+    return {"simplified": ", impact=rf.VVELSimplified()", "complete": ", impact=rf.VVELComplete()"}.get(
+        state.impact, ""
+    )
 
 
 def _structure(entry: StructureEntry) -> list[str]:
