@@ -206,7 +206,8 @@ def test_a_tower_by_its_measures():
         ),
         (
             lambda: rf.plot_frequency_equation(3.0),
-            "A structure such as a Frame, or RockingProperties, is needed, but float was given.",
+            "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
+            "float was given.",
         ),
         (
             lambda: rf.plot_frequency_equation(FRAME, (6,)),
@@ -222,7 +223,8 @@ def test_a_tower_by_its_measures():
         ),
         (
             lambda: rf.plot_moment_rotation_laws(rf.Frame),
-            "A structure such as a Frame, or RockingProperties, is needed, but the class Frame was given.",
+            "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
+            "the class Frame was given.",
         ),
         (
             lambda: rf.plot_moment_rotation_laws(FRAME, spring=0.0),

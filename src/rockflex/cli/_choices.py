@@ -8,8 +8,9 @@ from typing import Any, Literal
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
+from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, parse_model
 from rockflex.study import InitialState
+from rockflex.study.assumed import LAWS, impact_law
 
 __all__ = [
     "Assumptions",
@@ -20,7 +21,6 @@ __all__ = [
     "parse_scales",
 ]
 
-LAWS = ("simplified", "complete", "restitution")
 USUAL = ("2DOF-S", "MDOF-S", "fixed")
 RIGID = ("rigid", "rigid-C")
 YIELDING = ("2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW")
@@ -199,20 +199,16 @@ def _law(impact: str | None = None, restitution: float | None = None) -> ImpactL
     if impact is not None and impact not in LAWS:
         message = f"--impact must be one of {', '.join(LAWS)}, but {impact!r} was given."
         raise InputError(message)
-    if impact == "restitution":
-        if restitution is None:
-            message = "--impact restitution needs its coefficient. Give --restitution E, from 0 to 1."
-            raise InputError(message)
-        return Restitution(restitution)
-    if restitution is not None:
+    if impact == "restitution" and restitution is None:
+        message = "--impact restitution needs its coefficient. Give --restitution E, from 0 to 1."
+        raise InputError(message)
+    if restitution is not None and impact != "restitution":
         message = (
             f"A restitution of {restitution:g} was given, but the impact law is {impact or 'the one of each model'}. "
             "Add --impact restitution, or leave --restitution out."
         )
         raise InputError(message)
-    if impact is None:
-        return None
-    return VVELSimplified() if impact == "simplified" else VVELComplete()
+    return impact_law(impact, restitution)
 
 
 def _bouc_wen(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:

@@ -95,7 +95,7 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
         message = f"The structure was given by {file} and by {_flags(given)}. Give one or the other."
         raise InputError(message)
     document = checked(StructureFile, read_toml(file, "structure"), str(file))
-    assumed = document.model_dump(include=ASSUMED, exclude_none=True)
+    assumed = document.model_dump(include=ASSUMED, exclude_unset=True)
     built = build_in(file, document)
     return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, assumed)
 

@@ -15,7 +15,8 @@ from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, frequency_equation, uplifted_modes
 from rockflex.plot._style import GRAY, SMALL, Look, letter, literal, new_figure, styled
-from rockflex.plot._surrogates import Rocks, rocking_properties_of, surrogate_looks
+from rockflex.plot._surrogates import surrogate_looks
+from rockflex.study import Structure, properties_of
 
 if TYPE_CHECKING:
     from rockflex.modal import UpliftedModes
@@ -31,7 +32,7 @@ _SHARE = 75.0  # per cent of the curves' points that the panel holds
 
 
 def plot_frequency_equation(
-    structures: "Rocks | RockingProperties | Mapping[str, Rocks | RockingProperties]",
+    structures: "Structure | RockingProperties | Mapping[str, Structure | RockingProperties]",
     n_modes: Sequence[SupportsIndex | None] = (1, 2, None),
     *,
     highest: float | None = None,
@@ -86,10 +87,10 @@ def plot_frequency_equation(
 
 
 def _models_of(
-    structure: "Rocks | RockingProperties", n_modes: Sequence[SupportsIndex | None]
+    structure: "Structure | RockingProperties", n_modes: Sequence[SupportsIndex | None]
 ) -> "dict[str, tuple[RockingProperties, UpliftedModes]]":
     """Truncated properties and uplifted modes by the models' labels."""
-    full = rocking_properties_of(structure)
+    full = properties_of(structure)
     if full.n_modes == 0:
         message = "A structure without modes has no frequency equation to plot. Give one with modes."
         raise InputError(message)

@@ -9,8 +9,8 @@ from rockflex._checks import positive
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.plot._style import BLACK, GRAY, SMALL, letter, new_figure, styled
-from rockflex.plot._surrogates import Rocks, rocking_properties_of
 from rockflex.plot._units import readable, short
+from rockflex.study import Structure, properties_of
 
 __all__ = ["plot_moment_rotation_laws"]
 
@@ -18,7 +18,7 @@ _ROOM = 1.18
 
 
 def plot_moment_rotation_laws(
-    structure: "Rocks | RockingProperties", spring: float | None = None, *, rotation: float | None = None
+    structure: "Structure | RockingProperties", spring: float | None = None, *, rotation: float | None = None
 ) -> Figure:
     """Plot the static base moment over the rotation: of a pinned beam on a spring, and of the rocking structure.
 
@@ -46,7 +46,7 @@ def plot_moment_rotation_laws(
     InputError
         If no structure is given, or a number is not positive and finite.
     """
-    p = rocking_properties_of(structure)
+    p = properties_of(structure)
     zero = -p.resisting_moment / p.rocking_stiffness if p.rocking_stiffness < 0.0 else math.inf
     default = _ROOM * zero if math.isfinite(zero) else p.nominal_overturning_rotation
     end = default if rotation is None else positive("rotation", rotation, "rad")

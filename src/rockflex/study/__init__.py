@@ -1,5 +1,6 @@
 """Studies: one run, the cross product of many, and spectra of what rocks."""
 
+from rockflex.study._arguments import Structure, properties_of
 from rockflex.study._conduct import Progress, estimate_time, run_study
 from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
@@ -15,11 +16,13 @@ __all__ = [
     "OverturningScales",
     "Progress",
     "SecondMode",
+    "Structure",
     "estimate_time",
     "frequency_ratios",
     "modal_combination",
     "overturning_scales",
     "overturning_spectrum",
+    "properties_of",
     "rocking_spectrum",
     "run_study",
     "simulate",

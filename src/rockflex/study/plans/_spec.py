@@ -8,23 +8,14 @@ from pydantic import Field, PrivateAttr, ValidationError, field_validator
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
+from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, problems
 from rockflex.study._arguments import free_vibration_time, properties_of
+from rockflex.study.assumed import Assumed
 from rockflex.study.plans._bench import Assumptions, Bench, check_different
 from rockflex.study.plans._records import Records
 
 __all__ = ["Spec", "StructuresSpec"]
-
-
-class BoucWenTable(Table):
-    """The arguments of `BoucWen`."""
-
-    yield_displacement: float = Field(description="D_y of the first mode, a number in m")
-    post_yield_ratio: float = Field(0.01, description="stiffness after yielding over that before, a number")
-    gamma: float = Field(0.5, description="γ of the hysteresis, a number")
-    beta: float = Field(0.5, description="β of the hysteresis, a number")
-    exponent: float = Field(8.0, description="n of the hysteresis, a number of at least 1")
 
 
 class Spec(Table):
@@ -61,7 +52,7 @@ class Spec(Table):
         return self
 
 
-class StructuresSpec(Spec):
+class StructuresSpec(Assumed, Spec):
     """A study of given structures: what it simulates, and how."""
 
     structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
@@ -69,11 +60,6 @@ class StructuresSpec(Spec):
     free_vibration: float | Literal["settle"] = Field(
         0.0, description='the free vibration after the record, a number in s or "settle"'
     )
-    impact: Literal["simplified", "complete", "restitution"] | None = Field(
-        None, description='"simplified", "complete" or "restitution"'
-    )
-    restitution: float | None = Field(None, description="a number from 0 to 1")
-    bouc_wen: BoucWenTable | None = Field(None, description="a table")
 
     @field_validator("models")
     @classmethod
@@ -106,20 +92,9 @@ class StructuresSpec(Spec):
                 message = f"[[structures]] no. {place}{entry.name and f', {entry.name!r}'}: {error}"
                 raise InputError(message) from error
         free = free_vibration_time(self.free_vibration)
-        yielding = None if self.bouc_wen is None else BoucWen(**self.bouc_wen.model_dump())
         models = tuple(map(parse_model, self.models))
-        return Bench(
-            properties, self.records.load(self._folder), Assumptions(models, free, self._law(), yielding, friction)
-        )
-
-    def _law(self) -> ImpactLaw | None:
-        if (self.restitution is not None) != (self.impact == "restitution"):
-            message = 'restitution and impact = "restitution" go together. Give both or neither.'
-            raise InputError(message)
-        if self.restitution is not None:
-            return Restitution(self.restitution)
-        laws: dict[str | None, ImpactLaw] = {"simplified": VVELSimplified(), "complete": VVELComplete()}
-        return laws.get(self.impact)
+        assumptions = Assumptions(models, free, self.law(), self.hysteresis(), friction)
+        return Bench(properties, self.records.load(self._folder), assumptions)
 
 
 def _plain(value: Any) -> Any:
