@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from rockflex import (
+    BoucWen,
     Frame,
     GroundMotion,
     InitialState,
@@ -15,6 +16,7 @@ from rockflex import (
     Suite,
     load_suite,
     quiet_motion,
+    run_cloud,
     simulate,
     simulate_many,
 )
@@ -195,3 +197,18 @@ def test_memory_grows_with_the_table_alone():
     row = table.memory_usage(index=False, deep=True).sum() / 20.0
     # One history of this record is 100 times as large as what a run may add.
     assert (many - few) / 380.0 < 10.0 * row < motion.acceleration.nbytes
+
+
+def test_a_hysteresis_is_that_of_the_models_that_end_in_bw_or_else_of_all() -> None:
+    structure = frame()
+    yielding = BoucWen(0.03)
+    motion = load_suite("el-centro-1940")[0]
+    mixed = ["MDOF-S", "2DOF-S", "2DOF-S-BW"]
+    expected = [simulate(structure, motion, label).max_rotation for label in mixed[:2]]
+    expected.append(simulate(structure, motion, "2DOF-S", bouc_wen=yielding).max_rotation)
+    for run in (simulate_many, run_cloud):
+        table = run(structure, motion, mixed, bouc_wen=yielding)
+        assert table["max_rotation"].tolist() == expected
+        table = run(structure, motion, mixed[:2], bouc_wen=yielding)
+        assert table["max_rotation"][1] == expected[2]
+        assert "bouc_wen goes with models of one mode, but MDOF-S has 3" in table["error"][0]

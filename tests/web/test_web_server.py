@@ -14,13 +14,14 @@ import pytest
 import rockflex as rf
 from rockflex._errors import InputError
 from rockflex.web import make_app, serve
-from rockflex.web._limits import effort
+from rockflex.web._limits import pace
 from rockflex.web._presets import PRESETS
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 
 FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
+YIELDING = {"yield_displacement": 0.075}
 CSV = b"time (s),acc (m/s2)\n" + b"".join(b"%.2f,%.4f\n" % (0.02 * i, 3.0 * math.sin(0.1 * i)) for i in range(400))
 
 
@@ -59,6 +60,22 @@ def test_the_numbers_are_the_librarys(client) -> None:
     measures = {each["name"]: each["value"] for each in client.ask("/api/record", state)["measures"]}
     scaled = EL_CENTRO.scaled(1.7)
     assert (measures["PGA"], measures["PGV"], measures["Arias"]) == (scaled.pga, scaled.pgv, scaled.arias)
+
+
+def test_what_is_assumed_is_simulated(client) -> None:
+    labels = ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"]
+    answer = client.ask("/api/response", client.state(models=labels, bouc_wen=YIELDING))
+    hysteresis = [None, rf.BoucWen(0.075), rf.BoucWen(0.075)]
+    for label, shown, bouc_wen in zip(labels, answer["models"], hysteresis, strict=True):
+        expected = rf.simulate(FRAME, EL_CENTRO, label, free_vibration=5.0, bouc_wen=bouc_wen)
+        assert shown["peaks"] == json.loads(json.dumps(expected.peaks()))
+    assert answer["suggested_yield"] == pytest.approx(0.5 * EL_CENTRO.sd(1.0, 0.02), rel=0.05)
+    bouncing = client.state(models=["2DOF-S"], impact="restitution", restitution=0.8)
+    shown = client.ask("/api/response", bouncing)["models"][0]["peaks"]
+    expected = rf.simulate(FRAME, EL_CENTRO, "2DOF-S", free_vibration=5.0, impact=rf.Restitution(0.8))
+    assert shown == json.loads(json.dumps(expected.peaks()))
+    block = client.state(structure={"block": {"slenderness": 0.2, "half_diagonal": 3.0}}, models=["rigid"])
+    assert client.ask("/api/response", block)["suggested_yield"] is None
 
 
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
@@ -108,7 +125,20 @@ def test_a_bad_upload_is_refused(client) -> None:
         ({"record": {"suite": "el-centro-1940", "name": "X"}}, "record.name", "No motion of the suite"),
         ({"record": {"source": "pulse", "pulse": {"period": 36_000.0}}}, "record.pulse.period", "from 0.05 to 20"),
         ({"models": ["9DOF-S"]}, "models", "needs 8 modes, but the structure has 5"),
-        ({"models": ["2DOF-S-BW"]}, "models", "needs its hysteresis"),
+        ({"models": ["2DOF-S-BW"]}, "models", "2DOF-S-BW yields, but nothing says at what displacement."),
+        ({"models": ["MDOF-S-BW"], "bouc_wen": YIELDING}, "models", "bouc_wen goes with models of one mode"),
+        ({"impact": "restitution"}, "restitution", "go together. Give both or neither."),
+        ({"impact": "simplified", "restitution": 0.5}, "restitution", "go together. Give both or neither."),
+        ({"impact": "restitution", "restitution": 1.5}, "restitution", "1.5"),
+        (
+            {"impact": "model"},
+            "impact",
+            'it must be "simplified", "complete" or "restitution", but \'model\' was given.',
+        ),
+        ({"bouc_wen": {"yield_displacement": 1e9}}, "bouc_wen.yield_displacement", "from 1e-06 to 100"),
+        ({"bouc_wen": {"yield_displacement": 0.1, "exponent": 0.5}}, "bouc_wen.exponent", "from 1 to 50"),
+        ({"bouc_wen": {"yield_displacement": 0.1, "gamma": 0.2}}, "bouc_wen.gamma", "give back more energy"),
+        ({"bouc_wen": {}}, "bouc_wen.yield_displacement", "it is missing: D_y of the first mode"),
     ],
 )
 def test_absurd_requests_are_refused_beside_their_field(client, change, path, text) -> None:
@@ -137,7 +167,7 @@ def test_the_work_of_a_run_counts_the_frequencies_of_the_uplifted_structure() ->
         p = FRAME.rocking()
         fastest = rf.uplifted_modes(p).omega[-1] if lifted else p.omega[-1]
         expected = 1001 * (25 + fastest * 0.01 * (20 + 5 / 3) + 20)
-        assert effort(p, motion, label) == pytest.approx(expected)
+        assert pace(p, label).effort(motion, 0.0) == pytest.approx(expected)
 
 
 def test_many_stories_are_judged_in_time(client) -> None:
@@ -204,6 +234,7 @@ def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> N
         client.state(record={"source": "pulse", "pulse": {"shape": "mavroeidis", "amplitude": 0.6, "nu": 0.3}}),
         client.state(record={"source": "upload", "upload": found["upload"]}, models=["2DOF-S"]),
         client.state(structure=PRESETS[8]["structure"]),
+        client.state(impact="restitution", restitution=0.4, models=["2DOF-S-BW", "MDOF-S"], bouc_wen=YIELDING),
     ]
     for state in states:
         name, lines = client.download("/api/download/python", state)
@@ -221,7 +252,8 @@ def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> N
 
 
 def test_the_study_repeats_the_numbers(client, tmp_path) -> None:
-    state = client.state(scale=1.3, models=["2DOF-S", "MDOF-S"])
+    assumed = {"impact": "restitution", "restitution": 0.4, "bouc_wen": YIELDING}
+    state = client.state(scale=1.3, models=["2DOF-S-BW", "MDOF-S"], **assumed)
     name, content = client.download("/api/download/study", state)
     (tmp_path / name).write_bytes(content)
     table = rf.run_study(tmp_path / name)

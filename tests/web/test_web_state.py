@@ -1,5 +1,6 @@
 """What a link or a form may hold, and what is said of the rest."""
 
+import inspect
 import json
 import math
 import tomllib
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import rockflex as rf
 from rockflex.structure.file import KINDS
 from rockflex.web._forms import forms
 from rockflex.web._packing import envelope, plain
@@ -117,6 +119,9 @@ def test_the_forms_have_every_field_of_every_kind() -> None:
         fields = {each["name"]: each for each in found["kinds"][kind]["fields"]}
         assert set(fields) == set(table.model_fields)
         assert all(each["help"] and each["label"] for each in fields.values())
+    bodies = next(each for each in found["kinds"]["beam"]["fields"] if each["name"] == "lumped_masses")
+    assert (bodies["type"], [each["name"] for each in bodies["fields"]]) == ("table", ["heights", "masses", "rotary"])
+    assert [each["name"] for each in found["bouc_wen"]] == list(inspect.signature(rf.BoucWen).parameters)
     period = next(each for each in found["kinds"]["frame"]["fields"] if each["name"] == "period")
     assert (period["unit"], period["low"], period["high"], period["required"]) == ("s", 0.01, 60.0, True)
 

@@ -1,14 +1,17 @@
 """Studies that the page runs: their numbers, their end, and their privacy."""
 
+import io
 import math
 import time
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import rockflex as rf
 from rockflex.study.plans import TendonLevel, smallest_width
 from rockflex.web._jobs import Job, Jobs
+from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
@@ -100,6 +103,41 @@ def test_the_design_is_the_librarys(client, tmp_path, monkeypatch) -> None:
     name, study = client.download("/api/download/design-study", state)
     (tmp_path / name).write_bytes(study)
     assert rf.run_study(tmp_path / name)["max_rotation"].tolist() == found["max_rotation"].tolist()
+
+
+def test_studies_have_the_assumptions_of_the_response(client, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assumed = {"impact": "complete", "bouc_wen": {"yield_displacement": 0.05}}
+    state = client.state(
+        **assumed,
+        cloud=CLOUD | {"models": ["2DOF-S", "2DOF-S-BW"]},
+        design=DESIGN | {"model": "2DOF-S-BW", "tendons": [0.0]},
+    )
+    for kind in ("cloud", "design"):
+        token = client.ask(f"/api/study/{kind}", state)["token"]
+        assert client.wait(kind, token, state, 120.0)["status"] == "done"
+        _, lines = client.download(f"/api/download/{kind}-python", state)
+        space: dict = {}
+        exec(compile(lines, "study.py", "exec"), space)
+        name, study = client.download(f"/api/download/{kind}-study", state)
+        (tmp_path / name).write_bytes(study)
+        again = rf.run_study(tmp_path / name)
+        assert again["error"].isna().all()
+        assert space["runs"]["max_rotation"].tolist() == again["max_rotation"].tolist()
+        if kind == "cloud":
+            runs = pd.read_csv(io.BytesIO(client.download(f"/api/study/cloud/{token}/table", state)[1]))
+            assert runs["max_rotation"].tolist() == again["max_rotation"].tolist()
+            elastic, yielding = (part["max_rotation"].to_numpy() for _, part in runs.groupby("model"))
+            assert (elastic != yielding).any()
+
+
+def test_a_narrow_base_of_a_search_is_refused_where_its_runs_take_too_long(client) -> None:
+    narrow = {"lumped": PRESETS[10]["structure"]["lumped"] | {"half_width": 0.004}}
+    design = DESIGN | {"model": "MDOF-S", "narrowest": 0.2}
+    state = client.state(structure=narrow, design=design)
+    assert "MDOF-S with 2 modes" in client.refused("/api/study/design", state)["design"]
+    state["design"]["narrowest"] = 0.9
+    client.request(f"/api/job/{client.ask('/api/study/design', state)['token']}", method="DELETE")
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from typing import Any, Literal, Protocol, get_args
 from rockflex._checks import finite_vector, real_or_nan
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, NonlinearModel, RockingModel
+from rockflex.models import BoucWen, ImpactLaw, Model, NonlinearModel, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.study._initial import InitialState
 
@@ -22,6 +22,7 @@ __all__ = [
     "described",
     "factors_of",
     "free_vibration_time",
+    "hysteresis_of",
     "is_structure",
     "positive_numbers",
     "properties_of",
@@ -110,6 +111,12 @@ def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
             "rotation_velocity)`."
         )
         raise InputError(message)
+
+
+def hysteresis_of(models: Sequence[Model], bouc_wen: BoucWen | None) -> list[BoucWen | None]:
+    """The hysteresis of each model: of those whose label says that they yield (-BW), of all where none says so."""
+    chosen = any(model.yields for model in models)
+    return [bouc_wen if model.yields or not chosen else None for model in models]
 
 
 def check_settling(model: RockingModel, free_vibration: float | None) -> None:

@@ -90,8 +90,9 @@ def run_study(
         tables: dict[int, pa.Table] = {}
         _compute(plan, range(plan.n_chunks), tables.__setitem__, workers, dask, progress)
         return to_frame(*(tables[number] for number in range(plan.n_chunks)))
+    checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
-        folder, spec.document(), plan.n_chunks, _versions(), plan.checksums, any_version=any_version
+        folder, spec.document(), plan.n_chunks, _versions(), checksums, any_version=any_version
     ) as kept:
         _compute(plan, kept.missing(), kept.write, workers, dask, progress)
         return to_frame(kept.table())

@@ -19,6 +19,7 @@ from rockflex.study._arguments import (
     check_settling,
     factors_of,
     free_vibration_time,
+    hysteresis_of,
     is_structure,
     properties_of,
     sequence_of,
@@ -63,7 +64,8 @@ def simulate_many(
     scales
         Factor on the acceleration, or a sequence of factors.
     free_vibration, bouc_wen, impact, initial
-        As in `simulate`. A `bouc_wen` needs models of one mode throughout. The same initial state serves all models;
+        As in `simulate`. A `bouc_wen` goes to the models whose label ends in "-BW"; where none does, to all,
+        which must then have one mode. The same initial state serves all models;
         for a model with fewer modes than it has values, or with a fixed base where it rotates, the run is one that
         cannot be solved.
     workers
@@ -94,6 +96,7 @@ def simulate_many(
         "models", models, lambda given: isinstance(given, str | Model), 'a label such as "2DOF-S", or a Model'
     )
     chosen = [parse_model(model) for model in labels]
+    yielding = hysteresis_of(chosen, bouc_wen)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
     free = free_vibration_time(free_vibration)
     shape = (len(everything), len(records), len(chosen), len(factors))
@@ -114,7 +117,9 @@ def simulate_many(
             motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
             prepared = engines[which]
             if prepared is None:
-                prepared = engines[which] = _prepare(everything[index], chosen[which], output, free, impact, bouc_wen)
+                prepared = engines[which] = _prepare(
+                    everything[index], chosen[which], output, free, impact, yielding[which]
+                )
             if isinstance(prepared, str):
                 table.errors[row] = prepared
                 continue

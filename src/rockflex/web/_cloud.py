@@ -1,7 +1,6 @@
 """The Fragility tab: a cloud of runs, and the curves through what has come of it."""
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,32 +8,23 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import CloudFits, OutcomeFragility, bootstrap_band, fit_clouds, fit_outcomes
-from rockflex.modal import RockingProperties
-from rockflex.study.plans import CloudStudy, to_frame
+from rockflex.study.plans import CloudPlan, CloudStudy
 from rockflex.web._jobs import Job
-from rockflex.web._limits import RUNS, check_motion, check_run, effort
 from rockflex.web._packing import plain
-from rockflex.web._refusal import Refusal
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
+from rockflex.web._studies import UNITS, planned, runs_of, shared, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.study.plans import ChunkedPlan
-
-__all__ = ["UNITS", "check_effort", "cloud_plan", "cloud_study", "cloud_view", "table_of"]
+__all__ = ["cloud_plan", "cloud_study", "cloud_view"]
 
 Array = NDArray[np.float64]
 
 GRID = 60  # points of a curve
 FEWEST = 12  # runs before a curve is fitted
 RESAMPLES = 60
-EFFORT = 6e9  # of all runs: some ten minutes
-UNITS = {
-    "pga": "m/s²", "pgv": "m/s", "pgd": "m", "arias": "m/s", "cav": "m/s", "sd_t1": "m", "sa_t1": "m/s²",
-    "relative_pga": "", "relative_pgv": "",
-}  # fmt: skip
 
 
 def cloud_study(state: State) -> CloudStudy:
@@ -45,23 +35,16 @@ def cloud_study(state: State) -> CloudStudy:
     Refusal
         If it is not one.
     """
-    content: dict[str, Any] = {
-        "name": state.structure.name or "Cloud",
-        "structures": [state.structure.model_dump(exclude_none=True)],
-        "records": {"suites": list(state.cloud.suites)},
-        "models": list(state.cloud.models),
-        "scales": list(state.cloud.scales),
-        "free_vibration": "settle",
-        "impact": None if state.impact == "model" else state.impact,
-        "runs_per_chunk": 24,
+    choice = state.cloud
+    content = shared(state, choice.models, "Cloud") | {
+        "records": {"suites": list(choice.suites)},
+        "models": list(choice.models),
+        "scales": list(choice.scales),
     }
-    try:
-        return CloudStudy(**content)
-    except InputError as error:
-        raise Refusal({"cloud": str(error)}) from error
+    return study_of(CloudStudy, content, "cloud")
 
 
-def cloud_plan(state: State) -> "ChunkedPlan":
+def cloud_plan(state: State) -> CloudPlan:
     """Return the runs of a state's cloud, cut into small chunks.
 
     Raises
@@ -69,37 +52,8 @@ def cloud_plan(state: State) -> "ChunkedPlan":
     Refusal
         If it cannot be made, or has too many runs for a page, or takes too long.
     """
-    built = build(state.structure)
-    try:
-        plan = cloud_study(state).plan()
-    except InputError as error:
-        raise Refusal({"cloud": str(error)}) from error
-    if plan.n_runs > RUNS:
-        message = f"the cloud has {plan.n_runs} runs, but the page takes {RUNS} at most. Use rockflex cloud."
-        raise Refusal({"cloud": message})
-    check_effort(plan, built.properties, state.cloud.models, len(state.cloud.scales), "cloud")
-    return plan
-
-
-def check_effort(
-    plan: "ChunkedPlan", properties: RockingProperties, labels: Sequence[str], runs_each: int, path: str
-) -> None:
-    """Refuse a study whose runs take too long, one by one or together."""
-    work = 0.0
-    for label in labels:
-        for motion in plan.motions:
-            check_motion(motion, f"{path}.suites")
-            check_run(properties, motion, label, 0.0)
-            work += effort(properties, motion, label) * runs_each
-    if work > EFFORT:
-        message = "it takes too long for a page. Choose models with fewer modes, or use the command line."
-        raise Refusal({path: message})
-
-
-def table_of(job: Job) -> "pd.DataFrame | None":
-    """Return the table of the runs so far; None if there are none."""
-    tables = list(job.tables)
-    return to_frame(*tables) if tables else None
+    build(state.structure)  # for its messages, which stand beside the fields
+    return planned(cloud_study(state), "cloud")
 
 
 def cloud_view(job: Job, state: State) -> dict[str, Any]:
@@ -114,7 +68,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
         "curves": [],
         "notes": [],
     }
-    runs = table_of(job)
+    runs = runs_of(job)
     if runs is None:
         return view
     solved = runs[runs["status"].notna() & runs[choice.measure].notna()]

@@ -5,19 +5,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._errors import InputError, SolverError
-from rockflex.study.plans import DesignStudy, design_table, smallest_width
-from rockflex.web._cloud import UNITS, check_effort, table_of
+from rockflex.study.plans import CloudPlan, DesignStudy, design_table, smallest_width
 from rockflex.web._jobs import Job
-from rockflex.web._limits import RUNS
 from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build
+from rockflex.web._studies import UNITS, planned, runs_of, shared, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from rockflex.study.plans import ChunkedPlan
 
 __all__ = ["design_plan", "design_study", "design_table_of", "design_view", "limit_of"]
 
@@ -49,28 +46,21 @@ def design_study(state: State) -> DesignStudy:
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0
             levels.append({"prestress_ratio": force, "stiffness_ratio": stiffness, "name": name})
-    content: dict[str, Any] = {
-        "name": state.structure.name or "Design",
-        "structures": [state.structure.model_dump(exclude_none=True)],
+    content = shared(state, [choice.model], "Design") | {
         "records": {"suites": list(choice.suites)},
         "models": [choice.model],
         "scales": list(choice.scales),
         "half_widths": [float(f"{width:.6g}") for width in widths],
         "tendons": levels,
-        "impact": None if state.impact == "model" else state.impact,
         "measure": choice.measure,
         "level": choice.at,
         "limits": [limit_of(choice)],
         "target": choice.target,
-        "runs_per_chunk": 24,
     }
-    try:
-        return DesignStudy(**content)
-    except InputError as error:
-        raise Refusal({"design": str(error)}) from error
+    return study_of(DesignStudy, content, "design")
 
 
-def design_plan(state: State) -> "ChunkedPlan":
+def design_plan(state: State) -> CloudPlan:
     """Return the runs of a state's design study, cut into small chunks.
 
     Raises
@@ -78,17 +68,7 @@ def design_plan(state: State) -> "ChunkedPlan":
     Refusal
         If it cannot be made, or has too many runs for a page, or takes too long.
     """
-    built = build(state.structure)
-    try:
-        plan = design_study(state).plan()
-    except InputError as error:
-        raise Refusal({"design": str(error)}) from error
-    if plan.n_runs > RUNS:
-        message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use rockflex design."
-        raise Refusal({"design": message})
-    each = plan.n_runs // len(plan.motions)
-    check_effort(plan, built.properties, [state.design.model], each, "design")
-    return plan
+    return planned(design_study(state), "design")
 
 
 def design_table_of(job: Job, choice: DesignChoice) -> "pd.DataFrame | None":
@@ -99,7 +79,7 @@ def design_table_of(job: Job, choice: DesignChoice) -> "pd.DataFrame | None":
     Refusal
         If the question cannot be answered.
     """
-    runs = table_of(job)
+    runs = runs_of(job)
     if runs is None:
         return None
     try:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.web._cloud import cloud_study, table_of
+from rockflex.models import parse_model
+from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, design_table_of
 from rockflex.web._jobs import Job
 from rockflex.web._records import motion_of
@@ -17,6 +18,7 @@ from rockflex.web._refusal import Refusal
 from rockflex.web._response import responses
 from rockflex.web._script import cloud_script, design_script, response_script
 from rockflex.web._state import State
+from rockflex.web._studies import runs_of
 from rockflex.web._toml import toml
 from rockflex.web._uploads import Uploads, clean_name
 
@@ -135,8 +137,7 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
         "scales": [state.scale],
         "free_vibration": state.free_vibration,
     }
-    if state.impact != "model":
-        content["impact"] = state.impact
+    content |= state.assumed(yields=any(parse_model(label).yields for label in state.models))
     structure = state.structure.model_dump(exclude_none=True)
     return "study.toml", head + toml(content | {"records": records, "structures": [structure]})
 
@@ -206,7 +207,7 @@ def design_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
 
 
 def _runs(job: Job) -> "pd.DataFrame":
-    runs = table_of(job)
+    runs = runs_of(job)
     if runs is None:
         message = "No run has come yet."
         raise Refusal(message)

@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from rockflex.structure.file import KINDS, Table, TendonTable
+from rockflex.study.assumed import BoucWenTable
 from rockflex.web._limits import INFINITE, RANGES
 from rockflex.web._packing import plain
 from rockflex.web._presets import PRESETS
@@ -44,9 +45,11 @@ _TAIL = re.compile(r",? an? (whole )?number( or one for each \w+)?( from 0 to in
 
 
 def forms() -> dict[str, Any]:
-    """Return the fields of every kind of structure and of a tendon, and the presets."""
+    """Return the fields of every kind of structure, of a tendon and of a hysteresis, and the presets."""
     kinds = {name: {"title": TITLES.get(name, name), "fields": _fields(table)} for name, table in KINDS.items()}
-    return plain({"kinds": kinds, "tendon": _fields(TendonTable), "presets": PRESETS})
+    return plain(
+        {"kinds": kinds, "tendon": _fields(TendonTable), "bouc_wen": _fields(BoucWenTable), "presets": PRESETS}
+    )
 
 
 def _fields(table: type[Table]) -> list[dict[str, Any]]:
@@ -70,6 +73,7 @@ def _field(name: str, field: FieldInfo) -> dict[str, Any]:
         "low": low,
         "high": high,
         "infinite": name in INFINITE,
+        "fields": _fields(inner) if (inner := _table(field.annotation)) is not None else None,
     }
 
 
@@ -108,6 +112,12 @@ def _type(annotation: Any) -> str:
     if int in parts and float not in parts:
         return "whole"
     return "number" if float in parts else "table"
+
+
+def _table(annotation: Any) -> type[Table] | None:
+    """The table that a field holds, if it holds one."""
+    tables = (part for part in _parts(annotation) if isinstance(part, type) and not get_args(part))
+    return next((part for part in tables if issubclass(part, Table)), None)
 
 
 def _choices(annotation: Any) -> list[str]:

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.web._refusal import Refusal
+
+if TYPE_CHECKING:
+    from rockflex.study.plans import CloudPlan
 
 __all__ = [
     "BODY",
@@ -21,8 +25,8 @@ __all__ = [
     "RUNS",
     "check_motion",
     "check_numbers",
-    "check_run",
-    "effort",
+    "check_runs",
+    "pace",
 ]
 
 FILE = 5_000_000  # bytes of an upload
@@ -31,9 +35,10 @@ FREEDOMS = 200  # stories, masses, rows of a matrix
 SAMPLES = 200_000
 DURATION = 300.0  # s of a record
 MODELS = 4  # side by side
-RUNS = 20_000  # of a cloud
-EFFORT = 4e7  # of one run, see `effort`: some seconds
-SWINGS = 2e6  # duration times the highest circular frequency, of a complete model
+RUNS = 20_000  # of a study
+EFFORT = 4e7  # of one run, see `Pace.effort`: some seconds
+STUDY_EFFORT = 6e9  # of all runs of a study: some ten minutes
+SWINGS = 2e6  # duration times the highest circular frequency, of a model that is integrated
 
 INFINITE = frozenset({"stiffness_ratio", "stiffness_parameter", "beam_stiffness"})
 LARGEST = 1e15
@@ -61,6 +66,11 @@ RANGES: dict[str, tuple[float, float]] = {
     "half_diagonal": (1e-3, 1000.0),
     "stiffness_ratio": (0.0, math.inf),
     "stiffness_parameter": (0.0, math.inf),
+    "yield_displacement": (1e-6, 100.0),
+    "post_yield_ratio": (0.0, 0.99),
+    "gamma": (1e-3, 10.0),
+    "beta": (-10.0, 10.0),
+    "exponent": (1.0, 50.0),
 }
 """Least and largest value of a field by its name, whichever structure it belongs to."""
 
@@ -114,42 +124,53 @@ def check_motion(motion: GroundMotion, path: str) -> None:
         raise Refusal({path: message})
 
 
-def effort(properties: RockingProperties, motion: GroundMotion, label: str, free_vibration: float = 0.0) -> float:
-    """Return about how much work a run is, in some 1e-7 s: n (k² + ω dt (20 + k/3)), as was measured.
+@dataclass(frozen=True)
+class Pace:
+    """What the work of a model grows with.
 
-    Here n is the number of samples, k that of modes, and ω the fastest circular frequency, uplifted or not.
+    Attributes
+    ----------
+    label
+        Model.
+    modes
+        How many it has of the structure's.
+    fastest
+        Its highest circular frequency in rad/s, on the ground or uplifted: on a very narrow base far above ω_k.
     """
-    modes = _modes(properties, label)
-    samples = motion.acceleration.size + free_vibration / motion.dt
-    return samples * (modes**2 + _fastest(properties, label) * motion.dt * (20.0 + modes / 3.0) + 20.0)
+
+    label: str
+    modes: int
+    fastest: float
+
+    def effort(self, motion: GroundMotion, free_vibration: float) -> float:
+        """Return about how much work a run is, in some 1e-7 s: n (k² + ω dt (20 + k/3)) for n samples, as measured."""
+        samples = motion.acceleration.size + free_vibration / motion.dt
+        return samples * (self.modes**2 + self.fastest * motion.dt * (20.0 + self.modes / 3.0) + 20.0)
+
+    def check(self, motion: GroundMotion, free_vibration: float, path: str) -> float:
+        """Return the effort, or refuse a run that would keep the page busy for long."""
+        work = self.effort(motion, free_vibration)
+        model = parse_model(self.label)
+        swings = (motion.duration + free_vibration) * self.fastest
+        if work > EFFORT or ((model.complete or model.yields) and swings > SWINGS):
+            message = (
+                f"{self.label} with {self.modes} modes over {motion.acceleration.size} samples takes too long for a "
+                "page. Choose a model with fewer modes, a wider base or a shorter record, or use the library."
+            )
+            raise Refusal({path: message})
+        return work
 
 
-def check_run(properties: RockingProperties, motion: GroundMotion, label: str, free_vibration: float) -> None:
-    """Refuse a run that would keep the page busy for long."""
-    slow = effort(properties, motion, label, free_vibration) > EFFORT
-    if parse_model(label).complete:
-        slow |= (motion.duration + free_vibration) * _fastest(properties, label) > SWINGS
-    if slow:
-        message = (
-            f"{label} with {_modes(properties, label)} modes over {motion.acceleration.size} samples takes too long "
-            "for a page. Choose a model with fewer modes, a wider base or a shorter record, or use the library."
-        )
-        raise Refusal({"models": message})
-
-
-def _modes(properties: RockingProperties, label: str) -> int:
+def pace(properties: RockingProperties, label: str) -> Pace:
+    """Return the pace of a model of a structure."""
     count = parse_model(label).n_modes
-    return properties.n_modes if count is None else min(count, properties.n_modes)
-
-
-def _fastest(properties: RockingProperties, label: str) -> float:
-    """Highest circular frequency of a model; on a very narrow base that of the uplifted structure is far above ω_k."""
-    modes = _modes(properties, label)
+    modes = properties.n_modes if count is None else min(count, properties.n_modes)
     if not modes:
-        return 0.0
+        return Pace(label, 0, 0.0)
     p = properties.truncated(modes)
+    highest = float(p.omega[-1])
     if not parse_model(label).lifts:
-        return float(p.omega[-1])
+        return Pace(label, modes, highest)
     mass = np.eye(modes + 1)
     mass[0, 0] = p.i_theta
     mass[0, 1:] = mass[1:, 0] = np.sqrt(p.effective_mass) * p.effective_height
@@ -159,5 +180,23 @@ def _fastest(properties: RockingProperties, label: str) -> float:
 
         squares = eigh(stiffness, mass, eigvals_only=True)
     except np.linalg.LinAlgError:  # the inertia that is left to rotate is rounding
-        return math.inf
-    return math.sqrt(max(float(squares[-1]), float(p.omega[-1]) ** 2))
+        return Pace(label, modes, math.inf)
+    return Pace(label, modes, max(math.sqrt(max(float(squares[-1]), 0.0)), highest))
+
+
+def check_runs(plan: "CloudPlan", path: str) -> None:
+    """Refuse a study that has too many runs, or whose runs take too long, one by one or together."""
+    if plan.n_runs > RUNS:
+        message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use the command line."
+        raise Refusal({path: message})
+    bench = plan.bench
+    each = plan.n_runs / (len(bench.structures) * len(bench.labels) * len(bench.motions))
+    free = bench.assumptions.free_vibration or 0.0
+    work = 0.0
+    for properties in bench.structures:
+        for label in bench.labels:
+            known = pace(properties, label)
+            work += each * sum(known.check(motion, free, path) for motion in bench.motions)
+    if work > STUDY_EFFORT:
+        message = "it takes too long for a page. Choose models with fewer modes, or use the command line."
+        raise Refusal({path: message})

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
-from rockflex.models import ImpactLaw, VVELComplete, VVELSimplified
+from rockflex.modal import RockingProperties
+from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
 from rockflex.study import simulate
-from rockflex.web._limits import check_run, effort
+from rockflex.web._limits import pace
 from rockflex.web._packing import envelope, pack, plain
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
@@ -18,7 +19,7 @@ from rockflex.web._state import State
 from rockflex.web._structures import Built, build
 from rockflex.web._uploads import Uploads
 
-__all__ = ["PEAK_ROWS", "impact_of", "response_view", "responses"]
+__all__ = ["PEAK_ROWS", "response_view", "responses"]
 
 Array = NDArray[np.float64]
 
@@ -34,12 +35,6 @@ PEAK_ROWS = (
 )
 
 
-def impact_of(state: State) -> ImpactLaw | None:
-    """Return the impact law of a state; None for the model's own."""
-    laws: dict[str, ImpactLaw] = {"simplified": VVELSimplified(), "complete": VVELComplete()}
-    return laws.get(state.impact)
-
-
 def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list[Response]]:
     """Simulate what a state asks for.
 
@@ -51,12 +46,12 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     built = build(state.structure)
     motion = motion_of(state.record, uploads).scaled(state.scale)
     found: list[Response] = []
+    free, law = state.free_vibration, state.law()
     for label in state.models:
-        check_run(built.properties, motion, label, state.free_vibration)
+        pace(built.properties, label).check(motion, free, "models")
+        yielding = state.hysteresis() if parse_model(label).yields else None
         try:
-            found.append(
-                simulate(built.structure, motion, label, free_vibration=state.free_vibration, impact=impact_of(state))
-            )
+            found.append(simulate(built.structure, motion, label, free_vibration=free, bouc_wen=yielding, impact=law))
         except (InputError, SolverError) as error:
             raise Refusal({"models": f"{label}: {error}"}) from error
     return built, motion, found
@@ -78,9 +73,18 @@ def response_view(state: State, uploads: Uploads, focus: str = "") -> dict[str, 
             "tendons": [tendon.position for tendon in p.tendons],
             "nominal": p.nominal_overturning_rotation,
             "models": [_curves(built, response) for response in found],
-            "energy": _energy(main, effort(p, motion, main.model, state.free_vibration)),
+            "suggested_yield": _suggested_yield(p, motion),
+            "energy": _energy(main, pace(p, main.model).effort(motion, state.free_vibration)),
         }
     )
+
+
+def _suggested_yield(p: RockingProperties, motion: GroundMotion) -> float | None:
+    """Half of what the first mode would move on a fixed base, in m: a yield displacement to begin with."""
+    if not p.n_modes:
+        return None
+    largest = motion.sd(2.0 * np.pi / float(p.omega[0]), float(p.zeta[0]))
+    return float(f"{min(max(0.5 * largest, 1e-4), 10.0):.2g}")
 
 
 def _curves(built: Built, response: Response) -> dict[str, Any]:

@@ -1,13 +1,17 @@
 """The Python lines that repeat what the page shows."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from rockflex.modal import Tendon
+from rockflex.models import parse_model
 from rockflex.structure import LumpedMasses
 from rockflex.structure.file import StructureEntry
+from rockflex.study.assumed import Assumed
+from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, limit_of
 from rockflex.web._records import PULSES
 from rockflex.web._state import PulseChoice, State
@@ -18,6 +22,8 @@ __all__ = ["cloud_script", "design_script", "record_file", "response_script"]
 def response_script(state: State, upload_name: str = "record") -> str:
     """Return a program that simulates what the Response tab shows, in `responses` by model."""
     extra = f", free_vibration={state.free_vibration!r}{_law(state)}"
+    if yields := _yields(state.models):
+        extra += ', bouc_wen=yielding if model.endswith("-BW") else None'
     return "\n".join(
         [
             "import numpy as np",
@@ -25,6 +31,7 @@ def response_script(state: State, upload_name: str = "record") -> str:
             "",
             *_structure(state.structure),
             *_motion(state, upload_name),
+            *([_hysteresis(state)] if yields else []),
             "",
             f"models = {list(state.models)!r}",
             f"responses = {{model: rf.simulate(structure, motion, model{extra}) for model in models}}",
@@ -42,7 +49,7 @@ def response_script(state: State, upload_name: str = "record") -> str:
 
 def cloud_script(state: State) -> str:
     """Return a program that repeats the cloud of the Fragility tab, with its table in `runs`."""
-    cloud = state.cloud
+    cloud, study = state.cloud, cloud_study(state)
     records = " + ".join(f"list(rf.load_suite({name!r}))" for name in cloud.suites)
     lines = [
         "import numpy as np",
@@ -50,8 +57,9 @@ def cloud_script(state: State) -> str:
         "",
         *_structure(state.structure),
         f"motions = {records}",
+        *([_hysteresis(state)] if study.bouc_wen else []),
         f"runs = rf.run_cloud(structure, motions, {list(cloud.models)!r}, scales={list(cloud.scales)!r}, "
-        f'free_vibration="settle"{_law(state)})',
+        f"free_vibration={study.free_vibration!r}{_law(state)}{_yielding(study)})",
         f"im = np.geomspace(runs[{cloud.measure!r}].min(), runs[{cloud.measure!r}].max(), 60)",
         "curves = {}",
         f"for fit in rf.fit_clouds(runs, {cloud.measure!r}, nominal={cloud.limit == 'nominal'}):",
@@ -82,8 +90,9 @@ def design_script(state: State) -> str:
             f"motions = {records}",
             f"half_widths = {study.half_widths!r}",
             f"tendons = [{', '.join(levels)}]",
+            *([_hysteresis(state)] if study.bouc_wen else []),
             f"runs = rf.run_design(structure, motions, half_widths, tendons, {choice.model!r}, "
-            f"scales={list(choice.scales)!r}{_law(state)})",
+            f"scales={list(choice.scales)!r}, free_vibration={study.free_vibration!r}{_law(state)}{_yielding(study)})",
             f"table = rf.design_table(runs, {limit_of(choice)!r}, measure={choice.measure!r}, at={choice.at!r})",
             f"answer = smallest_width(table, {choice.target!r})",
             "print(answer)",
@@ -100,9 +109,19 @@ def record_file(upload_name: str) -> str:
 
 def _law(state: State) -> str:
     """The argument that names an impact law; none where the model has its own."""
-    return {"simplified": ", impact=rf.VVELSimplified()", "complete": ", impact=rf.VVELComplete()"}.get(
-        state.impact, ""
-    )
+    return "" if state.impact is None else f", impact=rf.{state.law()!r}"
+
+
+def _yields(labels: Sequence[str]) -> bool:
+    return any(parse_model(label).yields for label in labels)
+
+
+def _hysteresis(state: State) -> str:
+    return f"yielding = rf.{state.hysteresis()!r}"
+
+
+def _yielding(study: Assumed) -> str:
+    return "" if study.bouc_wen is None else ", bouc_wen=yielding"
 
 
 def _structure(entry: StructureEntry) -> list[str]:

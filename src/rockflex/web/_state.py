@@ -6,8 +6,10 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, StringConstraints, ValidationError
 
+from rockflex._errors import InputError
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table
+from rockflex.study.assumed import Assumed
 from rockflex.web._limits import MODELS, check_numbers
 from rockflex.web._refusal import Refusal
 
@@ -84,7 +86,7 @@ class DesignChoice(Table):
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 
 
-class State(Table):
+class State(Assumed):
     """All that the page shows."""
 
     tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
@@ -97,11 +99,13 @@ class State(Table):
     free_vibration: float = Field(
         5.0, ge=0.0, le=60.0, description="the free vibration after the record in s, from 0 to 60"
     )
-    impact: Literal["model", "simplified", "complete"] = Field(
-        "model", description='"model", "simplified" or "complete"'
-    )
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
+
+    def assumed(self, *, yields: bool) -> dict[str, Any]:
+        """Impact law and hysteresis as keys of a study, the hysteresis only where something yields."""
+        names = {"impact", "restitution", *(["bouc_wen"] if yields else [])}
+        return self.model_dump(include=names, exclude_none=True)
 
 
 def parse_json(body: bytes) -> Any:
@@ -139,19 +143,41 @@ def parse_state(content: Any) -> State:
         message = "The link is nested too deep."
         raise Refusal(message) from error
     check_numbers("structure", state.structure.model_dump(exclude={"name"}))
+    _check_models(state)
+    _check_assumed(state)
+    return state
+
+
+def _check_models(state: State) -> None:
     for path, labels in (
         ("models", state.models),
         ("cloud.models", state.cloud.models),
         ("design.model", [state.design.model]),
     ):
         try:
-            for label in labels:
-                parse_model(label)
+            yields = [label for label in labels if parse_model(label).yields]
         except ValueError as error:
             raise Refusal({path: str(error)}) from error
         if len(set(labels)) < len(labels):
             raise Refusal({path: "the same model is chosen twice."})
-    return state
+        if yields and state.bouc_wen is None:
+            message = f"{yields[0]} yields, but nothing says at what displacement. Choose it on the Response tab."
+            raise Refusal({path: message})
+
+
+def _check_assumed(state: State) -> None:
+    try:
+        state.law()
+    except InputError as error:
+        raise Refusal({"restitution": str(error)}) from error
+    if state.bouc_wen is None:
+        return
+    check_numbers("bouc_wen", state.bouc_wen.model_dump())
+    try:
+        state.hysteresis()
+    except InputError as error:
+        said = str(error)
+        raise Refusal({f"bouc_wen.{said.split()[0]}": said}) from error
 
 
 def _infinite(value: Any) -> Any:

@@ -14,6 +14,7 @@ from rockflex.study._arguments import (
     Structure,
     check_options,
     free_vibration_time,
+    hysteresis_of,
     is_structure,
     properties_of,
     sequence_of,
@@ -28,7 +29,11 @@ __all__ = ["Assumptions", "Bench", "bench_of", "check_different", "record_column
 
 @dataclass(frozen=True)
 class Assumptions:
-    """What all runs of a study share; None of `free_vibration` is until settled."""
+    """What all runs of a study share.
+
+    None of `free_vibration` is until settled; `bouc_wen` is that of the models whose label ends in "-BW", or of all
+    where none does.
+    """
 
     models: tuple[Model, ...]
     free_vibration: float | None = 0.0
@@ -55,6 +60,7 @@ class Bench:
             )
             raise InputError(message)
         self._facts = record_facts(motions)
+        self._yielding = hysteresis_of(assumptions.models, assumptions.bouc_wen)
         self._engines: dict[tuple[int, int], tuple[RockingModel, Engine] | str] = {}
         self._measures: dict[tuple[int, int], dict[str, float]] = {}
 
@@ -110,7 +116,7 @@ class Bench:
         """A model tied to a structure and its engine, or why there is none."""
         given = self.assumptions
         try:
-            tied = given.models[model].of(self.structures[structure], given.impact, given.bouc_wen)
+            tied = given.models[model].of(self.structures[structure], given.impact, self._yielding[model])
             return tied, make_engine(tied, "peaks")
         except InputError as error:
             return str(error)

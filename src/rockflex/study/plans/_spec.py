@@ -46,6 +46,10 @@ class Spec(Table):
         """Everything that determines the study, as JSON has it: infinite numbers as "inf", what is None left out."""
         return _plain(self.model_dump(exclude_none=True))
 
+    def checksums(self) -> dict[str, str]:
+        """SHA-256 of the numbers in each file that a structure names, by its place in the document."""
+        return {}
+
     def read_from(self, folder: Path) -> Self:
         """Take the paths in it from a folder, in place of the working directory; return it."""
         self._folder = folder
@@ -73,6 +77,14 @@ class StructuresSpec(Assumed, Spec):
     def _seconds(cls, value: float | Literal["settle"]) -> float | Literal["settle"]:
         free_vibration_time(value)
         return value
+
+    def checksums(self) -> dict[str, str]:
+        """SHA-256 of the numbers in each file that a structure names, by its place in the document."""
+        return {
+            f"structures[{place}].{key}": value
+            for place, entry in enumerate(self.structures)
+            for key, value in entry.checksums(self._folder).items()
+        }
 
     def bench(self, *, friction: bool = False) -> Bench:
         """Build the structures and load the records.

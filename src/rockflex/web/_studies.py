@@ -1,0 +1,74 @@
+"""What the studies of the page have in common: their structure and assumptions, their limits, and their table."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rockflex._errors import InputError
+from rockflex.models import parse_model
+from rockflex.study.plans import CloudPlan, CloudStudy, DesignStudy, to_frame
+from rockflex.web._jobs import Job
+from rockflex.web._limits import check_runs
+from rockflex.web._refusal import Refusal
+from rockflex.web._state import State
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["UNITS", "planned", "runs_of", "shared", "study_of"]
+
+PER_CHUNK = 24  # runs between two looks at whether to go on
+CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
+UNITS = {
+    "pga": "m/s²", "pgv": "m/s", "pgd": "m", "arias": "m/s", "cav": "m/s", "sd_t1": "m", "sa_t1": "m/s²",
+    "relative_pga": "", "relative_pgv": "",
+}  # fmt: skip
+
+AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
+
+
+def shared(state: State, labels: Sequence[str], name: str) -> dict[str, Any]:
+    """Return the part of a study's content that the tabs before it determine; `name` is for a nameless structure."""
+    yields = any(parse_model(label).yields for label in labels)
+    return {
+        "name": state.structure.name or name,
+        "structures": [state.structure.model_dump(exclude_none=True)],
+        "free_vibration": CALM if yields else "settle",
+        "runs_per_chunk": PER_CHUNK,
+        **state.assumed(yields=yields),
+    }
+
+
+def study_of(kind: type[AnyStudy], content: dict[str, Any], path: str) -> AnyStudy:
+    """Return a study.
+
+    Raises
+    ------
+    Refusal
+        If it is not one.
+    """
+    try:
+        return kind(**content)
+    except InputError as error:
+        raise Refusal({path: str(error)}) from error
+
+
+def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
+    """Return the runs of a study, cut into small chunks.
+
+    Raises
+    ------
+    Refusal
+        If they cannot be made, are too many for a page, or take too long.
+    """
+    try:
+        plan = study.plan()
+    except InputError as error:
+        raise Refusal({path: str(error)}) from error
+    check_runs(plan, path)
+    return plan
+
+
+def runs_of(job: Job) -> "pd.DataFrame | None":
+    """Return the table of the runs so far; None if there are none."""
+    tables = list(job.tables)
+    return to_frame(*tables) if tables else None
