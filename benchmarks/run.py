@@ -13,6 +13,7 @@ import nonlinear
 import numpy as np
 import opensees
 import studies
+import web_latency
 from numba import njit
 from rich.console import Console
 from rich.table import Table
@@ -48,6 +49,7 @@ def main() -> None:
     console.print(nonlinear.table(motion))
     console.print(studies.table())
     console.print(opensees.table())
+    console.print(web_latency.table())
     console.print(memory())
     console.print(studies.memory())
 

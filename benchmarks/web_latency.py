@@ -117,25 +117,28 @@ def reach(port: int) -> Visitor:
     raise RuntimeError(message)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sessions", type=int, default=20)
-    parser.add_argument("--seconds", type=float, default=15.0)
-    given = parser.parse_args()
-    table = Table(
-        "", "answers", "a second", "median", "95 %", "longest", title=f"latency in ms, {given.sessions} visitors"
-    )
+def table(sessions: int = 20, seconds: float = 15.0) -> Table:
+    """Latencies alone and beside a cloud."""
+    shown = Table("", "answers", "a second", "median", "95 %", "longest", title=f"latency in ms, {sessions} visitors")
     for cloud in (False, True):
-        times, done = measure(given.sessions, given.seconds, cloud=cloud)
+        times, done = measure(sessions, seconds, cloud=cloud)
         beside = f", beside a cloud ({done} runs done)" if cloud else ""
         for kind, values in times.items():
             if len(values) < 2:
                 continue
             ordered = sorted(values)
-            shown = (statistics.median(ordered), ordered[int(0.95 * (len(ordered) - 1))], ordered[-1])
-            rate = f"{len(values) / given.seconds:.1f}"
-            table.add_row(f"{kind}{beside}", str(len(values)), rate, *(f"{1e3 * value:.0f}" for value in shown))
-    Console().print(table)
+            typical = (statistics.median(ordered), ordered[int(0.95 * (len(ordered) - 1))], ordered[-1])
+            rate = f"{len(values) / seconds:.1f}"
+            shown.add_row(f"{kind}{beside}", str(len(values)), rate, *(f"{1e3 * value:.0f}" for value in typical))
+    return shown
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sessions", type=int, default=20)
+    parser.add_argument("--seconds", type=float, default=15.0)
+    given = parser.parse_args()
+    Console().print(table(given.sessions, given.seconds))
 
 
 if __name__ == "__main__":

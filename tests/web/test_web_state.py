@@ -85,6 +85,23 @@ def test_text_never_becomes_the_path_of_a_file() -> None:
     assert "import the file" in found["structure.matrices.stiffness"]
 
 
+@pytest.mark.parametrize(
+    "structure",
+    [FRAME | {"tendons": [{"a": 1}] * 40_000}, FRAME | {f"k{n}": 1 for n in range(100_000)}],
+    ids=["tables", "keys"],
+)
+def test_what_is_wrong_a_thousand_times_is_told_a_few_times(structure) -> None:
+    assert len(errors({"structure": structure})) <= 50
+
+
+def test_a_state_of_too_many_values_is_refused_unread() -> None:
+    state = {"structure": FRAME | {"tendons": [{"a": 1}] * 100_000}}
+    assert errors(state) == {"": "The link holds more than 150000 values, which is more than the page takes."}
+    whole = [[1.0] * 200] * 200
+    table = {"matrices": {"mass": whole, "stiffness": whole, "heights": [1.0] * 200}}
+    assert "150000" not in str(errors({"structure": table}))
+
+
 def test_lists_and_matrices_are_limited() -> None:
     lumped = {"masses": [1.0] * 201, "stiffness": [[1.0]], "heights": [1.0], "base_mass": 1.0, "half_width": 1.0}
     found = errors({"structure": {"lumped": lumped | {"damping_ratio": 0.0}}})

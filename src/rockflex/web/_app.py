@@ -4,6 +4,7 @@ import logging
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any
 
 import anyio
@@ -20,15 +21,16 @@ from rockflex._errors import InputError, SolverError
 from rockflex.web._cloud import cloud_plan, cloud_view
 from rockflex.web._design import design_plan, design_view
 from rockflex.web._download import cloud_files, design_files, download
+from rockflex.web._exchange import body_of, file_answer, question_of, state_of, step_of
 from rockflex.web._forms import forms
 from rockflex.web._jobs import Job, Jobs
-from rockflex.web._limits import BODY, DURATION, FILE, FREEDOMS, MODELS, RUNS
+from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
 from rockflex.web._packing import plain
 from rockflex.web._presets import PRESETS
 from rockflex.web._records import PULSES, record_view, suite_view, suites
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view
-from rockflex.web._state import State, parse_json, parse_state
+from rockflex.web._state import State
 from rockflex.web._structures import build, structure_view
 from rockflex.web._uploads import Uploads, read_matrices, read_record
 
@@ -53,7 +55,16 @@ class Server:
 
     def __init__(self) -> None:
         self.uploads, self.jobs = Uploads(), Jobs()
+        self._ready = Event()
         self._limiter: anyio.CapacityLimiter | None = None
+
+    def warm_up(self) -> None:
+        """Load the kernels, or compile them where that was never done, before the first visitor needs them."""
+        pulse = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 5.0, "period": 0.5}}
+        content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
+        state = State.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
+        response_view(state, self.uploads)
+        self._ready.set()
 
     async def _answer(self, work: Answer) -> Any:
         """Compute off the event loop."""
@@ -62,8 +73,8 @@ class Server:
         return await anyio.to_thread.run_sync(work, limiter=self._limiter)
 
     async def about(self, _: Request) -> Response:
-        """Forms, presets, suites, pulses and limits."""
-        return JSONResponse(await self._answer(_about))
+        """Forms, presets, suites, pulses and limits, and whether the kernels are ready."""
+        return JSONResponse(await self._answer(_about) | {"ready": self._ready.is_set()})
 
     async def suite(self, request: Request) -> Response:
         """Records of a suite."""
@@ -72,17 +83,17 @@ class Server:
 
     async def state(self, request: Request) -> Response:
         """Check the state of a link, and fill in what it leaves out."""
-        state = parse_state((await _content(request)).get("state"))
+        state = await state_of(request)
         return JSONResponse(plain(state.model_dump(exclude_none=True)))
 
     async def structure(self, request: Request) -> Response:
         """Structure tab."""
-        state = parse_state((await _content(request)).get("state"))
+        state = await state_of(request)
         return JSONResponse(await self._answer(lambda: structure_view(state.structure)))
 
     async def record(self, request: Request) -> Response:
         """Earthquake tab."""
-        state = parse_state((await _content(request)).get("state"))
+        state = await state_of(request)
 
         def work() -> Any:
             try:
@@ -95,15 +106,15 @@ class Server:
 
     async def response(self, request: Request) -> Response:
         """Response tab."""
-        content = await _content(request)
-        state, focus = parse_state(content.get("state")), str(content.get("focus", ""))[:40]
+        state, content = await question_of(request)
+        focus = str(content.get("focus", ""))[:40]
         return JSONResponse(await self._answer(lambda: response_view(state, self.uploads, focus)))
 
     async def upload(self, request: Request) -> Response:
         """A record from a file, whose bytes are the body; its name and unit are in the query."""
-        body, query = await _body(request), request.query_params
+        body, query = await body_of(request), request.query_params
         name, units = query.get("name", "record"), query.get("units") or None
-        dt = _step(query.get("dt", ""))
+        dt = step_of(query.get("dt", ""))
 
         def work() -> Any:
             motion = read_record(name, body, units, dt)
@@ -114,20 +125,20 @@ class Server:
 
     async def matrices(self, request: Request) -> Response:
         """Matrices from a file."""
-        body, query = await _body(request), request.query_params
+        body, query = await body_of(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
         return JSONResponse(await self._answer(lambda: read_matrices(name, body, part)))
 
     async def download(self, request: Request) -> Response:
         """A file of what the page shows."""
-        state = parse_state((await _content(request)).get("state"))
+        state = await state_of(request)
         what = request.path_params["what"]
-        return _file(*await self._answer(lambda: download(state, what, self.uploads)))
+        return file_answer(*await self._answer(lambda: download(state, what, self.uploads)))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
         kind = _kind(request)
-        state = parse_state((await _content(request)).get("state"))
+        state = await state_of(request)
         plan = _STUDIES[kind][0]
 
         def work() -> dict[str, str]:
@@ -138,15 +149,15 @@ class Server:
     async def progress(self, request: Request) -> Response:
         """Progress of a study, and what follows from its runs so far for the questions in the state."""
         kind, job = self._job(request)
-        state = parse_state((await _content(request)).get("state"))
+        state = await state_of(request)
         return JSONResponse(await self._answer(lambda: _STUDIES[kind][1](job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Table or figure of a study."""
         kind, job = self._job(request)
-        state = parse_state((await _content(request)).get("state"))
+        state = await state_of(request)
         what = request.path_params["what"]
-        return _file(*await self._answer(lambda: _STUDIES[kind][2](job, state, what)))
+        return file_answer(*await self._answer(lambda: _STUDIES[kind][2](job, state, what)))
 
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
@@ -182,6 +193,7 @@ def create(host: str) -> Starlette:
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:
+        Thread(target=server.warm_up, name="warm-up", daemon=True).start()
         yield
         server.jobs.close()
 
@@ -228,48 +240,6 @@ def _about() -> dict[str, Any]:
         "limits": limits,
         "state": plain(first.model_dump(exclude_none=True)),
     }
-
-
-async def _body(request: Request) -> bytes:
-    """Body of a request, read no further than it may be long."""
-    chunks, size = list[bytes](), 0
-    async for chunk in request.stream():
-        size += len(chunk)
-        if size <= BODY:
-            chunks.append(chunk)
-        elif size > 5 * BODY:
-            break
-    if size > BODY:  # the rest was read and dropped: an answer before its end would be lost to most clients
-        message = f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes."
-        raise Refusal(message, 413)
-    return b"".join(chunks)
-
-
-async def _content(request: Request) -> dict[str, Any]:
-    """JSON object in the body; another type of content would let foreign pages ask without the browser's question."""
-    if request.headers.get("content-type", "").split(";")[0].strip() != "application/json":
-        message = "A request must be application/json."
-        raise Refusal(message, 415)
-    body = await _body(request)
-    content = await anyio.to_thread.run_sync(parse_json, body)
-    if not isinstance(content, dict):
-        message = "A request must be a JSON object."
-        raise Refusal(message, 400)
-    return content
-
-
-def _step(text: str) -> float | None:
-    if not text.strip():
-        return None
-    try:
-        return float(text)
-    except ValueError as error:
-        message = f"the sampling step must be a number in s, but {text[:40]!r} was given."
-        raise Refusal({"record.upload": message}) from error
-
-
-def _file(name: str, kind: str, content: bytes) -> Response:
-    return Response(content, media_type=kind, headers={"Content-Disposition": f'attachment; filename="{name}"'})
 
 
 async def _refused(_: Request, error: Exception) -> Response:

@@ -22,6 +22,10 @@ Measure = Literal["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "relati
 Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a list of one to four suites")]
 
 
+NODES = 150_000  # values in a state: three matrices of 200 freedoms, and some room
+TOLD = 50  # messages at once
+
+
 class PulseChoice(Table):
     """A mathematical pulse."""
 
@@ -134,11 +138,13 @@ def parse_state(content: Any) -> State:
     if not isinstance(content, dict):
         message = "The link does not hold a state of the page."
         raise Refusal(message)
-    values = _infinite(content)
     try:
-        state = State.model_validate(values)
+        if _size(content) > NODES:
+            message = f"The link holds more than {NODES} values, which is more than the page takes."
+            raise Refusal(message, 413)
+        state = State.model_validate(_infinite(content))
     except ValidationError as error:
-        raise Refusal(_messages(error, values)) from error
+        raise Refusal(_messages(error, content)) from error
     except RecursionError as error:
         message = "The link is nested too deep."
         raise Refusal(message) from error
@@ -180,6 +186,13 @@ def _check_assumed(state: State) -> None:
         raise Refusal({f"bouc_wen.{said.split()[0]}": said}) from error
 
 
+def _size(value: Any) -> int:
+    """How many values there are in it, tables and lists included."""
+    if isinstance(value, dict):
+        return 1 + sum(map(_size, value.values()))
+    return 1 + sum(map(_size, value)) if isinstance(value, list) else 1
+
+
 def _infinite(value: Any) -> Any:
     """Put numbers in the place of "inf", which JSON cannot write."""
     if isinstance(value, dict):
@@ -192,7 +205,7 @@ def _infinite(value: Any) -> Any:
 def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:
     """What is wrong with each field, in a sentence."""
     found: dict[str, str] = {}
-    for problem in error.errors():
+    for problem in error.errors(include_url=False)[:TOLD]:
         path, description, given = _place(problem["loc"], content)
         if problem["type"] == "extra_forbidden":
             said = "it is not known here."

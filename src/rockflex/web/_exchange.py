@@ -1,0 +1,89 @@
+"""What comes with a request, and files as answers."""
+
+from typing import Any
+
+import anyio
+from starlette.requests import Request
+from starlette.responses import Response
+
+from rockflex.web._limits import BODY, FILE
+from rockflex.web._refusal import Refusal
+from rockflex.web._state import State, parse_json, parse_state
+
+__all__ = ["body_of", "file_answer", "question_of", "state_of", "step_of"]
+
+
+async def state_of(request: Request) -> State:
+    """Return the state that came with a request.
+
+    Raises
+    ------
+    Refusal
+        If there is none, or it cannot be used.
+    """
+    return (await question_of(request))[0]
+
+
+async def question_of(request: Request) -> tuple[State, dict[str, Any]]:
+    """Return the state that came with a request, and everything else that came with it.
+
+    Raises
+    ------
+    Refusal
+        As `state_of`.
+    """
+    body = await _json_of(request)
+    return await anyio.to_thread.run_sync(_question, body)  # large ones would keep the event loop busy
+
+
+async def body_of(request: Request) -> bytes:
+    """Body of a request, read no further than it may be long."""
+    chunks, size = list[bytes](), 0
+    async for chunk in request.stream():
+        size += len(chunk)
+        if size <= BODY:
+            chunks.append(chunk)
+        elif size > 5 * BODY:
+            break
+    if size > BODY:  # the rest was read and dropped: an answer before its end would be lost to most clients
+        message = f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes."
+        raise Refusal(message, 413)
+    return b"".join(chunks)
+
+
+async def _json_of(request: Request) -> bytes:
+    """Body of a request; another type of content would let foreign pages ask without the browser's question."""
+    if request.headers.get("content-type", "").split(";")[0].strip() != "application/json":
+        message = "A request must be application/json."
+        raise Refusal(message, 415)
+    return await body_of(request)
+
+
+def _question(body: bytes) -> tuple[State, dict[str, Any]]:
+    content = parse_json(body)
+    if not isinstance(content, dict):
+        message = "A request must be a JSON object."
+        raise Refusal(message, 400)
+    return parse_state(content.get("state")), content
+
+
+def step_of(text: str) -> float | None:
+    """Return the sampling step that stands in a query; None for the file's own.
+
+    Raises
+    ------
+    Refusal
+        If it is not a number.
+    """
+    if not text.strip():
+        return None
+    try:
+        return float(text)
+    except ValueError as error:
+        message = f"the sampling step must be a number in s, but {text[:40]!r} was given."
+        raise Refusal({"record.upload": message}) from error
+
+
+def file_answer(name: str, kind: str, content: bytes) -> Response:
+    """Return a file to be kept by a name."""
+    return Response(content, media_type=kind, headers={"Content-Disposition": f'attachment; filename="{name}"'})
