@@ -1,0 +1,32 @@
+"""Small studies to draw, and what is read from their figures."""
+
+import numpy as np
+
+import rockflex as rf
+from rockflex.plot._style import BLACK, RED
+
+SUITE = rf.load_suite("fema-p695-far-field")
+FRAMES = {
+    "#1": rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02),
+    "#5": rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 5.0, 0.02),
+    "a$b": rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 1.0, 5.0, 0.02),
+}
+MODELS = ["MDOF-S", "2DOF-S"]
+COLORS = {"MDOF-S": BLACK, "2DOF-S": RED}
+
+
+def lines(axes, label):
+    return [line for line in axes.get_lines() if line.get_label() == label]
+
+
+def points(lines):
+    found = np.concatenate([np.column_stack(line.get_data()) for line in lines])
+    return found[np.lexsort(found.T)]
+
+
+def of(table, structure, model):
+    return table[(table["structure"] == structure) & (table["model"] == model)]
+
+
+def legend(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
