@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import rockflex as rf
+from design_case import LEVELS, STRUCTURE, WIDTHS
 from drawn_studies import FRAMES, MODELS, SUITE
 from rockflex.study.plans import run_cloud, run_incremental, run_population
 
@@ -34,3 +36,8 @@ def stripes():
     table = pd.DataFrame(rows)
     table["max_rotation"] = np.where(table["status"] == "overturned", np.pi / 2, 0.01)
     return table.assign(nominal_overturning=table["status"] == "overturned")
+
+
+@pytest.fixture(scope="session")
+def designed():
+    return rf.run_design(STRUCTURE, list(SUITE), WIDTHS, LEVELS, scales=[1.0, 2.0])

@@ -1,0 +1,193 @@
+"""The table of designs: probabilities, rates and bands against the fits."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.optimize import minimize
+
+import rockflex as rf
+from design_case import HAZARD, HEIGHT, WIDTHS
+from rockflex.study.plans._design_resamples import _firth, exceedances, resample_weights
+
+
+@pytest.fixture
+def runs(designed):
+    return designed
+
+
+def columns(runs, tendon, width):
+    rows = runs[(runs["tendon"] == tendon) & (runs["half_width"] == width)]
+    fallen = (rows["status"] == "overturned").to_numpy(bool)
+    return rows["pgv"].to_numpy(float), rows["max_rotation"].to_numpy(float), fallen, rows["group"].to_numpy()
+
+
+def test_probabilities_are_those_of_the_fits(runs):
+    nominal = {b: 0.7 * math.atan(b / HEIGHT) for b in WIDTHS}
+    for limit in (0.02, "0.3 nominal", "overturning"):
+        table = rf.design_table(runs, limit, at=0.5, confidence=None)
+        assert list(table["half_width"]) == WIDTHS * 2
+        assert list(table["tendon"]) == ["no tendon"] * 3 + ["held"] * 3
+        assert table[["low", "high"]].isna().all(axis=None)
+        for row in table.itertuples():
+            im, rotation, fallen, _ = columns(runs, row.tendon, row.half_width)
+            fit = rf.fit_outcomes(im, rotation, fallen)
+            angle = {0.02: 0.02, "overturning": math.pi / 2}.get(limit, 0.3 * nominal[row.half_width])
+            assert row.limit == pytest.approx(angle, rel=1e-12)
+            expected = fit.overturning.probability(0.5)
+            assert row.overturning == expected
+            assert row.probability == (expected if limit == "overturning" else fit.exceedance(0.5, row.limit))
+            assert row.n_overturned == fallen.sum()
+            assert row.n_exceeding == (fallen if limit == "overturning" else rotation > row.limit).sum()
+            assert (row.n_runs, row.n_failed) == (88, 0)
+    group = runs[(runs["tendon"] == "held") & (runs["half_width"] == 1.6)]
+    row = table[(table["tendon"] == "held") & (table["half_width"] == 1.6)].iloc[0]
+    assert row["median_base_moment"] == np.median(group["max_base_moment"])
+    assert row["median_tendon_utilisation"] == np.median(group["tendon_utilisation"])
+
+
+def test_rates_are_those_of_the_fits(runs):
+    table = rf.design_table(runs, 0.02, hazard=HAZARD, n_resamples=40)
+    for row in table.itertuples():
+        im, rotation, fallen, groups = columns(runs, row.tendon, row.half_width)
+        fit = rf.fit_outcomes(im, rotation, fallen)
+        found = rf.annual_rate(HAZARD, lambda at, fit=fit: fit.exceedance(at, 0.02))
+        assert row.rate == found.rate
+        assert row.beyond == found.beyond
+        assert row.overturning == rf.annual_rate(HAZARD, fit.overturning).rate
+    # The band of the last against the adaptive integral of each resample.
+    band = rf.bootstrap_band(
+        lambda im, values: rf.fit_outcomes(im, values[:, 0], values[:, 1]),
+        im,
+        np.column_stack((rotation, fallen)),
+        groups,
+        at=[1.0],
+        n=40,
+        curve=lambda fit, _: [rf.annual_rate(HAZARD, lambda at: fit.exceedance(at, 0.02)).rate],
+    )
+    np.testing.assert_allclose([row.low, row.high], [band.low[0], band.high[0]], rtol=1e-4)
+
+
+@pytest.mark.parametrize("limit", [0.02, "overturning"])
+def test_bands_are_those_of_the_bootstrap(runs, limit):
+    table = rf.design_table(runs, limit, at=0.8, n_resamples=60, seed=5, confidence=0.8)
+    separated = 0
+    for row in table.itertuples():
+        im, rotation, fallen, groups = columns(runs, row.tendon, row.half_width)
+        if limit == "overturning" and not fallen.any():
+            assert math.isnan(row.low)
+            assert "No band: all runs ended alike." in row.note
+            continue
+        curve = (
+            (lambda fit, at: fit.exceedance(at, 0.02))
+            if limit == 0.02
+            else lambda fit, at: fit.overturning.probability(at)
+        )
+        failed = []
+
+        def fitted(im, values, failed=failed):
+            fit = rf.fit_outcomes(im, values[:, 0], values[:, 1])
+            failed.append(getattr(fit.overturning, "separated", False))
+            return fit
+
+        band = rf.bootstrap_band(
+            fitted, im, np.column_stack((rotation, fallen)), groups, at=[0.8], n=60, seed=5, level=0.8, curve=curve
+        )
+        separated += sum(failed)
+        np.testing.assert_allclose([row.low, row.high], [band.low[0], band.high[0]], rtol=1e-5, atol=1e-6)
+        assert row.low <= row.probability <= row.high or limit == "overturning"
+    assert separated > 0
+
+
+def test_resamples_are_those_of_the_bootstrap():
+    groups = np.array([0, 0, 1, 2, 2, 2, 3])
+    seen = []
+
+    def fit(im, rows):
+        seen.append(np.bincount(rows.astype(int), minlength=7))
+        return rows
+
+    rf.bootstrap_band(fit, np.arange(1.0, 8.0), np.arange(7), groups, at=[1.0], n=30, seed=9, curve=lambda *_: [0.5])
+    np.testing.assert_array_equal(resample_weights(groups, 30, 9), seen[1:])
+
+
+def test_penalised_fits_maximise_the_penalised_likelihood():
+    random = np.random.default_rng(4)
+    for _ in range(20):
+        x = np.sort(random.normal(size=20))
+        x = (x - x.mean()) / x.std()
+        y = x > random.uniform(x[1], x[-2])
+        times = random.integers(1, 4, size=20)
+        design = np.column_stack((np.ones(20), x))
+
+        def unlikely(b, y=y, times=times, design=design):
+            eta = design @ b
+            p = 1.0 / (1.0 + np.exp(-eta))
+            information = (design.T * (times * p * (1.0 - p))) @ design
+            return -(times * (y * eta - np.logaddexp(0.0, eta))).sum() - 0.5 * np.linalg.slogdet(information)[1]
+
+        corners = [[0.0, 0.0], [4.0, 4.0], [-4.0, 4.0]]
+        options = {"xatol": 1e-8, "fatol": 1e-12, "maxiter": 2000, "initial_simplex": corners}
+        best = minimize(unlikely, corners[0], method="Nelder-Mead", options=options)
+        (b,) = _firth(x, y, times[None].astype(float))
+        np.testing.assert_allclose(b, best.x, rtol=1e-5, atol=1e-5)
+
+
+def test_resamples_with_nothing_to_fit():
+    im, rotation = np.array([1.0, 2.0, 3.0, 4.0]), np.array([0.0, 0.02, 0.03, 1.6])
+    fallen = np.array([False, False, False, True])
+    weights = np.array([[2.0, 2, 0, 0], [0.0, 0, 0, 4], [4.0, 0, 0, 0], [0.0, 2, 2, 0], [0.0, 4, 0, 0]])
+    with np.errstate(all="raise"):
+        found = exceedances(im, rotation, fallen, weights, np.array([2.5]), 0.024, 1e-4)[:, 0]
+    assert math.isnan(found[0])  # one rotation is no line
+    assert found[1] == 1.0  # all overturned
+    assert found[2] == 0.0  # none rocks
+    assert found[3] == 1.0  # the line goes through both, and 0.025 rad at the node
+    assert math.isnan(found[4])
+
+
+def altered(runs, **changes):
+    return runs[runs["half_width"] == 1.6].assign(**changes)
+
+
+def test_what_a_row_says_of_itself(runs):
+    strong = rf.design_table(runs, 0.02, at=50.0, n_resamples=20)
+    assert strong["note"].str.contains("The level lies outside the measures of the runs, ").all()
+    gaps = altered(runs, status=pd.array([None] * 176, dtype="string"), max_rotation=np.nan)
+    lost = rf.design_table(gaps, 0.02, at=0.6)
+    assert (lost["n_failed"] == 88).all()
+    assert lost[["probability", "limit", "overturning"]].isna().all(axis=None)
+    assert (lost["note"] == "No run was solved: see the column error.").all()
+    quiet = rf.design_table(altered(runs, status="no_uplift", max_rotation=0.0), 0.02, hazard=HAZARD)
+    assert (quiet["rate"] == 0.0).all()
+    assert quiet["low"].isna().all()
+    assert quiet["note"].str.contains("rocking: none of 88 runs").all()
+    alone = rf.design_table(altered(runs, group="one"), 0.02, at=0.6)
+    assert alone["note"].str.contains("No band: all runs belong to one recording.").all()
+    few = runs[(runs["half_width"] == 1.6) & runs["record"].isin(["FF-1-a", "FF-2-a", "FF-3-a"])]
+    few = few.assign(status="no_uplift", max_rotation=[0.0, 0.0, 0.0, 0.01, 0.0, 0.02] * 2)
+    unknown = rf.design_table(few, 0.02, at=0.6)
+    assert unknown["probability"].isna().all()
+    assert unknown["note"].str.contains("There is no probability: a part that counts could not be fitted.").all()
+    some = rf.design_table(runs[runs["record"].str.startswith("FF-1")], 0.02, at=0.6)
+    assert some["note"].str.contains("recordings is too narrow|could be fitted").all()
+
+
+@pytest.mark.parametrize(
+    ("change", "arguments", "message"),
+    [
+        ({}, {}, "Give either at, a level of the measure, or hazard, a HazardCurve in it."),
+        ({}, {"at": 1.0, "hazard": HAZARD}, "Give either at, a level of the measure, or hazard, a HazardCurve in it."),
+        ({}, {"at": 0.0}, "at must be a positive, finite number in the unit of the measure, but 0.0 was given."),
+        ({}, {"at": 1.0, "measure": "relative_pga"}, "measure must not depend on the base, as a level of relative_pga"),
+        ({}, {"at": 1.0, "confidence": 1.0}, "confidence must lie in [0, 1), but 1.0 was given. A 90 % band is 0.9."),
+        ({}, {"at": 1.0, "n_resamples": 5}, "n_resamples must be a whole number of at least 20, but 5 was given."),
+        ({"columns": ["tendon", "pgv"]}, {"at": 1.0}, "The table lacks tendon, pgv. Give what run_design returned."),
+        ({"index": range(528)}, {"at": 1.0}, "The table has no rows. Give what run_design returned."),
+    ],
+)
+def test_damaged_arguments_of_the_table(runs, change, arguments, message):
+    with pytest.raises(rf.InputError) as caught:
+        rf.design_table(runs.drop(**change or {"columns": []}), 0.02, **arguments)
+    assert str(caught.value).startswith(message)
