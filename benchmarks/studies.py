@@ -14,7 +14,7 @@ from timing import least
 import rockflex as rf
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-MANY = (10_000, 100_000)  # population runs whose memory is looked at
+MANY = (2_000, 10_000)  # population runs whose memory is looked at
 
 # In a process of its own, since the peak of a process never falls.
 MEMORY = """

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import dimensions, finite_matrix, finite_vector
+from rockflex._computable import computable
 from rockflex._errors import InputError
 
 __all__ = ["checked_heights", "checked_mass", "checked_stiffness", "mass_times"]
@@ -71,6 +72,7 @@ def mass_times(mass: Float, vectors: Float) -> Float:
     return (mass * vectors.T).T
 
 
+@computable("Whether a matrix is positive definite")
 def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: int) -> Float:
     matrix = finite_matrix(name, values, unit, (size, size))
     asymmetry = np.abs(matrix - matrix.T)

@@ -29,6 +29,7 @@ ALLOWED = {
 }
 FOUNDATION = {
     "_checks",
+    "_computable",
     "_constants",
     "_errors",
     "_files",

@@ -7,6 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 import rockflex as rf
+from rockflex.modal._uplifted import lowest_uplifted
 
 SHEAR, FLEXURE = math.inf, 0.0
 NO_LIMIT = {"base_moment": math.inf, "first_frequency": math.inf, "second_frequency": math.inf, "base_shear": math.inf}
@@ -242,3 +243,11 @@ def test_wrong_base_mass():
 def test_no_modes():
     with pytest.raises(rf.InputError, match="properties must have at least one mode, but a rigid structure was given"):
         rf.adequacy(rf.rigid_block(0.2, 3.0))
+
+
+@pytest.mark.parametrize("structure", [frame(40, SHEAR, 10.0), frame(12, FLEXURE, 5.0), frame(1, SHEAR, 5.0)])
+def test_lowest_uplifted_frequencies_are_those_of_all(structure):
+    p = structure.rocking()
+    whole = rf.uplifted_modes(p).omega
+    for count in (1, 2, 3):
+        np.testing.assert_allclose(lowest_uplifted(p, count), whole[:count], rtol=1e-14)

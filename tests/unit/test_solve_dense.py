@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rockflex import Frame, load_suite, simulate
+from rockflex import Frame, GroundMotion, load_suite, simulate
 from rockflex.models import parse_model
 from rockflex.response import global_observables
 from rockflex.solve import ExactEngine
@@ -99,3 +99,17 @@ def test_close_to_the_merger(offset):
     run = simulate(Frame(**given), MOTION, "2DOF-S", output="peaks")
     parameters = frame_properties(**given, n_modes=1).kwargs()
     assert_same_peaks(run, simulate_fine(**parameters, acceleration=MOTION.acceleration, dt=MOTION.dt), 1e-9)
+
+
+@pytest.mark.parametrize("n_stories", [2, 3])
+def test_a_narrow_base_uncouples(monkeypatch, n_stories):
+    """Matrices were tens of thousands of steps a sample here. The last bit of I_θ moves these peaks by 2e-9."""
+    given = frame(n_stories=n_stories, stiffness_ratio=0.0, period=1.0, aspect_ratio=1600.0)
+    assert engine(given, "MDOF-S").system(0.02).dense.size == 0
+    whole = load_suite("el-centro-1940")[0].scaled(0.01)
+    brief = GroundMotion(whole.acceleration[:200], whole.dt)
+    uncoupled = simulate(Frame(**given), brief, output="peaks")
+    monkeypatch.setattr(basis, "WORST_CONDITION", 0.0)
+    assert engine(given, "MDOF-S").system(0.02).dense.size > 0
+    assert uncoupled.n_impacts > 0
+    assert_same_peaks(simulate(Frame(**given), brief, output="peaks"), uncoupled, 1e-7)

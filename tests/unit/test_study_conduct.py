@@ -1,15 +1,19 @@
 """A study from its specification to its table, in memory, in a folder, resumed, and estimated."""
 
+import json
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
 import rockflex as rf
+from rockflex import InputError
+from rockflex.structure.file import StructureEntry
 from rockflex.study.plans import ChunkedPlan
 
 FRAME = {
@@ -139,3 +143,47 @@ def test_time_is_estimated_from_a_sample():
 def test_what_is_written_is_named(tmp_path: Path):
     rf.run_study(STUDY, tmp_path / "kept")
     assert sorted(path.name for path in (tmp_path / "kept").iterdir()) == ["manifest.json", "parts", "spec.json"]
+
+
+MATRICES = {"mass": [20e3, 90e3], "stiffness": [[2e7, -1e7], [-1e7, 1e7]], "heights": [3.0, 6.0]}
+BASE = {"base_mass": 10e3, "half_width": 1.0, "damping_ratio": 0.02}
+
+
+def of_files(folder: Path, **stiffness: float) -> rf.CloudStudy:
+    np.savez(folder / "all.npz", mass=MATRICES["mass"])
+    k = stiffness.get("k", 1e7)
+    np.savetxt(folder / "k.csv", [[2e7, -k], [-k, 1e7]], delimiter=",")
+    given = MATRICES | BASE | {"mass": "all.npz", "stiffness": "k.csv"}
+    return rf.CloudStudy(
+        structures=[{"frame": FRAME}, {"matrices": given}], records=RECORDS | {"include": ["FF-1-a"]}
+    ).read_from(folder)
+
+
+def test_a_changed_matrix_is_another_study(tmp_path):
+    folder = tmp_path / "kept"
+    rf.run_study(of_files(tmp_path), folder)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert [len(manifest["checksums"][key]) for key in ("structures[1].matrices.mass", "FF-1-a")] == [64, 64]
+    again = of_files(tmp_path)
+    np.savez_compressed(tmp_path / "all.npz", mass=np.float64(MATRICES["mass"]))  # other bytes, the same numbers
+    rf.run_study(again, folder)
+    with pytest.raises(InputError) as caught:
+        rf.run_study(of_files(tmp_path, k=0.9e7), folder)
+    first, second, last = str(caught.value).splitlines()
+    assert first == f"{folder} holds this study with other records or matrices. Checksums that differ:"
+    assert second.startswith('  structures[1].matrices.stiffness: "')
+    assert last == "Use the same files, or give another folder."
+
+
+def test_a_changed_shape_is_another_study(tmp_path):
+    """Two modes by two freedoms and their transpose hold the same numbers in another order; shapes count too."""
+    names = {"omega": [5.0, 20.0], "shapes": [[1.0, 1.0], [2.0, -0.5]], "mass": [20e3, 20e3], "heights": [3.0, 6.0]}
+    for name, values in names.items():
+        np.savetxt(tmp_path / f"{name}.csv", values, delimiter=",")
+    entry = StructureEntry(modes=BASE | {name: f"{name}.csv" for name in names})
+    sums = entry.checksums(tmp_path)
+    assert list(sums) == ["modes.mass", "modes.heights", "modes.omega", "modes.shapes"]
+    assert len(set(sums.values())) == 4
+    np.savetxt(tmp_path / "shapes.csv", np.transpose(names["shapes"]), delimiter=",")
+    assert entry.checksums(tmp_path)["modes.shapes"] != sums["modes.shapes"]
+    assert StructureEntry(frame=FRAME).checksums(tmp_path) == {}

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._checks import positive
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal._rocking import RockingProperties
-from rockflex.modal._uplifted import uplifted_modes
+from rockflex.modal._uplifted import lowest_uplifted
 
 __all__ = ["Adequacy", "AdequacyTolerance", "adequacy"]
 
@@ -130,6 +131,7 @@ class Adequacy:
         return (1.0 + self.frequency_error) * (1.0 + self.reference_error) - 1.0
 
 
+@computable("The share of each mode")
 def adequacy(
     properties: RockingProperties, tolerance: AdequacyTolerance | None = None, *, base_mass: float | None = None
 ) -> Adequacy:
@@ -183,7 +185,7 @@ def adequacy(
     shear_left = np.maximum(1.0 - np.cumsum(shear), 0.0)
     found = np.full((p.n_modes, 2), np.nan)
     for k in range(1, p.n_modes + 1):
-        found[k - 1, :k] = uplifted_modes(p, k).omega[:2]
+        found[k - 1, :k] = lowest_uplifted(p.truncated(k), 2)
     reference = np.zeros(2)
     if not complete:
         reference = np.maximum(found[-1] / _lowest(p, rest) - 1.0, 0.0)
@@ -227,7 +229,7 @@ def _lowest(p: RockingProperties, inertia: float) -> Float:
         return np.append(p.omega, np.nan)
     height = p.effective_height.copy()
     height[-1] = math.sqrt(height[-1] ** 2 + inertia / p.effective_mass[-1])
-    both = uplifted_modes(replace(p, effective_height=height)).omega
+    both = lowest_uplifted(replace(p, effective_height=height), 2)
     return np.sort(np.append(both, p.omega[-1]))[:2]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import mode_count
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
 
@@ -84,6 +85,7 @@ class ModalProperties:
         )
 
 
+@computable("The modes of the given mass and stiffness")
 def modal_properties(
     mass: ArrayLike, stiffness: ArrayLike, heights: ArrayLike, n_modes: SupportsIndex | None = None
 ) -> ModalProperties:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._checks import damping_ratios, positive
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, mass_times
 from rockflex.modal._analysis import ModalProperties
@@ -16,6 +17,7 @@ from rockflex.modal._rocking import RockingProperties
 __all__ = ["rocking_properties"]
 
 
+@computable("The inertia of the structure with this base")
 def rocking_properties(
     modal: ModalProperties,
     mass: ArrayLike,

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._checks import mode_count
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal._analysis import NO_PARTICIPATION, ModalProperties, normalising_ordinates
 from rockflex.modal._floors import FloorModes
@@ -60,6 +61,7 @@ class MassNormalisedModes:
     inertia: float
     rotary: float = 0.0
 
+    @computable("The participation of the modes")
     def modal(self) -> ModalProperties:
         """Return the modes with the top ordinate 1."""
         shear, moment = self.shear.copy(), self.moment
@@ -80,6 +82,7 @@ class MassNormalisedModes:
             heights=self.heights[above],
         )
 
+    @computable("The inertia of the structure with this base")
     def rocking(
         self, base_mass: float, half_width: float, zeta: Float, n_modes: SupportsIndex | None
     ) -> RockingProperties:

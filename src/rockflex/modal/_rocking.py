@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import damping_ratios, finite_vector, positive, whole_number
+from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal._floors import FloorModes
@@ -210,6 +211,7 @@ def _tendons_within(tendons: tuple[Tendon, ...], half_width: float) -> tuple[Ten
     return tendons
 
 
+@computable("The inertia of the modes, from effective_mass and effective_height,")
 def _translational_inertia(modes: dict[str, Float], scalars: dict[str, float], given: float | None) -> float:
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())

@@ -7,9 +7,10 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._computable import computable
 from rockflex.modal._rocking import RockingProperties
 
-__all__ = ["UpliftedModes", "frequency_equation", "uplifted_modes"]
+__all__ = ["UpliftedModes", "frequency_equation", "lowest_uplifted", "uplifted_modes"]
 
 Float = NDArray[np.float64]
 
@@ -51,6 +52,7 @@ class UpliftedModes:
                 value.setflags(write=False)
 
 
+@computable("The uplifted modes of the given properties")
 def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None = None) -> UpliftedModes:
     """Return the modes of Eq. 23 without damping, with the first `n_modes` modes of the structure or with all.
 
@@ -78,22 +80,8 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     Silva & Stojadinović 2024, Eq. 23 and Section 3.4 (Fig. 10).
     """
     p = properties if n_modes is None else properties.truncated(n_modes)
-    # With D_n √m*_n for freedoms the lower block of the mass matrix is the identity.
-    root = np.sqrt(p.effective_mass)
-    arm = root * p.effective_height
-    # M = L L^T: the rest of the inertia, and the modes' own directions.
-    rest = math.sqrt(p.i_theta - float(arm @ arm))
-    # With y = (rest θ, √m*_n D_n + arm θ), M is the identity and K' = S^T K S, where (θ, √m* D) = S y.
     n = p.n_modes
-    back = np.eye(n + 1)
-    back[0, 0] = 1.0 / rest
-    back[1:, 0] = -arm / rest
-    stiffness = np.concatenate([[p.rocking_stiffness], p.omega**2])
-    squares, vectors = np.linalg.eigh(back.T @ (stiffness[:, None] * back))
-    mass = np.eye(n + 1)
-    mass[0, 0], mass[0, 1:], mass[1:, 0] = p.i_theta, arm, arm
-    squares, motions = _polished(stiffness, mass, squares, back @ vectors)
-    motions[1:] /= root[:, None]
+    squares, motions = _lowest(p, n)
     omega = np.sqrt(squares[1:])
     modal = motions[1:, 1:]
     largest = modal[np.abs(modal).argmax(axis=0), np.arange(n)] if n else np.ones(0)
@@ -105,6 +93,34 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
         sway_rate=math.sqrt(max(squares[0], 0.0)),
         growth_shape=motions[:, 0] / motions[0, 0],
     )
+
+
+@computable("The uplifted frequencies of the given properties")
+def lowest_uplifted(properties: RockingProperties, count: int) -> Float:
+    """Return the first `count` of `UpliftedModes.omega`, or as many as there are, with less work than for all."""
+    return np.sqrt(_lowest(properties, min(count, properties.n_modes))[0][1:])
+
+
+def _lowest(p: RockingProperties, vibrations: int) -> tuple[Float, Float]:
+    """Return ω² and (θ, D) of the rotation and of the lowest vibrations, of shapes (v + 1,) and (n + 1, v + 1)."""
+    # With D_n √m*_n for freedoms the lower block of the mass matrix is the identity.
+    root = np.sqrt(p.effective_mass)
+    arm = root * p.effective_height
+    # M = L L^T: the rest of the inertia, and the modes' own directions.
+    rest = float(np.sqrt(p.i_theta - arm @ arm))
+    # With y = (rest θ, √m*_n D_n + arm θ), M is the identity and K' = S^T K S, where (θ, √m* D) = S y.
+    n = p.n_modes
+    back = np.eye(n + 1)
+    back[0, 0] = 1.0 / rest
+    back[1:, 0] = -arm / rest
+    stiffness = np.concatenate([[p.rocking_stiffness], p.omega**2])
+    squares, vectors = np.linalg.eigh(back.T @ (stiffness[:, None] * back))
+    mass = np.eye(n + 1)
+    mass[0, 0], mass[0, 1:], mass[1:, 0] = p.i_theta, arm, arm
+    kept = slice(vibrations + 1)
+    squares, motions = _polished(stiffness, mass, squares[kept], back @ vectors[:, kept])
+    motions[1:] /= root[:, None]
+    return squares, motions
 
 
 def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> tuple[Float, Float]:

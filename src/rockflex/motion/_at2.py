@@ -8,18 +8,19 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import build_motion, number, read_lines
+from rockflex.motion._text import DECIMAL, build_motion, number, read_lines
 
 __all__ = ["find_header", "parse_at2", "read_at2"]
 
 HEADER_LINES = 12
-_NUMBER = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?)"
-NPTS = re.compile(r"\bNPTS\s*[=:]\s*(\d+)", re.IGNORECASE)
-DT = re.compile(rf"\bDT\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
-BARE = re.compile(rf"^\s*(\d+)\s*,?\s+{_NUMBER}\s*,?\s+NPTS\s*,?\s*DT\b", re.IGNORECASE)
-DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s+\d{1,2}:?\d{2}(?::\d{2})?(?=\s*,))?")
+_DIGITS = 18  # of NPTS that are read: any file holds less
+_COUNT, _NUMBER, _APART = r"(\d++)", rf"({DECIMAL.pattern})", r"(?:\s*+,\s++|\s++)"
+NPTS = re.compile(rf"\bNPTS\s*+[=:]\s*+{_COUNT}", re.IGNORECASE)
+DT = re.compile(rf"\bDT\s*+[=:]\s*+{_NUMBER}", re.IGNORECASE)
+BARE = re.compile(rf"\s*+{_COUNT}{_APART}{_NUMBER}{_APART}NPTS\s*+,?+\s*+DT\b", re.IGNORECASE)
+DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::\d{2})?(?=\s*+,))?")
 # Numbers may run together where the next one begins with a sign; an exponent must then end before it.
-TOKEN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d{1,3})?(?=[\s,+-]|$)")
+TOKEN = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?\d{1,3}+)?(?=[\s,+-]|$)")
 
 
 def read_at2(path: str | Path) -> GroundMotion:
@@ -57,12 +58,12 @@ def find_header(lines: list[str]) -> tuple[int, int, str] | None:
     for i, line in enumerate(lines[:HEADER_LINES]):
         if line.lstrip().startswith(("#", "%", "!")):
             continue  # a comment of a plain text file, which says nothing of units
-        if bare := BARE.search(line):
-            return i + 1, int(bare[1]), bare[2]
+        if bare := BARE.match(line):
+            return i + 1, int(bare[1][:_DIGITS]), bare[2]
         npts = NPTS.search(line) or npts
         dt = DT.search(line) or dt
         if npts and dt:
-            return i + 1, int(npts[1]), dt[1]
+            return i + 1, int(npts[1][:_DIGITS]), dt[1]
     return None
 
 
@@ -76,7 +77,7 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
         )
         raise InputError(message)
     start, npts, step = header
-    unit = re.search(r"units\s+of\s+\(?([\w/]+)", "\n".join(lines[:start]), re.IGNORECASE)
+    unit = re.search(r"units\s++of\s++\(?([\w/]++)", "\n".join(lines[:start]), re.IGNORECASE)
     if unit and unit[1].upper() != "G":
         message = (
             f"{file}: the header speaks of units of {unit[1]}, but an AT2 file holds an acceleration in g. "
@@ -133,12 +134,15 @@ def _info(file: Path, header: list[str]) -> RecordInfo:
         if date:
             rest = [part.strip() for part in line[date.end() :].strip(" ,").split(",")]
             year = int(date[3])
+            component = rest[-1]
+            if component.endswith(")"):
+                component = component.partition("(")[0].rstrip()
             return RecordInfo(
                 event=line[: date.start()].strip(" ,") or None,
                 # Two-digit years belong to the database of 1999 and before.
                 year=year if year > 99 else 1900 + year,
                 station=", ".join(rest[:-1]) or None,
-                component=re.sub(r"\s*\(.*\)$", "", rest[-1]) or None,
+                component=component or None,
                 source=line.strip(),
                 rsn=rsn,
             )

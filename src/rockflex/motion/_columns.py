@@ -31,7 +31,7 @@ SPELLINGS = {
     "gals": "cm/s2",
 }
 SECONDS = ("s", "sec", "secs", "second", "seconds")
-BRACKET = re.compile(r"[(\[]([^)\]]*)[)\]]")
+BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 
 
 def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | None) -> GroundMotion:
@@ -98,11 +98,17 @@ def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, lis
 def _labels(head: str, separator: str | None) -> list[str]:
     if separator is None:
         # A label and its unit in brackets may be set apart by a blank, and the unit may hold one.
-        head = BRACKET.sub(lambda unit: unit[0].replace(" ", ""), head)
-        head = re.sub(r"\s+(?=[(\[])", "", head)
+        end = _after_brackets(head)
+        head = BRACKET.sub(lambda unit: unit[0].replace(" ", ""), head[:end]) + head[end:]
+        head = re.sub(r"(?<!\s)\s++(?=[(\[])", "", head)
         return re.split(r"[;,\s]\s*", head)
     cells = [cell.strip().strip('"') for cell in head.split(separator)]
     return cells[:-1] if cells[-1] == "" else cells
+
+
+def _after_brackets(text: str) -> int:
+    """Return where the last bracket is closed: none that is opened before stays open, to be looked for in vain."""
+    return max(text.rfind(")"), text.rfind("]")) + 1
 
 
 def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, int]:
@@ -127,7 +133,7 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, 
 
 def _stated_unit(file: Path, label: str, units: str | None) -> str:
     """Return the unit that the label or the caller states; both must agree."""
-    bracket = BRACKET.search(label)
+    bracket = BRACKET.search(label, 0, _after_brackets(label))
     written = bracket[1] if bracket else ""
     plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-"))
     stated = SPELLINGS.get(plain)
@@ -150,7 +156,7 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
 
 
 def _check_seconds(file: Path, label: str) -> None:
-    bracket = BRACKET.search(label)
+    bracket = BRACKET.search(label, 0, _after_brackets(label))
     if bracket and bracket[1].strip().lower() not in SECONDS:
         message = f"{file}: the times are in {bracket[1]!r}, but seconds are expected. Convert the column to s."
         raise InputError(message)

@@ -15,7 +15,8 @@ __all__ = ["UNITS", "build_motion", "number", "read_lines"]
 
 UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01}
 LIMIT = 5.0  # in g; no recorded ground acceleration comes near it
-DECIMAL = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?")
+# Possessive, as all of these patterns: what has matched is not tried in parts, so that no text takes long.
+DECIMAL = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?+\d++)?+")
 
 
 def read_lines(path: str | Path) -> list[str]:
@@ -61,7 +62,7 @@ def number(token: str, file: str | Path, line: int) -> float:
         value = float(re.sub("[Dd]", "E", token))
         if np.isfinite(value):
             return value
-    hint = " Write decimals with a point." if re.fullmatch(r"[+-]?\d+,\d+", token) else ""
+    hint = " Write decimals with a point." if re.fullmatch(r"[+-]?+\d++,\d++", token) else ""
     message = f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}"
     raise InputError(message)
 

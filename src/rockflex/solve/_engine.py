@@ -19,6 +19,7 @@ from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURN
 __all__ = ["QUIET", "Engine"]
 
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
+EVENTS = 512  # nodes of a history between samples; if there are more, the run is done once more
 
 
 class Engine(ABC):
@@ -80,7 +81,7 @@ class Engine(ABC):
         settle = free_vibration is None
         free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
         record = np.require(acceleration, dtype=np.float64, requirements=("C", "W"))  # the type compiled for
-        room_for = record.size + 64 + (0 if settle else free) if history else 0
+        room_for = record.size + EVENTS + (0 if settle else free) if history else 0
         while True:
             log = Log(np.zeros(self._n_rows), np.zeros(self._n_rows), np.zeros(3, dtype=np.int64))
             motion = self._motion(start)

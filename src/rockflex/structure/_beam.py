@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._checks import damping_ratios, positive, whole_number
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._beam_fe import finite_element_modes
@@ -134,12 +135,13 @@ class Beam:
 
     @cached_property
     def _modes(self) -> MassNormalisedModes:
-        if self.method == "fe":
-            return finite_element_modes(self.sections, self._elements, self.n_modes)
-        shapes = self.shapes
-        if shapes is None:
-            shapes = cosine_shapes(self.height, max(self.n_modes, _RITZ_SHAPES))
-        return ritz_modes(self.sections, shapes, self.n_modes)
+        with computable(f"The modes of a beam with {self.sections}"):
+            if self.method == "fe":
+                return finite_element_modes(self.sections, self._elements, self.n_modes)
+            shapes = self.shapes
+            if shapes is None:
+                shapes = cosine_shapes(self.height, max(self.n_modes, _RITZ_SHAPES))
+            return ritz_modes(self.sections, shapes, self.n_modes)
 
     @property
     def _elements(self) -> int:

@@ -3,12 +3,14 @@
 import math
 
 from rockflex._checks import positive, within
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 
 __all__ = ["rigid_block"]
 
 
+@computable("The inertia of a block with this half_diagonal and mass")
 def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> RockingProperties:
     """Properties of a homogeneous rectangular block, for the models "rigid" and "rigid-C".
 

@@ -7,6 +7,7 @@ from typing import SupportsIndex
 from numpy.typing import ArrayLike
 
 from rockflex._checks import mode_count, positive
+from rockflex._computable import computable
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._beam import Beam
 from rockflex.structure._from_matrices import ModalStructure, from_matrices
@@ -84,11 +85,14 @@ class CantileverWithTipMass:
                 damping_ratio=self.damping_ratio,
                 n_modes=_N_MODES if self.n_modes is None else self.n_modes,
             )
-        h, k = self.height, self.bending_stiffness / self.height**3
         modes = 1 if self.tip_inertia == 0.0 else 2
+        h = self.height
+        with computable(f"The stiffness of a column with height = {h:g} m and EI = {self.bending_stiffness:g} N m²"):
+            k = self.bending_stiffness / h**3
+            matrix = [[12.0 * k, -6.0 * k * h], [-6.0 * k * h, 4.0 * k * h**2]]
         return from_matrices(
             [self.tip_mass, self.tip_inertia],
-            [[12.0 * k, -6.0 * k * h], [-6.0 * k * h, 4.0 * k * h**2]],
+            matrix,
             {0: h},
             rotations=[1],
             base_mass=self.base_mass,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import dimensions, finite_vector, positive
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._lumped import LumpedStructure
@@ -127,6 +128,7 @@ class FishBone:
         return self.lumped.rocking(n_modes)
 
 
+@computable("The stiffness of a frame with these story heights, column and beam stiffnesses")
 def condensed_stiffness(story_heights: Float, column_stiffness: Float, beam_stiffness: Float) -> Float:
     """Lateral stiffness of the floors in N/m, shape (N, N), rotations condensed out; arguments as in `FishBone`."""
     n = story_heights.size

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._checks import in_range, positive, whole_number
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties
 from rockflex.structure._fish_bone import condensed_stiffness
@@ -102,10 +103,13 @@ class Frame:
     def lumped(self) -> LumpedStructure:
         """The structure that the frame assembles: floor masses, condensed stiffness, floor heights."""
         unit_stiffness, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
-        column_stiffness = self.story_mass * (2.0 * math.pi / (self.period * float(unit_modes.omega[0]))) ** 2
+        given = f"story_mass = {self.story_mass:g} kg and period = {self.period:g} s"
+        with computable(f"The stiffness of a frame with {given}"):
+            column_stiffness = self.story_mass * (2.0 * math.pi / (self.period * float(unit_modes.omega[0]))) ** 2
+            stiffness = column_stiffness * unit_stiffness
         return LumpedStructure(
             np.full(self.n_stories, self.story_mass),
-            column_stiffness * unit_stiffness,
+            stiffness,
             self.story_height * np.arange(1.0, self.n_stories + 1.0),
             base_mass=self.base_mass,
             half_width=self.half_width,
@@ -134,6 +138,7 @@ class Frame:
 
 
 @lru_cache(maxsize=128)
+@computable("The modes of the frame with this stiffness_ratio")
 def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Float, ModalProperties]:
     """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
     one = np.ones(n_stories)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import damping_ratios, dimensions, finite_matrix, finite_vector, positive
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_mass, checked_stiffness
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties, modes_that_take_part
@@ -126,12 +127,13 @@ def from_matrices(
     keep = np.asarray(m.any(axis=1))
     freedoms = freedoms.kept(keep)
     m = checked_mass(m[np.ix_(keep, keep)], freedoms.size)
-    if not keep.all():
-        tie = k[np.ix_(keep, ~keep)]
-        k = k[np.ix_(keep, keep)] - tie @ np.linalg.solve(k[np.ix_(~keep, ~keep)], tie.T)
-        k = 0.5 * (k + k.T)
-    omega, shapes = _modes(k, m)
-    return _structure(freedoms.modes(omega, shapes, m), base_mass, half_width, damping_ratio, n_modes)
+    with computable("The modes of the given mass and stiffness matrices"):
+        if not keep.all():
+            tie = k[np.ix_(keep, ~keep)]
+            k = k[np.ix_(keep, keep)] - tie @ np.linalg.solve(k[np.ix_(~keep, ~keep)], tie.T)
+            k = 0.5 * (k + k.T)
+        modes = freedoms.modes(*_modes(k, m), m)
+    return _structure(modes, base_mass, half_width, damping_ratio, n_modes)
 
 
 def from_modes(

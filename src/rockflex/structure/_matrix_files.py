@@ -1,5 +1,6 @@
 """Matrices from the files that finite element programs write."""
 
+import hashlib
 from pathlib import Path
 from typing import TypeAlias
 
@@ -8,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
 
-__all__ = ["Given", "numbers"]
+__all__ = ["Given", "checksum", "numbers"]
 
 Float = NDArray[np.float64]
 Given: TypeAlias = ArrayLike | str | Path
@@ -45,6 +46,14 @@ def numbers(name: str, given: Given) -> ArrayLike:
         message = f"{name}: {path} does not hold a matrix of numbers that can be read: {error}."
         raise InputError(message) from error
     return array.ravel() if 1 in array.shape and array.shape != (1, 1) else array
+
+
+def checksum(name: str, path: Path) -> str:
+    """SHA-256 of the shape and the numbers (little-endian doubles) of a file; raises as `numbers` does."""
+    array = np.asarray(numbers(name, path), dtype="<f8")
+    digest = hashlib.sha256(repr(array.shape).encode())
+    digest.update(array.tobytes())
+    return digest.hexdigest()
 
 
 def _from_npz(name: str, path: Path) -> Float:

@@ -53,7 +53,8 @@ class Profile:
         """
         flat = z.ravel()
         try:
-            values = np.broadcast_to(np.asarray(self.function(flat), dtype=np.float64), flat.shape)
+            with np.errstate(all="ignore"):  # what is not finite is refused below
+                values = np.broadcast_to(np.asarray(self.function(flat), dtype=np.float64), flat.shape)
         except (TypeError, ValueError) as error:
             message = (
                 f"{self.name} must return one number for each of the heights it is given, an array of shape "

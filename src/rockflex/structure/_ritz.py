@@ -50,7 +50,8 @@ class RitzShapes:
         """
         rows: list[Float] = []
         for name in ("value", "slope", "curvature"):
-            array = np.asarray(getattr(self, name)(z), dtype=np.float64)
+            with np.errstate(all="ignore"):  # what is not finite is refused below
+                array = np.asarray(getattr(self, name)(z), dtype=np.float64)
             if array.ndim != 2 or array.shape[0] != z.size or (rows and array.shape != rows[0].shape):
                 expected = rows[0].shape if rows else f"({z.size}, n_shapes)"
                 message = (

@@ -89,6 +89,10 @@ class Sections:
     lumped: LumpedMasses
     rotary_in_modes: bool
 
+    def __str__(self) -> str:
+        masses, stiffness = (profile.at(np.zeros(1))[0] for profile in (self.mass, self.bending_stiffness))
+        return f"height = {self.height:g} m, and mass = {masses:g} kg/m and EI = {stiffness:g} N m² at its base"
+
     @property
     def kinks(self) -> Float:
         """Heights in m at which a table has a row."""

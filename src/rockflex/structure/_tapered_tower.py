@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import positive
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._beam import Beam
@@ -82,6 +83,7 @@ class TaperedTower:
         vars(self).update(n_modes=self.beam.n_modes, damping_ratio=self.beam.damping_ratio)
 
     @cached_property
+    @computable("The sections of a tower with these radii, wall, density and elastic_modulus")
     def beam(self) -> Beam:
         """The cantilever that the tower is."""
         return Beam(

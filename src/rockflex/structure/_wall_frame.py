@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from rockflex._checks import damping_ratios, positive, whole_number
+from rockflex._computable import computable
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 
@@ -106,6 +107,7 @@ class WallFrame:
         return self._modes.rocking(self.base_mass, self.half_width, zeta, n_modes)
 
     @cached_property
+    @computable("The modes of a wall and frame with this height, mass, stiffness_parameter and period")
     def _modes(self) -> MassNormalisedModes:
         alpha = self.stiffness_parameter
         roots = np.array([_root(n, alpha) for n in range(1, self.n_modes + 1)])

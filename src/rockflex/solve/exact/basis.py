@@ -180,8 +180,11 @@ def _to_position_and_speed(columns: Array, pairs: Array, roots: Complex) -> None
     count = pairs.shape[0]
     half = columns.shape[0] // 2 - 1  # the place of θ
     first, second = (columns[:, k] / columns[half, k] for k in (pair, count + pair))
-    columns[:, pair] = (one * second - two * first) / (one - two)
-    columns[:, count + pair] = p * (first - second) / (one - two)
+    place = (one * second - two * first) / (one - two)
+    speed = p * (first - second) / (one - two)
+    # For θ = 1 the modes of a narrow base move far: both take the size of the other columns, by a power of two.
+    size = 0.5 ** math.frexp(max(float(np.linalg.norm(place)), float(np.linalg.norm(speed))))[1]
+    columns[:, pair], columns[:, count + pair] = size * place, size * speed
     pairs[pair] = [[0.0, p], [p, one + two]]
 
 

@@ -79,6 +79,8 @@ class Scratch(NamedTuple):
     start: Array  # (F,): values of the rows
     end: Array  # (F,)
     doubt: NDArray[np.bool_]  # (F,): rows that may leave their limits inside the step
+    asked: NDArray[np.bool_]  # (F,): rows that are looked at; all of them, but where peaks are searched
+    clear: NDArray[np.int64]  # (F,): up to which place on the grid that search is done
     series: Array  # (K, order + 1)
     polys: Array  # (F + 1, order + 1): polynomials of the rows, and one to work on
 
@@ -97,6 +99,8 @@ def scratch(state: Array, rows: int, order: int) -> Scratch:
         np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows, dtype=np.bool_),
+        np.ones(rows, dtype=np.bool_),
+        np.zeros(rows, dtype=np.int64),
         np.zeros((size // 2, order + 1)),
         np.zeros((rows + 1, order + 1)),
     )

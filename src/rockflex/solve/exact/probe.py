@@ -37,7 +37,7 @@ def examine(
     slope: float,
     room: Scratch,
 ) -> None:
-    """Carry `room.w` over a step into `room.w_end`, with the rows at both ends and the pairs' norms."""
+    """Carry `room.w` over a step into `room.w_end`, with the rows asked for at both ends and the pairs' norms."""
     pairs = room.norms.size
     count = pairs if phase == ROCKING else pairs - 1
     for k in range(count):
@@ -51,6 +51,8 @@ def examine(
             for k in range(room.w.size):
                 room.w_end[i] += system.dense[level, i, k] * room.w[k]
     for f in range(room.start.size):
+        if not room.asked[f]:
+            continue
         common = system.row_forcing[phase, f, 1] * slope + system.row_forcing[phase, f, 2] * side
         before = common + system.row_forcing[phase, f, 0] * here
         after = common + system.row_forcing[phase, f, 0] * there
@@ -76,6 +78,8 @@ def probe(system: System, phase: int, level: int, side: float, slope: float, roo
     finding = NOTHING
     for f in range(room.start.size):
         room.doubt[f] = False
+        if not room.asked[f]:
+            continue
         sag = 0.0
         for k in range(count):
             sag += system.sag[phase, level, f, k] * room.norms[k]

@@ -6,7 +6,7 @@ from rockflex._kernel import kernel
 from rockflex.solve.exact.grid import largest_step
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Log, Scratch, System
 from rockflex.solve.exact.march import to_state
-from rockflex.solve.exact.peaks import raise_peak, raise_peaks
+from rockflex.solve.exact.peaks import raise_peak
 from rockflex.solve.exact.probe import examine, probe, set_limits
 from rockflex.solve.exact.series import expand, row_series
 
@@ -20,7 +20,8 @@ def survey(
     """Raise the peaks of the rows in doubt over the step of `level` that has just been probed.
 
     The step is walked on the dyadic grid in the largest steps in which no peak can hide, down to units that are
-    crossed by their power series. `room.w_end` still holds the end of the step afterwards.
+    crossed by their power series. A row that cannot hide a peak in a step is not looked at in its parts.
+    `room.w_end` still holds the end of the step afterwards.
     """
     phase = ROCKING if side != 0.0 else CONTACT
     levels = system.sag.shape[1] - 1
@@ -28,23 +29,31 @@ def survey(
     unit = float(system.steps[levels])
     for k in range(room.w.size):
         room.held[k] = room.w_end[k]
+    for f in range(room.clear.size):
+        room.clear[f] = 0 if room.doubt[f] else grid
     place, depth, probed = 0, level, True
     while place < grid:
         stride = 1 << (levels - depth)
         start = here + slope * unit * place
         clear = False
         if not probed:
+            for f in range(room.clear.size):
+                room.asked[f] = room.clear[f] <= place
             set_limits(side, system.physics.resistance, log, room)
             examine(system, phase, depth, side, start, start + slope * unit * stride, slope, room)
             probe(system, phase, depth, side, slope, room)
-            clear = not np.any(room.doubt[1:])
+            clear = True
+            for f in range(room.clear.size):
+                if room.doubt[f]:
+                    clear = False
+                elif room.asked[f]:
+                    room.clear[f] = place + stride
+                    raise_end(f, time + unit * (place + stride), log, room)
         if not clear and depth < levels:
             depth += 1
             probed = False
             continue
-        if clear:
-            raise_peaks(room.end, side, time + unit * (place + stride), log)
-        else:
+        if not clear:
             to_state(system, phase, start, slope, side, room)
             survey_unit(system, side, start, slope, unit, time + unit * place, log, room)
         for k in range(room.w.size):
@@ -54,6 +63,8 @@ def survey(
         probed = False
     for k in range(room.w.size):
         room.w_end[k] = room.held[k]
+    for f in range(room.asked.size):
+        room.asked[f] = True
 
 
 @kernel
@@ -74,4 +85,12 @@ def survey_unit(
         if room.doubt[f]:
             row_series(system.plain_rows, phase, f, room.series, acceleration, slope, side, step, room.polys)
             raise_peak(room.polys, f, 1.0, time, step, log)
-    raise_peaks(room.end, side, time + step, log)
+            raise_end(f, time + step, log, room)
+
+
+@kernel
+def raise_end(row: int, time: float, log: Log, room: Scratch) -> None:
+    """Note the value of a row at the end of the step examined."""
+    if abs(room.end[row]) > log.peaks[row]:
+        log.peaks[row] = abs(room.end[row])
+        log.times[row] = time

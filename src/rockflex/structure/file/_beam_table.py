@@ -55,9 +55,9 @@ class BeamTable(StructureTable):
     n_modes: int = Field(5, description="how many modes to take, a whole number")
     n_elements: int | None = Field(None, description="how many finite elements to take (default: 1000), a whole number")
 
-    def arguments(self, _folder: Path) -> dict[str, Any]:
+    def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with a table for each list."""
-        given: dict[str, Any] = self.values()
+        given = super().arguments(folder)
         z = given.pop("z", None)
         lists = [name for name in _PROFILES if isinstance(given.get(name), list)]
         if z is None and lists:

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.structure import Restrained
+from rockflex.structure._matrix_files import checksum
 from rockflex.structure.file._beam_table import BeamTable
 from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
 from rockflex.structure.file._table import Table
@@ -137,6 +138,17 @@ class StructureEntry(Table):
         except InputError as error:
             message = f"[[tendons]]: {error}"
             raise InputError(message) from error
+
+    def checksums(self, folder: Path | str = "") -> dict[str, str]:
+        """SHA-256 of the numbers in each file that the structure is made from, by its key, such as "matrices.mass".
+
+        Raises
+        ------
+        InputError
+            If a file of numbers cannot be read.
+        """
+        files = self.table.files(Path(folder))
+        return {f"{self.kind}.{name}": checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
         """Return the values of the structure's table, and its tendons if there are any."""

@@ -34,10 +34,14 @@ class _FromFiles(StructureTable):
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with paths from `folder`, and indices as numbers."""
-        given = {name: folder / value if isinstance(value, str) else value for name, value in self.values().items()}
+        given = super().arguments(folder)
         if isinstance(self.heights, dict):
             given["heights"] = {int(index): height for index, height in self.heights.items()}
         return given
+
+    def files(self, folder: Path) -> dict[str, Path]:
+        """Return the path, from `folder`, of each value that is kept in a file."""
+        return {name: folder / value for name, value in self.values().items() if isinstance(value, str)}
 
 
 class MatricesTable(_FromFiles):

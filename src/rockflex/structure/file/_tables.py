@@ -85,9 +85,13 @@ class StructureTable(Table):
         """Return what was given, and the defaults of what was not."""
         return self.model_dump(exclude_none=True)
 
-    def arguments(self, _folder: Path) -> dict[str, Any]:
-        """Return the values as the arguments of what makes the structure."""
-        return self.values()
+    def arguments(self, folder: Path) -> dict[str, Any]:
+        """Return the values as the arguments of what makes the structure, with paths from `folder`."""
+        return self.values() | self.files(folder)
+
+    def files(self, _folder: Path) -> dict[str, Path]:
+        """Return the path, from `folder`, of each value that is kept in a file."""
+        return {}
 
 
 class FrameTable(StructureTable):

@@ -1,0 +1,73 @@
+"""Text made to keep a reader busy is answered at once: no pattern tries what it has matched again in parts."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+SIZE = 1_000_000  # characters; a quadratic pattern takes hours
+PATIENCE = 60.0  # s for all, where some are needed
+READ = """
+import json, sys
+from pathlib import Path
+import rockflex as rf
+path, texts, suffix = Path(sys.argv[1]), json.loads(sys.argv[2]), sys.argv[3]
+for kind, text in texts.items():
+    print(kind, end=": ", flush=True)
+    file = path / f"crafted.{suffix}"
+    file.write_text(eval(text))
+    try:
+        print("read", rf.read_motion(file, units="g", dt=0.01).name)
+    except rf.InputError as error:
+        print("refused", str(error)[:200].replace("\\n", " "))
+"""
+ROWS = "\\n0 .1\\n0.01 .2\\n0.02 .3\\n"
+SERIES = "\\n0.1\\n0.2\\n0.3\\n"
+HEADER = "NPTS= 3, DT= .01 SEC"
+CRAFTED = {
+    "digits": f"'1' * {SIZE} + 'x'",
+    "digits after numbers": f"'0.1\\n0.2\\n' + '1' * {SIZE} + 'x\\n'",
+    "digits and a comma": f"'0 .1\\n0.01 .2\\n' + '1' * {SIZE} + ',' + '1' * {SIZE} + ' .3\\n'",
+    "digits with a point": f"'1' * {SIZE} + '.' + '1' * {SIZE} + 'e5x'",
+    "exponent": f"'1e' + '1' * {SIZE} + 'x'",
+    "signs": f"'+-' * {SIZE // 2}",
+    "blanks": f"'time' + ' ' * {SIZE} + 'x{ROWS}'",
+    "blanks in a bracket": f"'time (s) acc (' + ' ' * {SIZE} + 'g){ROWS}'",
+    "tabs and blanks": f"'time' + '\\t ' * {SIZE // 2} + 'x{ROWS}'",
+    "brackets": f"'(' * {SIZE} + '{ROWS}'",
+    "brackets closed once": f"'()' + '[(' * {SIZE // 2} + '{ROWS}'",
+    "brackets of one column": f"'(' * {SIZE} + '{SERIES}'",
+    "brackets with blanks": f"' (' * {SIZE // 2} + ')' + '{ROWS}'",
+    "separators": f"', ;' * {SIZE // 3} + '{ROWS}'",
+    "NPTS and blanks": f"'NPTS' + ' ' * {SIZE} + '{ROWS}'",
+    "NPTS again and again": f"'NPTS DT = ' * {SIZE // 10} + '{ROWS}'",
+    "NPTS of many digits": f"'NPTS= ' + '1' * {SIZE} + ', DT= .01 SEC{SERIES}'",
+    "a few digits too many": "'NPTS= ' + '1' * 5000 + ', DT= .01 SEC" + SERIES + "'",
+    "DT of many digits": f"'NPTS= 3, DT= .' + '1' * {SIZE} + ' SEC{SERIES}'",
+    "bare header, blanks": f"' ' * {SIZE // 3} + '3' + ' ' * {SIZE // 3} + '.01' + ' ' * {SIZE // 3} + 'x{SERIES}'",
+    "bare header, digits": f"'1' * {SIZE // 2} + ' ' + '1' * {SIZE // 2} + ' x{SERIES}'",
+    "bare header, count": f"'3 ' + '0' * {SIZE} + ' NPT{SERIES}'",
+    "units": f"'units ' * {SIZE // 6} + '\\n{HEADER}{SERIES}'",
+    "units and blanks": f"'units' + ' ' * {SIZE} + '\\n{HEADER}{SERIES}'",
+    "blanks after a date": f"'E, 1/2/1999' + ' ' * {SIZE} + 'x\\n{HEADER}{SERIES}'",
+    "dates": f"'1/2/' * {SIZE // 4} + '\\n{HEADER}{SERIES}'",
+    "component of blanks": f"'E, 1/2/1999, A' + ' ' * {SIZE} + 'x\\n{HEADER}{SERIES}'",
+    "component of brackets": f"'E, 1/2/1999, A ' + '(' * {SIZE} + '\\n{HEADER}{SERIES}'",
+    "values of many digits": f"'{HEADER}\\n0.1\\n0.2\\n0.3' + '1' * {SIZE} + 'x\\n'",
+    "values run together": f"'{HEADER}\\n' + '1-' * {SIZE // 2} + 'x\\n'",
+    "numbers with a comma": f"'{HEADER}\\n' + '1' * {SIZE // 2} + ',x' + '1' * {SIZE // 2} + '\\n'",
+}
+
+
+@pytest.mark.parametrize("suffix", ["txt", "at2"])
+def test_crafted_text(tmp_path, suffix):
+    command = [sys.executable, "-c", READ, str(tmp_path), json.dumps(CRAFTED), suffix]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=True)
+    except subprocess.TimeoutExpired as error:
+        pytest.fail(f"A reader is still busy after {PATIENCE:g} s with {(error.stdout or b'').decode()[-100:]!r}")
+    said = dict(line.split(": ", 1) for line in done.stdout.splitlines())
+    assert said.keys() == CRAFTED.keys()
+    assert all(word.startswith(("read", "refused")) for word in said.values())
+    assert "its header says NPTS = 111111111111111111, but 3 values follow" in said["a few digits too many"]
