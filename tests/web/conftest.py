@@ -1,5 +1,6 @@
 """A server on a port of its own, and a real Chromium before it."""
 
+import base64
 import json
 import os
 import shutil
@@ -162,6 +163,59 @@ class Visitor:
 
     def value(self, selector: str) -> float:
         return float(self.page.locator(selector).first.get_attribute("data-value"))
+
+    def shown(self, scale: float, models: list[str]) -> None:
+        """Wait until the Response tab shows this."""
+        wanted = json.dumps([scale, models], separators=(",", ":"))
+        self.page.wait_for_function("w => document.querySelector('[data-shows]')?.dataset.shows === w", arg=wanted)
+
+    def peak(self, model: str, name: str) -> float:
+        return self.value(f'#peaks tr[data-model="{model}"] [data-name="{name}"]')
+
+    def wait_for(self, selector: str, value: float) -> None:
+        """Wait until an element holds a number, to its last bit."""
+        self.page.wait_for_function(
+            "([s, v]) => Number(document.querySelector(s)?.dataset.value) === v", arg=[selector, value]
+        )
+
+    def wait_for_peak(self, model: str, name: str, value: float) -> None:
+        self.wait_for(f'#peaks tr[data-model="{model}"] [data-name="{name}"]', value)
+
+    def run_study(self) -> None:
+        """Start the study of the tab, and wait until it is done."""
+        self.page.locator("#run").click()
+        self.page.wait_for_function("() => document.querySelector('#status').textContent.startsWith('Done: ')")
+
+    def upload(self, label: str, name: str, content: bytes) -> None:
+        file: Any = {"name": name, "mimeType": "text/plain", "buffer": content}
+        self.page.get_by_label(label, exact=True).set_input_files(file)
+
+
+def link_to(state: Any) -> str:
+    """Address of a state."""
+    text = base64.urlsafe_b64encode(json.dumps(state).encode()).decode().rstrip("=")
+    return f"/#s={text}"
+
+
+@pytest.fixture(scope="session")
+def link() -> Any:
+    return link_to
+
+
+@pytest.fixture(scope="session")
+def frame() -> Any:
+    """The structure that the page begins with."""
+    import rockflex as rf
+
+    return rf.Frame(5, 3.0, 40e3, 40e3, float("inf"), 1.0, 10.0, 0.02)
+
+
+@pytest.fixture(scope="session")
+def el_centro() -> Any:
+    """The record that the page begins with."""
+    import rockflex as rf
+
+    return rf.load_suite("el-centro-1940")[0]
 
 
 @pytest.fixture

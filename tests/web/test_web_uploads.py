@@ -88,7 +88,7 @@ def test_a_bad_record_is_refused_with_a_reason(content, text) -> None:
     ],
     ids=range(8),
 )
-def test_a_file_made_to_keep_the_reader_busy_is_refused_at_once(content) -> None:
+def test_a_file_made_to_keep_the_reader_busy_is_refused_in_time(content) -> None:
     for name in ("mine.txt", "mine.at2"):
         refusal(read_record, name, content, None, None)
 

@@ -15,7 +15,7 @@ from rockflex.web._design import design_study, design_table_of
 from rockflex.web._jobs import Job
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
-from rockflex.web._response import responses
+from rockflex.web._response import check_energy, responses
 from rockflex.web._script import cloud_script, design_script, response_script
 from rockflex.web._state import State
 from rockflex.web._studies import runs_of
@@ -74,7 +74,9 @@ def _figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
 def _energy(state: State, uploads: Uploads) -> tuple[str, bytes]:
     from rockflex.plot import plot_energy
 
-    return "energy.svg", svg(plot_energy(responses(state, uploads)[2][0]))
+    built, motion, found = responses(state, uploads)
+    check_energy(built, motion, found[0].model, state)
+    return "energy.svg", svg(plot_energy(found[0]))
 
 
 def _modes(state: State, _: Uploads) -> tuple[str, bytes]:

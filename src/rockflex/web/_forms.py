@@ -38,6 +38,10 @@ SYMBOLS = {
     "m_tot": "Total mass",
     "zeta": "Damping ratio",
     "omega": "ω",
+    "post_yield_ratio": "Post-yield stiffness ratio α",
+    "gamma": "γ",
+    "beta": "β",
+    "exponent": "Exponent n",
     "z": "Heights z",
 }
 _UNIT = re.compile(r"\bin (kg m²|kg/m³|kg/m|kg m|kg|N m²|N m/rad|N/m²|N/m|N|rad/s|rad|m|s)(?=[\s,;:(]|$)")
@@ -81,7 +85,7 @@ def _help(description: str) -> str:
     """What a field is, without what it is written as."""
     text = _TAIL.sub("", description).strip()
     text = re.sub(r", or the path of a .*$", "", text)
-    begins = text[:1].upper() if text[1:2].islower() or text[1:2] == " " else text[:1]  # not ω or h*_1
+    begins = text[:1].upper() if re.match("a |[a-z]{2}", text) else text[:1]  # not γ, n or h*_1
     return f"{begins}{text[1:]}."
 
 

@@ -19,13 +19,13 @@ from rockflex.web._state import State
 from rockflex.web._structures import Built, build
 from rockflex.web._uploads import Uploads
 
-__all__ = ["PEAK_ROWS", "response_view", "responses"]
+__all__ = ["PEAK_ROWS", "check_energy", "response_view", "responses"]
 
 Array = NDArray[np.float64]
 
 POINTS = 1600  # of a history, events aside
 EVENTS = 600  # nodes of events kept, at most
-LEDGER = 5e6  # effort of an energy ledger: about a second
+LEDGER = 1e7  # work of the energies, see `Pace`: about a second
 
 PEAK_ROWS = (
     ("max_rotation", "θ_max", "rad"),
@@ -48,7 +48,8 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     found: list[Response] = []
     free, law = state.free_vibration, state.law()
     for label in state.models:
-        pace(built.properties, label).check(motion, free, "models")
+        known = pace(built.properties, label)
+        known.check(known.history(motion, free), motion, free, "models")
         yielding = state.hysteresis() if parse_model(label).yields else None
         try:
             found.append(simulate(built.structure, motion, label, free_vibration=free, bouc_wen=yielding, impact=law))
@@ -74,17 +75,19 @@ def response_view(state: State, uploads: Uploads, focus: str = "") -> dict[str, 
             "nominal": p.nominal_overturning_rotation,
             "models": [_curves(built, response) for response in found],
             "suggested_yield": _suggested_yield(p, motion),
-            "energy": _energy(main, pace(p, main.model).effort(motion, state.free_vibration)),
+            "energy": _energy(built, motion, main, state),
         }
     )
 
 
 def _suggested_yield(p: RockingProperties, motion: GroundMotion) -> float | None:
-    """Half of what the first mode would move on a fixed base, in m: a yield displacement to begin with."""
+    """A yield displacement D_y to begin with, in m: beyond what lifts the base, below what a fixed base would see."""
     if not p.n_modes:
         return None
-    largest = motion.sd(2.0 * np.pi / float(p.omega[0]), float(p.zeta[0]))
-    return float(f"{min(max(0.5 * largest, 1e-4), 10.0):.2g}")
+    stiffness = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2)
+    held = 1.5 * p.resisting_moment / stiffness
+    fixed = 0.5 * motion.sd(2.0 * np.pi / float(p.omega[0]), float(p.zeta[0]))
+    return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
 
 
 def _curves(built: Built, response: Response) -> dict[str, Any]:
@@ -131,18 +134,24 @@ def _fall_time(history: History) -> float | None:
     return float(history.time[inside[-1] + 1])
 
 
-def _energy(response: Response, work: float) -> dict[str, Any]:
-    """Energies over time, stacked in the browser; a note in their place where they would take long."""
+def check_energy(built: Built, motion: GroundMotion, label: str, state: State) -> None:
+    """Refuse energies that would take long to compute."""
+    if pace(built.properties, label).energy(motion, state.free_vibration) > LEDGER:
+        message = "the energy of so many modes, or of such fast ones, over so long a time is left out here."
+        raise Refusal({"energy": message})
+
+
+def _energy(built: Built, motion: GroundMotion, response: Response, state: State) -> dict[str, Any]:
+    """Energies over time, stacked in the browser; a note in their place where they cannot be had."""
     history = response.history
     assert history is not None  # asked for in `responses`
-    if work > LEDGER:
-        note = "The energy of so many modes over so long a time is left out here."
-        return {"label": response.model, "note": note}
     try:
+        check_energy(built, motion, response.model, state)
         ledger = history.energy
-    except InputError as error:
-        return {"label": response.model, "note": str(error)}
-    names = ("kinetic", "strain", "gravity", "tendons", "damped", "lost", "input")
+    except (Refusal, InputError) as error:
+        said = error.errors["energy"].capitalize() if isinstance(error, Refusal) else str(error)
+        return {"label": response.model, "note": said}
+    names = ("kinetic", "strain", "gravity", "tendons", "damped", "yielded", "lost", "input")
     curves = {name: np.asarray(getattr(ledger, name)) for name in names}
     kept = envelope([curves["kinetic"], curves["strain"]], 1000)
     kept = np.unique(np.concatenate((kept, np.flatnonzero(np.diff(ledger.lost) != 0.0)[:EVENTS] + 1)))

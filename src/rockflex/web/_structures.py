@@ -19,7 +19,6 @@ __all__ = ["Built", "build", "structure_view"]
 
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
-JUDGED = 30  # modes among which as many as are needed are looked for: the work grows with the fourth power
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,34 +90,45 @@ def _straight(entry: StructureEntry, p: RockingProperties) -> tuple[NDArray[np.f
 
 
 def structure_view(entry: StructureEntry) -> dict[str, Any]:
-    """Return what the tab shows of a structure: its outline, parameters, modes and what they are good for."""
+    """Return what the tab shows of a structure: its outline, parameters, modes and what they are good for.
+
+    Raises
+    ------
+    Refusal
+        If it cannot be built, or its modes cannot be judged.
+    """
     built = build(entry)
     p = built.properties
-    view: dict[str, Any] = {
-        "name": entry.name,
-        "kind": entry.kind,
-        "heights": built.heights,
-        "shapes": built.shapes[:, :SHOWN].T,
-        "shapes_known": built.modes is not None,
-        "half_width": p.half_width,
-        "tendons": [tendon.position for tendon in p.tendons],
-        "properties": _parameters(p),
-        "modes": _modes(built),
-        "adequacy": None,
-    }
-    if p.n_modes:
-        base = getattr(entry.table, "base_mass", None)
-        first = p.truncated(min(p.n_modes, JUDGED))
-        try:
-            found = adequacy(first, base_mass=base)
-        except InputError:
-            found = adequacy(first)
-        view["adequacy"] = {
-            "reason": found.reason,
-            "model": found.model,
-            "model_for_shear": found.model_for_shear,
+    try:
+        modes, judged = _modes(built), _judged(entry, p)
+    except InputError as error:
+        raise Refusal({"structure": str(error)}) from error
+    return plain(
+        {
+            "name": entry.name,
+            "kind": entry.kind,
+            "heights": built.heights,
+            "shapes": built.shapes[:, :SHOWN].T,
+            "shapes_known": built.modes is not None,
+            "half_width": p.half_width,
+            "tendons": [tendon.position for tendon in p.tendons],
+            "properties": _parameters(p),
+            "modes": modes,
+            "adequacy": judged,
         }
-    return plain(view)
+    )
+
+
+def _judged(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:
+    """What is said of how many modes are enough."""
+    if not p.n_modes:
+        return None
+    base = getattr(entry.table, "base_mass", None)
+    try:
+        found = adequacy(p, base_mass=base)
+    except InputError:  # a mass of the base that does not go with the rest
+        found = adequacy(p)
+    return {"reason": found.reason, "model": found.model, "model_for_shear": found.model_for_shear}
 
 
 def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
@@ -151,7 +161,7 @@ def _modes(built: Built) -> list[dict[str, Any]]:
     p = built.properties
     if not p.n_modes:
         return []
-    lifted = uplifted_modes(p, min(p.n_modes, 2 * JUDGED)).omega
+    lifted = uplifted_modes(p).omega
     return [
         {
             "period": 2.0 * np.pi / p.omega[n],

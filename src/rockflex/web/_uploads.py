@@ -20,9 +20,6 @@ from rockflex.web._refusal import Refusal
 __all__ = ["Uploads", "read_matrices", "read_record"]
 
 KEPT = 64  # records in memory
-LINE = 100_000  # characters
-_LONG_NUMBER = re.compile(r"\d{65}")
-_LONG_BLANK = re.compile(r"[^\S\r\n]{201}")
 MATRICES = ("mass", "stiffness", "heights", "rotations")
 
 
@@ -79,7 +76,7 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Raises
     ------
     Refusal
-        If the file is too large, is built to keep readers busy, cannot be read, or holds too long a record.
+        If the file is too large, cannot be read, or holds too long a record.
     """
     shown = clean_name(name)
     text = _decoded(shown, content)
@@ -118,15 +115,6 @@ def _decoded(name: str, content: bytes) -> str:
             continue
     else:
         message = f"{name} is no text file. A record is expected as AT2, CSV or columns of numbers."
-        raise Refusal({"record.upload": message})
-    # Some regular expressions of readers take the square of the length of what fits in part.
-    longest = max(map(len, re.split("[\r\n]", text)))
-    brackets = text.count("(") + text.count("[")
-    if longest > LINE or brackets > 1000 or _LONG_NUMBER.search(text) or _LONG_BLANK.search(text):
-        message = (
-            f"{name} does not look like a record: a line of more than {LINE} characters, a number of more than 64 "
-            "digits, more than 200 blanks in a row, or more than 1000 brackets."
-        )
         raise Refusal({"record.upload": message})
     return text
 

@@ -13,6 +13,13 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
+export function svg(tag, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
 export function number(value, digits = 4) {
   if (value === null || value === undefined || value === "") return "–";
   const x = Number(value);
@@ -75,6 +82,12 @@ export function save(name, blob) {
   link.click();
   link.remove();
   setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
+// What is to be said of a file that has more bytes than the page takes; nothing if it has not.
+export function tooLarge({ name, size }, most) {
+  if (size <= most) return "";
+  return `${name} has ${(size / 1e6).toFixed(1)} MB, but the page takes ${most / 1e6} MB at most.`;
 }
 
 // A symbol whose index follows an underscore, or a unit with one.

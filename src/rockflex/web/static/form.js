@@ -1,6 +1,6 @@
 // Fields with a label, a unit, limits, help and room for an error.
 
-import { clone, h, number } from "./dom.js";
+import { h, number, symbol } from "./dom.js";
 
 let serial = 0;
 
@@ -8,33 +8,46 @@ let serial = 0;
 export function field(path, label, control, { unit = "", hint = "", help = "" } = {}) {
   const id = control.id || `f${++serial}`;
   control.id = id;
-  if (hint) control.setAttribute("aria-describedby", `${id}-hint`);
+  control.setAttribute("aria-describedby", hint ? `${id}-hint ${id}-error` : `${id}-error`);
   return h("div", { class: "field", "data-path": path },
     h("label", { for: id, title: help }, label),
     h("div", { class: "row" }, control, unit ? h("span", { class: "unit" }, unit) : null),
-    hint ? h("div", { class: "hint", id: `${id}-hint` }, hint) : null,
-    h("div", { class: "error", role: "alert" }));
+    hint ? h("div", { class: "hint", id: `${id}-hint` }, symbol(hint)) : null,
+    trouble(`${id}-error`));
+}
+
+// Room for what the server has to say about what is around it.
+export function trouble(id = null) {
+  return h("div", { class: "error", role: "alert", id });
 }
 
 // Put every message beside its field; return those that have none here.
 export function showErrors(root, errors) {
   for (const element of root.querySelectorAll("[data-path]")) {
     element.querySelector(":scope > .error").textContent = "";
-    for (const control of element.querySelectorAll("input, select, textarea")) control.removeAttribute("aria-invalid");
+    for (const control of controls(element)) control.removeAttribute("aria-invalid");
   }
   const left = [];
   for (const [path, text] of Object.entries(errors)) {
     const parts = path.split(".");
     let element = null;
-    for (; parts.length && !element; parts.pop()) element = root.querySelector(`[data-path="${CSS.escape(parts.join("."))}"]`);
+    for (; parts.length && !element; parts.pop())
+      element = root.querySelector(`[data-path="${CSS.escape(parts.join("."))}"]`);
     if (!element) {
       left.push(path ? `${path}: ${text}` : text);
       continue;
     }
-    element.querySelector(":scope > .error").textContent = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
-    for (const control of element.querySelectorAll("input, select, textarea")) control.setAttribute("aria-invalid", "true");
+    const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
+    element.querySelector(":scope > .error").textContent = sentence;
+    // A message about a whole group says nothing of its single fields.
+    if (element.classList.contains("field"))
+      for (const control of controls(element)) control.setAttribute("aria-invalid", "true");
   }
   return left;
+}
+
+function controls(element) {
+  return element.querySelectorAll("input, select, textarea");
 }
 
 export function parseNumber(text) {
@@ -45,7 +58,7 @@ export function parseNumber(text) {
 }
 
 const list = (text) => text.split(/[,;\s]+/).filter(Boolean).map(parseNumber);
-const rows = (text) => text.split(/[\n;]+/).map((line) => line.trim()).filter(Boolean).map(list);
+const rows = (text) => text.split(/[\n;]+/).map((row) => row.trim()).filter(Boolean).map(list);
 
 function read(type, text) {
   if (text.trim() === "") return undefined;
@@ -63,9 +76,15 @@ function read(type, text) {
 
 function write(value) {
   if (value === undefined || value === null) return "";
-  if (!Array.isArray(value)) return typeof value === "object" ? JSON.stringify(value) : String(value);
-  if (Array.isArray(value[0])) return value.map((row) => row.join(", ")).join("\n");
-  return value.join(", ");
+  if (!Array.isArray(value)) return plain(value);
+  if (Array.isArray(value[0])) return value.map((row) => row.map(plain).join(", ")).join("\n");
+  return value.map(plain).join(", ");
+}
+
+// Without rows of zeros that nobody can count.
+function plain(value) {
+  const long = typeof value === "number" && Math.abs(value) >= 1e7;
+  return long ? value.toExponential().replace("e+", "e") : String(value);
 }
 
 // One field of a table that the server describes; `change(value)` is called with undefined where it was left empty.
@@ -85,10 +104,59 @@ export function tableField(path, spec, value, change) {
       value: write(shown), onchange: () => change(read(spec.type, control.value)),
     });
   }
-  const limits = spec.low === null ? "" : `${number(spec.low)} to ${number(spec.high)}${spec.unit ? ` ${spec.unit}` : ""}`;
-  const optional = spec.required ? "" : "may be left empty";
+  const unit = spec.unit ? ` ${spec.unit}` : "";
+  const limits = spec.low === null ? "" : `${number(spec.low)} to ${number(spec.high)}${unit}`;
+  const typed = spec.type !== "flag" && spec.type !== "choice";
+  const optional = typed && !spec.required ? "may be left empty" : "";
   const hint = [spec.help.replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
   return field(path, spec.label, control, { unit: spec.unit, hint });
+}
+
+// A table within a table, which may be there or not; `change` gets the whole of it, undefined once it is removed.
+export function tableGroup(path, spec, value, start, change) {
+  let now = value;
+  const element = h("fieldset", { class: "group", "data-path": path });
+  const button = (text, next, focus) => h("button", {
+    type: "button",
+    onclick: () => {
+      now = next();
+      draw();
+      element.querySelector(focus)?.focus();
+      change(now);
+    },
+  }, text);
+  function draw() {
+    const inner = now ? spec.fields.map((each) => tableField(`${path}.${each.name}`, each, now[each.name], (v) => {
+      now = { ...now, [each.name]: v };
+      change(now);
+    })) : [];
+    element.replaceChildren(h("legend", {}, spec.label), h("p", { class: "hint" }, symbol(spec.help)), ...inner,
+      now ? button("Remove", () => undefined, "button") : button("Add", start, "input"), trouble());
+  }
+  draw();
+  return element;
+}
+
+// A box for a number, or for several of them.
+export function box(path, label, value, change, { many = false, ...extra } = {}) {
+  const control = h("input", {
+    type: "text", inputmode: many ? "text" : "decimal", autocomplete: "off", value: write(value),
+    onchange: () => change(many ? list(control.value) : parseNumber(control.value)),
+  });
+  return field(path, label, control, extra);
+}
+
+// Chips of which one at least stays chosen.
+export function chips(path, label, options, chosen, change) {
+  const group = h("div", { class: "chips", role: "group", "aria-label": label }, options.map(([value, text]) => {
+    const input = h("input", { type: "checkbox", value, checked: chosen.includes(value), onchange: () => {
+      const next = [...group.querySelectorAll("input:checked")].map((each) => each.value);
+      if (next.length) change(next);
+      else input.checked = true;
+    } });
+    return h("label", {}, input, text);
+  }));
+  return h("div", { class: "field", "data-path": path }, h("div", { class: "label" }, label), group, trouble());
 }
 
 // A slider beside a box for the number itself.
@@ -98,77 +166,36 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
   const range = h("input", {
     type: "range", min: to(low), max: to(high), step: log ? 0.005 : step, "aria-label": label,
     oninput: () => {
-      box.value = from(range.value);
-      change(Number(box.value));
+      entry.value = from(range.value);
+      change(Number(entry.value));
     },
   });
-  const box = h("input", {
-    type: "text", inputmode: "decimal", autocomplete: "off", value,
+  const entry = h("input", {
+    type: "text", class: "short", inputmode: "decimal", autocomplete: "off", value,
     onchange: () => {
-      range.value = to(Number(box.value));
-      change(parseNumber(box.value));
+      range.value = to(Number(entry.value));
+      change(parseNumber(entry.value));
     },
   });
-  box.className = "short";
   range.value = to(value);
-  const element = field(path, label, box, { unit, hint: hint || `${number(low)} to ${number(high)}${unit ? ` ${unit}` : ""}` });
+  const limits = `${number(low)} to ${number(high)}${unit ? ` ${unit}` : ""}`;
+  const element = field(path, label, entry, { unit, hint: hint || limits });
   element.querySelector(".row").prepend(range);
   element.setValue = (v) => {
-    if (document.activeElement !== box) box.value = v;
+    if (document.activeElement !== entry) entry.value = v;
     if (document.activeElement !== range) range.value = to(v);
   };
   return element;
 }
 
 export function select(path, label, options, value, change, extra = {}) {
-  const control = h("select", { onchange: () => change(control.value) },
-    options.map(([key, text]) => h("option", { value: key }, text)));
-  control.value = value;
+  const control = h("select", { onchange: () => change(control.value) });
   const element = field(path, label, control, extra);
+  element.setOptions = (next, chosen = control.value) => {
+    control.replaceChildren(...next.map(([key, text]) => h("option", { value: key }, text)));
+    control.value = chosen;
+  };
   element.setValue = (v) => (control.value = v);
-  return element;
-}
-
-const MODELS = [
-  ["MDOF-S", "Simplified, all modes"], ["2DOF-S", "Simplified, one mode"], ["3DOF-S", "Simplified, two modes"],
-  ["2DOF-C", "Complete, one mode: large rotations"], ["MDOF-C-SI", "Complete, all modes"], ["rigid", "Rigid block"],
-  ["fixed", "The same structure on a base that cannot lift"],
-];
-
-// Chips to choose models by, and a box for labels that are not among them.
-export function models(path, chosen, most, change) {
-  let now = clone(chosen);
-  const chips = h("div", { class: "chips", role: "group", "aria-label": "Models" });
-  const other = h("input", { type: "text", placeholder: "another, such as 4DOF-S", "aria-label": "Another model", maxlength: 30,
-    onchange: () => {
-      const label = other.value.trim();
-      other.value = "";
-      if (label && !now.includes(label)) commit([...now, label]);
-    } });
-  const commit = (next) => {
-    now = next;
-    draw();
-    change(clone(now));
-  };
-  function draw() {
-    const known = [...MODELS, ...now.filter((label) => !MODELS.some(([l]) => l === label)).map((label) => [label, label])];
-    chips.replaceChildren(...known.map(([label, title]) => {
-      const checked = now.includes(label);
-      const box = h("input", { type: "checkbox", checked, disabled: (checked && now.length === 1) || (!checked && now.length >= most),
-        onchange: () => {
-          commit(box.checked ? [...now, label] : now.filter((each) => each !== label));
-          chips.querySelector(`[data-label="${CSS.escape(label)}"]`)?.focus();
-        }, "data-label": label });
-      return h("label", { title }, box, label);
-    }));
-  }
-  draw();
-  const element = h("div", { class: "field", "data-path": path },
-    h("div", { class: "label" }, `Models (up to ${most})`), chips, other, h("div", { class: "error", role: "alert" }));
-  element.setValue = (v) => {
-    if (JSON.stringify(v) === JSON.stringify(now)) return;
-    now = clone(v);
-    draw();
-  };
+  element.setOptions(options, value);
   return element;
 }

@@ -5,11 +5,16 @@ import { clone, h, save } from "./dom.js";
 import { showErrors } from "./form.js";
 
 const TABS = [
-  ["structure", "Structure", "What rocks. Begin with one of the structures, or describe your own; the base stands on the ground and may lift."],
-  ["earthquake", "Earthquake", "What shakes it: a recorded earthquake, a pulse, or a file of yours, as strong as you scale it."],
-  ["response", "Response", "What happens: the structure on its base, drawn larger than life, in step with its rotation, forces and energy."],
-  ["fragility", "Fragility", "How likely it is: many earthquakes of all strengths, and the share of them that passes a limit."],
-  ["design", "Design", "How wide the base must be, and whether a tendon helps, for a limit that may be passed rarely enough."],
+  ["structure", "Structure",
+    "What rocks. Begin with one of the structures, or describe your own; the base stands on the ground and may lift."],
+  ["earthquake", "Earthquake",
+    "What shakes it: a recorded earthquake, a pulse, or a file of yours, as strong as you scale it."],
+  ["response", "Response",
+    "What happens: the structure on its base, drawn larger than life, in step with its rotation, forces and energy."],
+  ["fragility", "Fragility",
+    "How likely it is: many earthquakes of all strengths, and the share of them that passes a limit."],
+  ["design", "Design",
+    "How wide the base must be, and whether a tendon helps, for a limit that may be passed rarely enough."],
 ];
 
 const view = document.getElementById("view");
@@ -53,8 +58,17 @@ export const app = {
   },
   // Buttons that fetch files.
   downloads(root, files, path = (what) => `/api/download/${what}`) {
-    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"),
-      files.map(([what, label]) => h("button", { type: "button", "data-file": what, onclick: () => app.download(path(what), root) }, label)));
+    const button = ([what, label]) =>
+      h("button", { type: "button", "data-file": what, onclick: () => app.download(path(what), root) }, label);
+    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"), files.map(button));
+  },
+  // A way on to another tab, under the results of one.
+  next(tab, text) {
+    const go = () => {
+      app.go(tab);
+      tabOf(tab).focus();
+    };
+    return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, titleOf(tab)));
   },
   go(tab) {
     app.state.tab = tab;
@@ -63,10 +77,15 @@ export const app = {
   },
 };
 
+const titleOf = (tab) => TABS.find(([name]) => name === tab)[1];
+const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
+
+// Tables are merged key by key; a structure is replaced, and undefined removes.
 function merge(target, patch) {
   for (const [key, value] of Object.entries(patch)) {
+    const table = value && typeof value === "object" && !Array.isArray(value) && key !== "structure";
     if (value === undefined) delete target[key];
-    else if (value && typeof value === "object" && !Array.isArray(value) && key !== "structure" && target[key]) merge(target[key], value);
+    else if (table && target[key]) merge(target[key], value);
     else target[key] = value;
   }
 }
@@ -99,31 +118,40 @@ async function open() {
     try {
       state = await ask("/api/state", { state: decoded(location.hash) });
     } catch (error) {
-      const why = error instanceof Refusal ? Object.entries(error.errors).map(([path, text]) => (path ? `${path}: ${text}` : text)).join(" ") : "it is damaged.";
-      banner.textContent = `The link cannot be opened: ${why} The page shows its first structure instead.`;
+      banner.textContent = `The link cannot be opened: ${reason(error)} The page shows its first structure instead.`;
       banner.hidden = false;
     }
   }
   app.state = state;
-  for (const key of Object.keys(made)) delete made[key];
+  for (const [name, each] of Object.entries(made)) {
+    each.close?.();
+    delete made[name];
+  }
   keep();
   await show();
 }
 
+function reason(error) {
+  if (!(error instanceof Refusal)) return "it is damaged.";
+  return Object.entries(error.errors).map(([path, text]) => (path ? `${path}: ${text}` : text)).join(" ");
+}
+
 async function show() {
-  const tab = app.state.tab;
+  const { tab } = app.state;
   for (const button of document.querySelectorAll("#tabs button")) {
     const chosen = button.dataset.tab === tab;
     button.setAttribute("aria-selected", String(chosen));
     button.tabIndex = chosen ? 0 : -1;
   }
   for (const [name, each] of Object.entries(made)) if (name !== tab) each.leave?.();
-  if (!made[tab]) made[tab] = (await import(`./tabs/${tab}.js`)).default(app);
+  const { default: make } = await import(`./tabs/${tab}.js`);
   if (app.state.tab !== tab) return;
-  view.replaceChildren(h("p", { class: "help" }, TABS.find(([name]) => name === tab)[2]), made[tab].element);
+  made[tab] ??= make(app);
+  const [, , about] = TABS.find(([name]) => name === tab);
+  view.replaceChildren(h("p", { class: "help" }, about), made[tab].element);
   view.dataset.shown = tab;
-  view.setAttribute("role", "tabpanel");
-  view.setAttribute("aria-label", TABS.find(([name]) => name === tab)[1]);
+  view.setAttribute("aria-labelledby", `tab-${tab}`);
+  document.title = `${titleOf(tab)} · rockflex`;
   refresh();
 }
 
@@ -133,22 +161,29 @@ function refresh() {
 
 function tabs() {
   const list = document.getElementById("tabs");
-  list.append(...TABS.map(([name, title]) => h("button", { type: "button", role: "tab", "data-tab": name, onclick: () => app.go(name) }, title)));
+  list.append(...TABS.map(([name, title]) => h("button", {
+    type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "view", "data-tab": name, onclick: () => app.go(name),
+  }, title)));
   list.addEventListener("keydown", (event) => {
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!step) return;
     const now = TABS.findIndex(([name]) => name === app.state.tab);
-    app.go(TABS[(now + step + TABS.length) % TABS.length][0]);
-    list.querySelector('[aria-selected="true"]').focus();
+    const last = TABS.length - 1;
+    const to = { ArrowRight: now === last ? 0 : now + 1, ArrowLeft: now ? now - 1 : last, Home: 0, End: last }[event.key];
+    if (to === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
+    event.preventDefault();
+    const [name] = TABS[to];
+    app.go(name);
+    tabOf(name).focus();
+  });
+  // Its own link would take the place of the state in the address.
+  document.getElementById("skip").addEventListener("click", (event) => {
+    event.preventDefault();
+    document.getElementById("main").focus();
   });
 }
 
 function theme(name) {
   document.documentElement.dataset.theme = name;
-  if (app.state) {
-    for (const key of Object.keys(made)) made[key].repaint?.();
-    refresh();
-  }
+  if (app.state) refresh();
 }
 
 function themes() {

@@ -1,12 +1,16 @@
 // The structure rocking on its base: every model beside the others, all at one time.
 
+import { FONT } from "./axes.js";
 import { color, h } from "./dom.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
 
 export class Stage {
   constructor(height = 340) {
-    this.canvas = h("canvas", { role: "img", "aria-label": "Animation of the structure" });
+    this.canvas = h("canvas", {
+      tabindex: 0, role: "application", "aria-roledescription": "animation", "aria-keyshortcuts": "Space ArrowLeft ArrowRight",
+      "aria-label": "The structure rocking: space plays and pauses, arrow keys step",
+    });
     this.height = height;
     this.view = null;
     this.time = 0;
@@ -72,96 +76,127 @@ export class Stage {
 
   #model(g, model, index, centre, zoom, cell) {
     const ground = this.height - 44;
-    const f = this.frameAt(index, this.time, this.amplification);
-    const { heights, half_width: b, kind } = this.view;
+    const frame = this.frameAt(index, this.time, this.amplification);
     const to = ([x, y]) => [centre + zoom * x, ground - zoom * y];
     const path = (points) => {
       g.beginPath();
-      for (const p of points) g.lineTo(...to(p));
-      g.stroke();
+      for (const point of points) g.lineTo(...to(point));
     };
     g.save();
     g.beginPath();
     g.rect(centre - cell / 2, 0, cell, this.height);
     g.clip();
-    g.strokeStyle = color("muted");
-    g.lineWidth = 1;
-    g.beginPath();
-    g.moveTo(centre - cell / 2 + 6, ground + 1.5);
-    g.lineTo(centre + cell / 2 - 6, ground + 1.5);
-    g.stroke();
-    for (let x = centre - cell / 2 + 10; x < centre + cell / 2 - 6; x += 9) {
-      g.beginPath();
-      g.moveTo(x, ground + 2);
-      g.lineTo(x - 5, ground + 8);
-      g.stroke();
-    }
-    if (f.side !== 0) {
+    drawGround(g, centre - cell / 2, centre + cell / 2, ground);
+    if (frame.side !== 0) {
       // The gap under the base.
       g.fillStyle = color("c1");
       g.globalAlpha = 0.28;
-      g.beginPath();
-      for (const p of [f.base[0], f.base[1], [f.base[1][0], 0], [f.base[0][0], 0]]) g.lineTo(...to(p));
+      path([frame.base[0], frame.base[1], [frame.base[1][0], 0], [frame.base[0][0], 0]]);
       g.fill();
       g.globalAlpha = 1;
     }
-    const wide = heights.length > 25;
-    const columns = kind === "frame" || kind === "fish_bone" || kind === "lumped" ? [-0.82 * b, 0.82 * b] : [0];
     g.strokeStyle = color("structure");
     g.lineJoin = "round";
-    const at = (x, i) => f.place(x + this.amplification * f.u[i], heights[i]);
+    this.#body(g, frame, path, to);
+    g.lineWidth = 5;
+    path(frame.base);
+    g.stroke();
+    this.#tendons(g, frame, path);
+    if (frame.impact) this.#blow(g, to);
+    this.#words(g, model, index, frame, centre, cell - 8);
+    g.restore();
+  }
+
+  #body(g, frame, path, to) {
+    const { heights, half_width: b, kind } = this.view;
+    const top = heights[heights.length - 1];
+    const stroke = (points, width) => {
+      g.lineWidth = width;
+      path(points);
+      g.stroke();
+    };
     if (kind === "block") {
       g.fillStyle = color("shade");
-      g.beginPath();
-      for (const p of [f.place(-b, 0), f.place(b, 0), f.place(b, heights[1]), f.place(-b, heights[1])]) g.lineTo(...to(p));
+      path([frame.place(-b, 0), frame.place(b, 0), frame.place(b, top), frame.place(-b, top)]);
       g.closePath();
       g.fill();
       g.stroke();
-    } else {
-      g.lineWidth = columns.length > 1 ? 2.4 : kind === "cantilever" || kind === "beam" || kind === "properties" ? 5 : 7;
-      for (const x of columns) path(heights.map((_, i) => at(x, i)));
-      if (columns.length > 1)
-        for (let i = 1; i < heights.length; i++) {
-          g.lineWidth = wide ? 1 : 3.2;
-          path([at(columns[0], i), at(columns[1], i)]);
-        }
-      else if (kind === "cantilever") {
-        g.fillStyle = color("structure");
-        const [x, y] = to(at(0, heights.length - 1));
-        g.fillRect(x - 12, y - 7, 24, 14);
-      }
+      return;
     }
-    g.lineWidth = 5;
-    path([f.place(-b, 0), f.place(b, 0)]);
-    g.fillStyle = color("muted");
-    for (const x of this.view.tendons) {
-      g.strokeStyle = color("tendons");
-      g.lineWidth = 1.5;
-      path([[x, -0.02 * heights[heights.length - 1]], f.place(x, Math.min(heights[heights.length - 1], 0.6 * heights[heights.length - 1]))]);
+    const at = (x, i) => frame.place(x + this.amplification * frame.u[i], heights[i]);
+    const whole = (x) => heights.map((_, i) => at(x, i));
+    if (["frame", "fish_bone", "lumped"].includes(kind)) {
+      const [left, right] = [-0.82 * b, 0.82 * b];
+      stroke(whole(left), 2.4);
+      stroke(whole(right), 2.4);
+      const width = heights.length > 25 ? 1 : 3.2;
+      for (let i = 1; i < heights.length; i++) stroke([at(left, i), at(right, i)], width);
+      return;
     }
-    if (f.impact) {
-      g.strokeStyle = color("lost");
-      g.lineWidth = 2.5;
-      for (const x of [-b, b]) {
-        const [px, py] = to([x, 0]);
-        g.beginPath();
-        g.arc(px, py, 8, 0, 7);
-        g.stroke();
-      }
+    stroke(whole(0), ["cantilever", "beam", "properties"].includes(kind) ? 5 : 7);
+    if (kind === "cantilever") {
+      g.fillStyle = color("structure");
+      const [x, y] = to(at(0, heights.length - 1));
+      g.fillRect(x - 12, y - 7, 24, 14);
     }
-    const over = Math.abs(f.theta) > 1.5;
-    g.font = "600 12px system-ui, 'DejaVu Sans', sans-serif";
-    g.textAlign = "center";
-    g.fillStyle = color(this.view.colors?.[index] ?? "text");
-    g.fillText(model.label, centre, 16);
-    g.font = "12px system-ui, 'DejaVu Sans', sans-serif";
-    g.fillStyle = over ? color("error") : f.impact ? color("lost") : f.side ? color("c1") : color("muted");
-    const state = over ? "overturned" : f.impact ? "impact" : f.side ? "uplifted" : model.lifts ? "in contact" : "fixed base";
-    g.fillText(state, centre, this.height - 20);
-    g.fillStyle = color("muted");
-    g.fillText(`θ = ${(1000 * f.theta).toFixed(2)} mrad`, centre, this.height - 5);
-    g.restore();
   }
+
+  #tendons(g, frame, path) {
+    const { heights, tendons } = this.view;
+    const top = heights[heights.length - 1];
+    g.strokeStyle = color("tendons");
+    g.lineWidth = 1.5;
+    for (const x of tendons) {
+      path([[x, -0.02 * top], frame.place(x, 0.6 * top)]);
+      g.stroke();
+    }
+  }
+
+  #blow(g, to) {
+    g.strokeStyle = color("lost");
+    g.lineWidth = 2.5;
+    for (const x of [-this.view.half_width, this.view.half_width]) {
+      g.beginPath();
+      g.arc(...to([x, 0]), 8, 0, 7);
+      g.stroke();
+    }
+  }
+
+  #words(g, model, index, frame, centre, room) {
+    const [text, tone] = stateOf(model, frame);
+    g.textAlign = "center";
+    g.textBaseline = "alphabetic";
+    g.font = `600 ${FONT}`;
+    g.fillStyle = color(this.view.colors?.[index] ?? "text");
+    g.fillText(model.label, centre, 16, room);
+    g.font = FONT;
+    g.fillStyle = color(tone);
+    g.fillText(text, centre, this.height - 20, room);
+    g.fillStyle = color("muted");
+    const rotation = (1000 * frame.theta).toFixed(2).replace("-", "−");
+    g.fillText(room > 100 ? `θ = ${rotation} mrad` : `${rotation} mrad`, centre, this.height - 5, room);
+  }
+}
+
+// What a model does, and the colour to say it in.
+function stateOf(model, frame) {
+  if (Math.abs(frame.theta) > 1.5) return ["overturned", "error"];
+  if (frame.impact) return ["impact", "lost"];
+  if (frame.side) return ["uplifted", "c1"];
+  return [model.lifts ? "in contact" : "fixed base", "muted"];
+}
+
+function drawGround(g, left, right, ground) {
+  g.strokeStyle = color("muted");
+  g.lineWidth = 1;
+  g.beginPath();
+  g.moveTo(left + 6, ground + 1.5);
+  g.lineTo(right - 6, ground + 1.5);
+  for (let x = left + 10; x < right - 6; x += 9) {
+    g.moveTo(x, ground + 2);
+    g.lineTo(x - 5, ground + 8);
+  }
+  g.stroke();
 }
 
 // Indices around a time, and how far it is between them; of the two nodes of an event the later one counts.

@@ -1,0 +1,46 @@
+// A record from a file of the visitor.
+
+import { Refusal, send } from "../api.js";
+import { h, number, tooLarge } from "../dom.js";
+import { box, field, select } from "../form.js";
+
+const UNITS = [["", "as the file says"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
+
+// `complain` takes messages by the path of their field.
+export function uploading(app, complain) {
+  const { file: most, duration } = app.about.limits;
+  let unit = "";
+  let step = "";
+  const said = h("p", { class: "help", id: "uploaded", role: "status" });
+  const input = h("input", {
+    type: "file", accept: ".at2,.AT2,.csv,.txt,.dat,.tsv",
+    onchange: () => {
+      const [chosen] = input.files;
+      input.value = "";
+      if (chosen) take(chosen);
+    },
+  });
+
+  async function take(file) {
+    const large = tooLarge(file, most);
+    said.textContent = large ? "" : `Reading ${file.name} …`;
+    complain(large ? { "record.upload": large } : {});
+    if (large) return;
+    try {
+      const found = await send(`/api/upload?${new URLSearchParams({ name: file.name, units: unit, dt: step })}`, file);
+      said.textContent = `${found.name}: ${found.samples} samples, PGA ${number(found.pga)} m/s²`;
+      app.change({ record: { source: "upload", upload: found.upload, name: found.name } });
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      said.textContent = "";
+      complain(error.errors);
+    }
+  }
+
+  return h("div", {},
+    field("record.upload", "File", input, { hint: `AT2, CSV or columns of text; up to ${most / 1e6} MB and ${duration} s` }),
+    select("upload.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "AT2 files are in g by definition" }),
+    box("upload.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "only where the file has no times" }),
+    said,
+    h("p", { class: "help" }, "A link does not hold the file: whoever opens it needs the file, too."));
+}

@@ -1,0 +1,130 @@
+// What a chart draws between its axes, and the legend beside it.
+
+import { interpolate, line } from "./axes.js";
+import { color, h, number } from "./dom.js";
+
+export function drawMarks(g, data, { box, range, px, py }, options) {
+  g.save();
+  g.beginPath();
+  g.rect(box.x, box.y, box.w, box.h);
+  g.clip();
+  g.fillStyle = color("shade");
+  for (const [a, b] of data.spans ?? []) g.fillRect(px(a), box.y, Math.max(px(b) - px(a), 0.7), box.h);
+  if (!options.yLog && range.y0 < 0 && range.y1 > 0) {
+    g.strokeStyle = color("muted");
+    g.lineWidth = 0.7;
+    line(g, box.x, py(0), box.x + box.w, py(0));
+  }
+  const series = options.firstOnTop ? data.series.toReversed() : data.series;
+  for (const each of series) drawSeries(g, each, px, py);
+  for (const each of data.hlines ?? []) rule(g, each, box.x, py(each.y), box.x + box.w, py(each.y), 0, box);
+  let row = 0;
+  for (const each of data.vlines ?? [])
+    rule(g, each, px(each.x), box.y, px(each.x), box.y + box.h, each.label ? row++ : 0, box);
+  g.fillStyle = color("c1");
+  for (const t of data.ticks ?? []) {
+    g.beginPath();
+    g.moveTo(px(t), box.y + box.h - 6);
+    g.lineTo(px(t) - 3, box.y + box.h);
+    g.lineTo(px(t) + 3, box.y + box.h);
+    g.fill();
+  }
+  g.restore();
+}
+
+function drawSeries(g, s, px, py) {
+  g.globalAlpha = s.alpha ?? 1;
+  g.strokeStyle = g.fillStyle = color(s.color);
+  g.lineWidth = s.width ?? 1.4;
+  g.setLineDash(s.dash ?? []);
+  g.beginPath();
+  if (s.kind === "points") {
+    for (let i = 0; i < s.x.length; i++) {
+      g.beginPath();
+      g.arc(px(s.x[i]), py(s.y[i]), s.size ?? 2.2, 0, 7);
+      if (s.hollow) g.stroke();
+      else g.fill();
+    }
+  } else if (s.kind === "band") {
+    for (let i = 0; i < s.x.length; i++) g.lineTo(px(s.x[i]), py(s.high[i]));
+    for (let i = s.x.length - 1; i >= 0; i--) g.lineTo(px(s.x[i]), py(s.low[i]));
+    g.fill();
+    if (s.edge) {
+      g.globalAlpha = 1;
+      g.lineWidth = 1;
+      g.beginPath();
+      for (let i = 0; i < s.x.length; i++) g.lineTo(px(s.x[i]), py(s.high[i]));
+      g.stroke();
+    }
+  } else {
+    for (let i = 0; i < s.x.length; i++) g.lineTo(px(s.x[i]), py(s.y[i]));
+    g.stroke();
+  }
+  g.setLineDash([]);
+  g.globalAlpha = 1;
+}
+
+// A straight line across the chart with its label; labels of upright ones stand below each other.
+function rule(g, each, x0, y0, x1, y1, row, box) {
+  g.strokeStyle = g.fillStyle = color(each.color ?? "muted");
+  g.lineWidth = 1;
+  g.setLineDash(each.dash ?? [5, 4]);
+  line(g, x0, y0, x1, y1);
+  g.setLineDash([]);
+  if (!each.label) return;
+  const width = g.measureText(each.label).width;
+  const level = y0 === y1;
+  const flip = level || x0 + width + 8 > box.x + box.w;
+  const x = level ? x1 - 6 : x0 + (flip ? -4 : 4);
+  const above = level && y0 > box.y + 18;
+  const y = above ? y0 - 16 : y0 + 3 + 17 * row;
+  g.save();
+  g.globalAlpha = 0.8; // lines behind a label must not make it hard to read
+  g.fillStyle = color("bg");
+  g.fillRect(flip ? x - width - 2 : x - 2, y - 1, width + 4, 15);
+  g.restore();
+  g.textBaseline = "top";
+  g.textAlign = flip ? "right" : "left";
+  g.fillText(each.label, x, y);
+}
+
+// What the labelled series of a chart are at x; of a band its height.
+export function readings(series, x) {
+  const labelled = series.filter((s) => s.label && s.kind !== "points" && !s.parametric);
+  return labelled.map((s) => {
+    const value = s.kind === "band" ? interpolate(s.x, s.high, x) - interpolate(s.x, s.low, x) : interpolate(s.x, s.y, x);
+    return { color: s.color, text: `${s.label}: ${number(value, 4)}` };
+  });
+}
+
+// A box with these rows beside a place on the chart.
+export function drawReadout(g, rows, at, box) {
+  const width = 10 + Math.max(...rows.map((row) => g.measureText(row.text).width));
+  const height = 15 * rows.length + 5;
+  const left = at + width + 12 > box.x + box.w ? Math.max(at - width - 8, 1) : at + 8;
+  g.globalAlpha = 0.92;
+  g.fillStyle = color("bg");
+  g.fillRect(left, box.y + 3, width, height);
+  g.globalAlpha = 1;
+  g.strokeStyle = color("line");
+  g.strokeRect(left, box.y + 3, width, height);
+  g.textBaseline = "top";
+  g.textAlign = "left";
+  rows.forEach((row, i) => {
+    g.fillStyle = color(row.color);
+    g.fillText(row.text, left + 5, box.y + 6 + 15 * i);
+  });
+}
+
+export function legend(items) {
+  return h("div", { class: "legend" }, items.map((item) => {
+    const swatch = h("canvas", { width: 56, height: 12, "aria-hidden": "true" });
+    const g = swatch.getContext("2d");
+    g.strokeStyle = color(item.color);
+    g.lineWidth = item.kind === "band" ? 12 : 4;
+    g.globalAlpha = item.alpha ?? 1;
+    g.setLineDash((item.dash ?? []).map((d) => 2 * d));
+    line(g, 0, 6, 56, 6);
+    return h("span", {}, swatch, item.label);
+  }));
+}

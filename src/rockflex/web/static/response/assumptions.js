@@ -1,0 +1,77 @@
+// What is assumed of impacts, and of a superstructure that yields.
+
+import { h } from "../dom.js";
+import { select, slider, tableField, trouble } from "../form.js";
+import { yields } from "../models.js";
+
+const IMPACTS = [
+  ["", "as each model has it"],
+  ["simplified", "simplified (Eq. 25)"],
+  ["complete", "complete (Eq. 19)"],
+  ["restitution", "restitution"],
+];
+const MEANT = {
+  "": "How much of its motion the structure keeps.",
+  simplified: "Every mass keeps its horizontal velocity; the rotation is lost.",
+  complete: "All masses together keep their horizontal energy; the rotation is lost.",
+  restitution: "Every mass keeps its horizontal velocity, and a share of the rotation carries on to the other edge.",
+};
+const RESTITUTION = 0.8; // to begin with
+const RANGE = "0: no bounce, the base rests until it is lifted anew; 1: it rocks on and nothing is lost";
+const YIELDING = ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"];
+const DISPLACEMENT = 0.05; // m, where the server suggests none
+
+// `suggested` tells the yield displacement that suits the response that is shown.
+export function assumptions(app, suggested) {
+  const impact = select("impact", "When the base strikes the ground", IMPACTS, "", (value) => app.change({
+    impact: value || undefined,
+    restitution: value === "restitution" ? RESTITUTION : undefined,
+  }), { hint: MEANT[""] });
+  const restitution = slider("restitution", "Share of the rotation's speed that is left",
+    { low: 0, high: 1, step: 0.01, hint: RANGE }, RESTITUTION, (value) => app.change({ restitution: value }));
+  const tick = h("input", { type: "checkbox", id: "yields", onchange: () => (tick.checked ? begin() : end()) });
+  const fields = h("div");
+  const yielding = h("div", { "data-path": "bouc_wen" },
+    h("label", { class: "check" }, tick, "The superstructure yields (Bouc–Wen)"),
+    h("p", { class: "hint" }, "Only models whose label ends in -BW yield; all others stay elastic."),
+    fields, trouble());
+  let drawn = false;
+
+  function begin() {
+    const found = suggested() ?? DISPLACEMENT;
+    app.change({ bouc_wen: { yield_displacement: Number(found.toPrecision(3)) }, models: [...YIELDING] });
+  }
+
+  function end() {
+    const { state } = app.about; // the first state, whose models do not yield
+    const without = (labels, otherwise) => {
+      const left = labels.filter((label) => !yields(label));
+      return left.length ? left : [...otherwise];
+    };
+    app.change({
+      bouc_wen: undefined,
+      models: without(app.state.models, state.models),
+      cloud: { models: without(app.state.cloud.models, state.cloud.models) },
+      design: { model: without([app.state.design.model], [state.design.model])[0] },
+    });
+  }
+
+  function entry(spec) {
+    const change = (value) => app.change({ bouc_wen: { [spec.name]: value } });
+    return tableField(`bouc_wen.${spec.name}`, spec, app.state.bouc_wen[spec.name], change);
+  }
+
+  function refresh() {
+    const { state } = app;
+    impact.setValue(state.impact ?? "");
+    impact.querySelector(".hint").textContent = MEANT[state.impact ?? ""];
+    restitution.hidden = state.impact !== "restitution";
+    restitution.setValue(state.restitution ?? RESTITUTION);
+    const on = state.bouc_wen !== undefined;
+    tick.checked = on;
+    fields.hidden = !on;
+    if (on && !drawn) fields.replaceChildren(...app.about.bouc_wen.map(entry));
+    drawn = on;
+  }
+  return { element: h("div", {}, impact, restitution, yielding), refresh };
+}

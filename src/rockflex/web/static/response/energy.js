@@ -1,0 +1,60 @@
+// Where the energy that the ground puts in has gone, over time.
+
+import { Chart } from "../chart.js";
+import { decode, h } from "../dom.js";
+import { legend } from "../marks.js";
+
+const PARTS = [
+  ["kinetic", "motion"],
+  ["strain", "flexure"],
+  ["gravity", "raised weight"],
+  ["tendons", "tendons"],
+  ["damped", "damped"],
+  ["yielded", "yielding"],
+  ["lost", "lost in impacts"],
+];
+
+export class Energy {
+  // `chosen` is called once somebody asks for the energy of another model.
+  constructor(chosen) {
+    this.focus = "";
+    this.chart = new Chart({
+      label: "Energy over time", yLabel: "energy [kJ]", xLabel: "time [s]", height: 240, zero: true, xName: "t [s]",
+    });
+    this.keys = h("div");
+    this.note = h("p", { class: "hint" });
+    this.of = h("select", { id: "energy-of", "aria-label": "Model whose energy is shown", onchange: () => {
+      this.focus = this.of.value;
+      chosen();
+    } });
+    this.element = h("div", {},
+      h("h2", { class: "buttons" }, "Energy of", this.of), this.chart.element, this.keys, this.note);
+  }
+
+  set(view) {
+    const { energy } = view;
+    this.of.replaceChildren(...view.models.map((m) => h("option", { value: m.label }, m.label)));
+    this.of.value = energy.label;
+    this.note.textContent = energy.note ?? "";
+    this.chart.element.hidden = this.keys.hidden = Boolean(energy.note);
+    if (energy.note) return;
+    const x = decode(energy.t);
+    let below = new Float32Array(x.length);
+    const series = [];
+    for (const [name, label] of PARTS) {
+      const values = energy[name] ? decode(energy[name]) : [];
+      if (!values.some((value) => value !== 0)) continue;
+      const high = below.map((value, i) => value + values[i] / 1000);
+      series.push({ kind: "band", x, low: below, high, color: name, alpha: 0.75, edge: true, label });
+      below = high;
+    }
+    const input = decode(energy.input).map((value) => value / 1000);
+    series.push({ x, y: input, color: "text", width: 1.2, label: "put in by the ground" });
+    const fall = view.models.find((m) => m.label === energy.label)?.fall_time ?? Infinity;
+    this.chart.set({
+      series, xRange: [0, view.end], yUntil: fall,
+      vlines: fall < Infinity ? [{ x: fall, color: "error", label: "does not come back" }] : [],
+    });
+    this.keys.replaceChildren(legend(series));
+  }
+}

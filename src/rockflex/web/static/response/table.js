@@ -1,0 +1,82 @@
+// The largest values of every model, and what happened in words.
+
+import { h, number, symbol } from "../dom.js";
+import { yields } from "../models.js";
+
+const PEAKS = [
+  ["max_rotation", "θ_max [mrad]", 1000],
+  ["max_top_displacement", "u_top,max [m]", 1],
+  ["max_base_moment", "M_b,max [kN m]", 1e-3],
+  ["max_base_shear", "V_b,max [kN]", 1e-3],
+];
+
+// What a model is held against: one on a fixed base, if there is, that yields as it does, if there is.
+function reference(view, model) {
+  const fixed = view.models.filter((m) => !m.lifts);
+  return fixed.find((m) => yields(m.label) === yields(model.label)) ?? fixed[0];
+}
+
+function named(fixed) {
+  return fixed.label === "fixed" ? "the same structure on a fixed base" : `the fixed base of ${fixed.label}`;
+}
+
+export function table(view) {
+  const held = view.tendons.length > 0;
+  const lifting = view.models.filter((m) => m.lifts);
+  const fixed = [...new Set(lifting.map((m) => reference(view, m)).filter(Boolean).map(named))];
+  const last = held ? ["Tendon [kN]"] : [];
+  const head = ["Model", "Outcome", ...PEAKS.map(([, label]) => label), "Impacts", "θ_max/θ_nom", ...last];
+  return [
+    h("table", {},
+      h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, symbol(text))))),
+      h("tbody", {}, view.models.map((m) => row(m, view, held)))),
+    fixed.length ? h("p", { class: "hint" }, `In brackets: as a share of ${fixed.join(" and of ")}.`) : "",
+  ];
+}
+
+function row(m, view, held) {
+  const fell = m.status === "overturned";
+  const fixed = reference(view, m);
+  const share = (name) => (fixed && m.lifts && !fell && fixed.peaks[name] > 0
+    ? ` (${number((100 * m.peaks[name]) / fixed.peaks[name], 3)} %)` : "");
+  const outcome = fell ? `overturned at ${number(m.peaks.end_time)} s` : m.lifts ? m.status.replace("_", " ") : "fixed base";
+  const cell = ([name, , factor], i) => h("td", {
+    "data-name": name, "data-value": m.peaks[name], title: `at ${number(m.peaks[`time_of_${name}`])} s`,
+  }, i === 0 && fell ? "–" : number(m.peaks[name] * factor) + (i ? share(name) : ""));
+  return h("tr", { "data-model": m.label },
+    h("th", { scope: "row" }, m.label),
+    h("td", { class: m.status, "data-name": "status" }, outcome),
+    PEAKS.map(cell),
+    h("td", { "data-name": "n_impacts", "data-value": m.peaks.n_impacts }, String(m.peaks.n_impacts)),
+    h("td", {}, m.lifts && !fell ? `${number((100 * m.peaks.max_rotation) / view.nominal, 3)} %` : "–"),
+    held ? h("td", {}, number(m.peaks.max_tendon_force / 1000)) : null);
+}
+
+// A sentence or two on the first model, and whether others fall.
+export function words(view) {
+  const [first] = view.models;
+  const fixed = reference(view, first);
+  const p = first.peaks;
+  let text = `${first.label}: `;
+  if (!first.lifts) {
+    text += `on a fixed base the top moves by ${number(p.max_top_displacement, 3)} m and the base moment reaches `;
+    text += `${number(p.max_base_moment / 1000, 3)} kN m.`;
+  } else if (first.status === "overturned") {
+    text += `the structure overturns; it lies on its side at ${number(p.end_time, 3)} s.`;
+  } else if (first.status === "no_uplift") {
+    text += "the base stays on the ground; the structure answers as on a fixed base.";
+  } else {
+    const impacts = `${p.n_impacts} impact${p.n_impacts === 1 ? "" : "s"}`;
+    text += `the base lifts and rocks with up to ${number(1000 * p.max_rotation, 3)} mrad `;
+    text += `at ${number(p.time_of_max_rotation, 3)} s, with ${impacts}.`;
+    if (p.nominal_overturning) text += " That is past the nominal limit 0.7 atan(B/h*₁), though it did not fall.";
+    if (fixed && fixed.peaks.max_base_moment > 0) {
+      const change = 100 * (p.max_base_moment / fixed.peaks.max_base_moment - 1);
+      text += ` Against ${named(fixed)} the base moment is `;
+      text += `${number(Math.abs(change), 3)} % ${change < 0 ? "smaller" : "larger"}.`;
+    }
+  }
+  const fallen = view.models.filter((m) => m !== first && m.status === "overturned").map((m) => m.label);
+  if (fallen.length) text += ` With ${fallen.join(" and ")} it overturns.`;
+  return text;
+}

@@ -1,0 +1,41 @@
+// Matrices of a finite element program, from a file.
+
+import { Refusal, send } from "../api.js";
+import { h, tooLarge } from "../dom.js";
+import { trouble } from "../form.js";
+
+const PARTS = ["mass", "stiffness", "heights", "rotations"];
+const REST = { base_mass: 0, half_width: 1, damping_ratio: 0.02 };
+
+// `structure` tells the present one, `put` takes the one with the matrices.
+export function importing(limit, structure, put) {
+  const part = h("select", { id: "part" }, PARTS.map((name) => h("option", { value: name }, name)));
+  const input = h("input", {
+    type: "file", accept: ".npz,.csv", "aria-label": "File of matrices",
+    onchange: () => {
+      const [chosen] = input.files;
+      input.value = "";
+      if (chosen) take(chosen);
+    },
+  });
+  const said = trouble();
+
+  async function take(file) {
+    said.textContent = tooLarge(file, limit);
+    if (said.textContent) return;
+    try {
+      const found = await send(`/api/matrices?name=${encodeURIComponent(file.name)}&part=${part.value}`, file);
+      const now = structure();
+      const name = now.matrices ? now.name : file.name.replace(/\.\w+$/, "");
+      put({ name, matrices: { ...(now.matrices ?? REST), ...found } });
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      said.textContent = Object.values(error.errors).join(" ");
+    }
+  }
+
+  return h("fieldset", { "data-path": "import" }, h("legend", {}, "Import matrices"),
+    h("p", { class: "help" }, "From any finite element program: a .npz file with the arrays mass, stiffness and heights,",
+      " or one CSV file for each. Units: kg, N/m, m; the base held."),
+    h("div", { class: "buttons" }, h("label", { for: "part" }, "CSV holds"), part), input, said);
+}

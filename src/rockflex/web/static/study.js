@@ -1,0 +1,135 @@
+// A study that the server runs in the background: its buttons, how far it is, and its answer as it comes.
+
+import { ask, drop, Refusal } from "./api.js";
+import { h, latest } from "./dom.js";
+import { trouble } from "./form.js";
+import { yields } from "./models.js";
+
+const SAID = {
+  waiting: () => "Waiting for the runs of others.",
+  running: (answer) => `${answer.done} of ${answer.total} runs`,
+  done: (answer) => `Done: ${answer.total} runs.`,
+  cancelled: (answer) => `Cancelled after ${answer.done} of ${answer.total} runs.`,
+  failed: (answer) => `Failed: ${answer.message}`,
+};
+const SHOWN = 400; // ms between two looks while the tab is shown
+const ASIDE = 5000; // and while it is not: a study that nobody looks at stops
+
+// What determines the runs of these models, beside what a study itself has to choose.
+export function assumed({ structure, impact, restitution, bouc_wen }, labels) {
+  return [structure, impact, restitution, labels.some(yields) ? bouc_wen : null, labels];
+}
+
+const goes = (answer) => ["waiting", "running"].includes(answer.status);
+
+export class Study {
+  // `key` tells of everything that determines the runs, `show` draws an answer into `results`.
+  constructor(app, kind, { verb, key, show, results }) {
+    Object.assign(this, { app, kind, verb, key, show, results });
+    this.token = null;
+    this.answer = null;
+    this.ran = ""; // the key of what runs or ran
+    this.watching = false;
+    this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start() }, verb);
+    this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, "Cancel");
+    this.bar = h("progress", { max: 1, value: 0, "aria-label": "Progress" });
+    this.status = h("p", { class: "help", id: "status", role: "status" }, `No ${verb.toLowerCase()} yet.`);
+    this.foot = h("p", { class: "error foot", role: "alert" });
+    this.element = h("div", {},
+      h("div", { "data-path": kind }, h("div", { class: "buttons" }, this.run, this.cancel), this.bar, this.status, trouble()),
+      this.foot);
+    this.load = latest(() => this.#load());
+  }
+
+  // What the tab shows follows a change of the state.
+  refresh() {
+    if (this.token) this.#watch();
+    if (this.answer) this.load();
+  }
+
+  // The page was opened anew from a link.
+  close() {
+    this.token = this.answer = null;
+  }
+
+  // Buttons for files: those of the runs once there are any, the others at any time.
+  downloads(root, ofRuns, others) {
+    const names = ofRuns.map(([what]) => what);
+    const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/download/${what}`);
+    const buttons = this.app.downloads(root, [...ofRuns, ...others], path);
+    this.needRuns = [...buttons.children].filter((each) => names.includes(each.dataset.file));
+    for (const button of this.needRuns) button.disabled = true;
+    return buttons;
+  }
+
+  get #root() {
+    return this.element.closest(".columns");
+  }
+
+  async #start() {
+    await this.#stop();
+    const wanted = this.key();
+    const found = await this.app.ask(`/api/study/${this.kind}`, this.#root);
+    if (!found) return;
+    this.token = found.token;
+    this.answer = null;
+    this.ran = wanted;
+    this.#watch();
+  }
+
+  async #stop() {
+    if (!this.token || !this.answer || !goes(this.answer)) return;
+    try {
+      await drop(`/api/job/${this.token}`);
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+    }
+  }
+
+  async #watch() {
+    if (this.watching) return;
+    this.watching = true;
+    try {
+      do {
+        await this.load();
+        for (let waited = 0; waited < (this.element.isConnected ? SHOWN : ASIDE); waited += SHOWN)
+          await new Promise((resolve) => setTimeout(resolve, SHOWN));
+      } while (this.token && (!this.answer || goes(this.answer)));
+    } finally {
+      this.watching = false;
+    }
+  }
+
+  async #load() {
+    const asked = this.token;
+    if (!asked) return;
+    try {
+      const answer = await ask(`/api/study/${this.kind}/${asked}`, { state: this.app.state });
+      if (asked !== this.token) return;
+      this.answer = answer;
+      this.app.complain(this.#root, {});
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      if (asked !== this.token) return;
+      this.app.complain(this.#root, error.errors);
+      if (error.status === 404) this.token = this.answer = null;
+      this.cancel.disabled = !this.token;
+      return;
+    }
+    this.#draw();
+  }
+
+  #draw() {
+    const { answer } = this;
+    const on = goes(answer);
+    const old = this.ran !== this.key();
+    this.run.textContent = on ? `${this.verb} again` : this.verb;
+    this.cancel.disabled = !on;
+    this.bar.value = answer.done / answer.total;
+    for (const button of this.needRuns) button.disabled = !answer.done;
+    const changed = old ? ` Something was changed since: ${this.verb.toLowerCase()} again.` : "";
+    this.status.textContent = SAID[answer.status](answer) + changed;
+    this.results.classList.toggle("stale", old);
+    this.show(answer);
+  }
+}

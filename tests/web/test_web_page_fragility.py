@@ -1,0 +1,92 @@
+"""The Fragility tab in a real Chromium, used as a person would."""
+
+import pytest
+
+import rockflex as rf
+
+pytestmark = pytest.mark.web
+
+
+def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
+    page = visitor.page
+    visitor.tab("fragility")
+    assert page.locator("#status").inner_text() == "No run yet."
+    assert page.get_by_role("button", name="Figure (SVG)").is_disabled()
+    visitor.run_study()
+    assert page.locator("#status").inner_text() == "Done: 132 runs."
+    assert page.get_by_role("button", name="Figure (SVG)").is_enabled()
+    runs = rf.run_cloud(frame, rf.load_suite("fema-p695-far-field"), "MDOF-S", [0.5, 1.0, 2.0], free_vibration="settle")
+    (fit,) = rf.fit_clouds(runs, "pgv")
+    assert visitor.value('#fits [data-name="median"]') == pytest.approx(fit.outcomes.initiation.median)
+    page.get_by_label("Intensity measure").select_option("sa_t1")
+    page.get_by_label("What is asked: that").select_option("nominal")
+    (fit,) = rf.fit_clouds(runs, "sa_t1", nominal=True)
+    page.wait_for_function(
+        "m => Math.abs(document.querySelector('#fits [data-name=median]').dataset.value / m - 1) < 1e-9",
+        arg=fit.outcomes.overturning.median,
+    )
+    page.get_by_label("What is asked: that").select_option("rotation")
+    visitor.fill("cloud.rotation", "7")
+    assert "a rotation in rad, from 0.0001 to 1.5, but 7 was given" in visitor.error("cloud.rotation")
+    visitor.fill("cloud.rotation", "0.02")
+    page.get_by_label("MDOF-C-SI").check()
+    visitor.fill("cloud.scales", "0.5, 1, 1.5, 2, 3, 4, 5, 6")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.wait_for_function("() => /^[1-9]\\d* of/.test(document.querySelector('#status').textContent)")
+    # It goes on while another tab is looked at.
+    visitor.tab("structure")
+    visitor.tab("fragility")
+    page.get_by_role("button", name="Cancel").click()
+    page.wait_for_function("() => document.querySelector('#status').textContent.startsWith('Cancelled after')")
+    assert page.locator("#cancel").is_disabled()
+
+
+def test_a_change_asks_for_a_new_run_and_a_new_one_takes_the_place_of_the_old(visitor) -> None:
+    page = visitor.page
+    visitor.tab("fragility")
+    visitor.run_study()
+    visitor.fill("cloud.scales", "0.5, 1, 2, 3")
+    stale = page.get_by_text("Something was changed since: run again.")
+    stale.wait_for()
+    visitor.fill("cloud.scales", "0.5, 1, 2")
+    stale.wait_for(state="detached")
+    page.get_by_label("MDOF-C-SI").check()
+    visitor.fill("cloud.scales", "0.5, 1, 1.5, 2, 3, 4, 5, 6")
+    page.locator("#run").click()
+    page.wait_for_function("() => /^[1-9]\\d* of/.test(document.querySelector('#status').textContent)")
+    page.get_by_label("MDOF-C-SI").uncheck()
+    visitor.fill("cloud.scales", "1, 2")
+    page.get_by_role("button", name="Run again").click()
+    page.wait_for_function("() => document.querySelector('#status').textContent === 'Done: 88 runs.'")
+    assert page.locator("#fits tbody tr").count() == 1
+
+
+def test_a_cloud_that_yields(visitor, frame) -> None:
+    page = visitor.page
+    visitor.tab("response")
+    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page.get_by_label("The superstructure yields").check()
+    visitor.fill("bouc_wen.yield_displacement", "0.05")
+    visitor.tab("fragility")
+    page.get_by_label("2DOF-S-BW").check()
+    visitor.fill("cloud.scales", "1")
+    visitor.run_study()
+    suite, labels = rf.load_suite("fema-p695-far-field"), ["MDOF-S", "2DOF-S-BW"]
+    runs = rf.run_cloud(frame, suite, labels, [1.0], free_vibration=10.0, bouc_wen=rf.BoucWen(0.05))
+    page.get_by_label("What is asked: that").select_option("rotation")
+    visitor.fill("cloud.rotation", "0.02")
+    beyond = (runs["status"] == "overturned") | (runs["max_rotation"] > 0.02)
+    assert beyond[runs["model"] == "MDOF-S"].sum() != beyond[runs["model"] == "2DOF-S-BW"].sum()
+    for label in labels:
+        cell = page.locator(f'#fits [data-model="{label}"] [data-name="n_exceeding"]')
+        cell.get_by_text(str(beyond[runs["model"] == label].sum()), exact=True).wait_for()
+    # The hysteresis matters to what ran.
+    visitor.tab("response")
+    visitor.fill("bouc_wen.yield_displacement", "0.06")
+    visitor.tab("fragility")
+    page.get_by_text("Something was changed since: run again.").wait_for()
+    visitor.tab("design")
+    page.get_by_label("Model").select_option("2DOF-S-BW")
+    visitor.fill("design.widths", "3")
+    visitor.run_study()
+    assert page.locator("#designs tbody tr").count() == 6

@@ -1,0 +1,130 @@
+"""The Structure tab in a real Chromium, used as a person would."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rockflex as rf
+from rockflex.web._presets import PRESETS
+
+pytestmark = pytest.mark.web
+
+NONSENSE = (
+    "", "x", "-1", "1e999", "nan", "inf", "1e300", "0", "'; drop", "<b>1</b>", "١٢", "9" * 400, "1,2,3", "[[1]]",
+    "0x10", "null",
+)  # fmt: skip
+
+
+def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
+    page = visitor.page
+    assert page.locator("#adequacy").inner_text() == rf.adequacy(frame.rocking(), base_mass=40e3).reason
+    assert page.locator(".modes svg").count() == 5
+    visitor.fill("structure.frame.n_stories", "3")
+    page.wait_for_function("() => document.querySelectorAll('.modes svg').length === 3")
+    three = rf.Frame(3, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
+    assert visitor.value("#modes tbody tr:nth-child(2) td") == three.modal().period[1]
+    visitor.fill("structure.frame.n_stories", "1000000")
+    assert visitor.error("structure.frame.n_stories") == "It must be from 1 to 200, but 1e+06 was given."
+    visitor.fill("structure.frame.period", "soon")
+    assert "It must be the first period on a fixed base" in visitor.error("structure.frame.period")
+    for place, preset in enumerate(PRESETS):
+        page.get_by_label("Begin with").select_option(str(place))
+        page.wait_for_function(
+            "n => document.querySelector('.results h2').textContent === n", arg=preset["structure"]["name"]
+        )
+        assert page.locator(".error:visible").all_inner_texts() == []
+    for kind in visitor.page.evaluate("Object.keys(rockflexPage.about.kinds)"):
+        page.get_by_label("Kind").select_option(kind)
+        page.wait_for_function(
+            "k => k in rockflexPage.state.structure && !document.querySelector('.results.stale')", arg=kind
+        )
+        assert page.locator(".error:visible").all_inner_texts() == []
+
+
+def test_tendons_are_added_and_removed(visitor) -> None:
+    page = visitor.page
+    page.get_by_label("Begin with").select_option("7")
+    page.wait_for_function("() => document.querySelector('.results h2').textContent === 'Bridge pier'")
+    before = visitor.value("dd[data-value] >> nth=2")
+    page.get_by_role("button", name="Add a tendon").click()
+    page.wait_for_function("b => Number(document.querySelectorAll('dd[data-value]')[2].dataset.value) > b", arg=before)
+    visitor.fill("structure.tendons.0.position", "99")
+    assert "The tendons must be symmetric" in visitor.error("structure.tendons")
+    visitor.fill("structure.tendons.0.position", "0")
+    page.get_by_role("button", name="Remove").click()
+    page.wait_for_function(
+        "b => Number(document.querySelectorAll('dd[data-value]')[2].dataset.value) === b", arg=before
+    )
+
+
+def test_matrices_are_imported(visitor, tmp_path) -> None:
+    page = visitor.page
+    k = np.array([[2e7, -1e7], [-1e7, 1e7]])
+    np.savez(tmp_path / "fe.npz", mass=np.diag([4e4, 4e4]), stiffness=k, heights=[3.0, 6.0])
+    page.get_by_label("File of matrices").set_input_files(tmp_path / "fe.npz")
+    page.wait_for_function("() => document.querySelectorAll('.modes svg').length === 2")
+    expected = rf.from_matrices([4e4, 4e4], k, [3.0, 6.0], base_mass=0.0, half_width=1.0, damping_ratio=0.02)
+    assert visitor.value("#modes tbody td") == pytest.approx(expected.modal().period[0], rel=1e-12)
+    visitor.upload("File of matrices", "bad.npz", b"nonsense")
+    assert "does not hold matrices that can be read" in visitor.error("import")
+
+
+@pytest.mark.parametrize(("preset", "kind"), [(0, "frame"), (6, "tapered_tower"), (8, "cantilever"), (10, "lumped")])
+def test_nonsense_in_any_field_is_answered_beside_it(visitor, preset, kind) -> None:
+    page = visitor.page
+    page.get_by_label("Begin with").select_option(str(preset))
+    page.wait_for_function("k => k in rockflexPage.state.structure", arg=kind)
+    names = page.evaluate(
+        "k => rockflexPage.about.kinds[k].fields"
+        ".filter(f => !['choice', 'flag', 'table', 'matrix'].includes(f.type)).map(f => f.name)",
+        kind,
+    )
+    for place, name in enumerate(names):
+        box = page.locator(f'[data-path="structure.{kind}.{name}"] input')
+        good = box.input_value()
+        for text in NONSENSE[place % 4 :: 4]:
+            box.fill(text)
+            box.press("Tab")
+        box.fill(good)
+        box.press("Tab")
+    page.wait_for_function("() => !document.querySelector('.results.stale')")
+    assert page.locator(".error:visible").all_inner_texts() == []
+    assert "Traceback" not in page.content()
+
+
+def test_lumped_masses_of_a_beam_are_added_and_removed(visitor, visit) -> None:
+    page = visitor.page
+    page.get_by_label("Kind").select_option("beam")
+    page.wait_for_function("() => 'beam' in rockflexPage.state.structure && document.querySelector('#modes')")
+    path, cell = "structure.beam.lumped_masses", "#modes tbody td"
+    group = page.locator(f'[data-path="{path}"]')
+    given = visitor.state()["structure"]["beam"]
+
+    def period(**bodies) -> float:
+        return rf.Beam(**given, **bodies).modal().period[0]
+
+    visitor.wait_for(cell, period())
+    group.get_by_role("button", name="Add").focus()
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.labels[0].textContent") == "Heights"
+    visitor.wait_for(cell, period(lumped_masses=rf.LumpedMasses([given["height"]], [1e4])))
+    visitor.fill(f"{path}.heights", "8, 20")
+    assert "for each of its 2 heights" in visitor.error(path)
+    visitor.fill(f"{path}.masses", "15e3, 3e4")
+    visitor.wait_for(cell, period(lumped_masses=rf.LumpedMasses([8.0, 20.0], [15e3, 3e4])))
+    visitor.fill(f"{path}.rotary", "1e4, 2e4")
+    heavy = period(lumped_masses=rf.LumpedMasses([8.0, 20.0], [15e3, 3e4], [1e4, 2e4]))
+    visitor.wait_for(cell, heavy)
+    assert page.locator(".error:visible").count() == 0
+    other = visit("/" + page.evaluate("location.hash"))
+    other.wait_for(cell, heavy)
+    box = other.page.locator(f'[data-path="{path}.masses"] input')
+    assert box.input_value() == "15000, 30000"
+    visitor.fill(f"{path}.masses", "15e3, heavy")
+    assert "It must be a list of the masses of the bodies in kg, but" in visitor.error(f"{path}.masses")
+    group.get_by_role("button", name="Remove").click()
+    visitor.wait_for(cell, period())
+    assert "lumped_masses" not in visitor.state()["structure"]["beam"]
+    assert page.evaluate("document.activeElement.textContent") == "Add"
+    assert page.locator(".error:visible").count() == 0
