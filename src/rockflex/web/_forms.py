@@ -84,7 +84,7 @@ def _field(name: str, field: FieldInfo) -> dict[str, Any]:
 def _help(description: str) -> str:
     """What a field is, without what it is written as."""
     text = _TAIL.sub("", description).strip()
-    text = re.sub(r", or the path of a .*$", "", text)
+    text = re.sub(r", or the path of a .*$|^true or false: |^a table of ", "", text)
     begins = text[:1].upper() if re.match("a |[a-z]{2}", text) else text[:1]  # not γ, n or h*_1
     return f"{begins}{text[1:]}."
 

@@ -9,7 +9,7 @@ __all__ = ["PRESETS"]
 def _frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:
     kind = "shear" if stiffness_ratio else "flexure"
     return {
-        "title": f"Frame #{number}: 5 stories, {kind}, T₁ = {period:g} s, h*/B = {aspect_ratio:g}",
+        "title": f"Frame #{number}: {kind}, {period:g} s, h*/B = {aspect_ratio:g}",
         "structure": {
             "name": f"Structure #{number} of Table 1",
             "frame": {

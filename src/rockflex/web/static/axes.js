@@ -6,12 +6,13 @@ export const FONT = "12px system-ui, 'DejaVu Sans', sans-serif";
 
 // What both axes span: all data, or the given ranges, or the stretch that was zoomed to.
 export function ranges(data, options, zoom) {
-  const { series, xRange, yRange, yUntil = Infinity, hlines = [] } = data;
+  const { series, xRange, yRange, hlines = [] } = data;
   let [x0, x1] = zoom ?? xRange ?? extent(series.map((s) => s.x), options.xLog);
   if (!(x1 > x0)) [x0, x1] = [x0 - 0.5, x0 + 0.5];
   if (yRange) return { x0, x1, y0: yRange[0], y1: yRange[1] };
-  const parts = series.flatMap((s) => (s.kind === "band" ? [[s.x, s.low], [s.x, s.high]] : [[s.x, s.y]]));
-  let [low, high] = within(parts, x0, Math.min(x1, yUntil), options.yLog);
+  // What comes after `until` may leave the chart: the rotation of what falls, for instance.
+  const parts = series.flatMap((s) => (s.kind === "band" ? [s.low, s.high] : [s.y]).map((y) => [s.x, y, s.until]));
+  let [low, high] = within(parts, x0, x1, options.yLog);
   for (const line of hlines.filter((each) => each.fit)) {
     low = Math.min(low, line.y);
     high = Math.max(high, line.y);
@@ -116,11 +117,11 @@ function extent(arrays, log) {
 }
 
 // Lowest and highest y of all pairs of arrays, where x lies from x0 to x1.
-function within(pairs, x0, x1, log) {
+function within(parts, x0, x1, log) {
   let low = Infinity;
   let high = -Infinity;
-  for (const [x, y] of pairs)
-    for (let i = 0; i < y.length; i++) {
+  for (const [x, y, end] of parts)
+    for (let i = 0; i < y.length && !(x[i] > end); i++) {
       const value = y[i];
       if (x[i] < x0 || x[i] > x1 || !Number.isFinite(value) || (log && value <= 0)) continue;
       if (value < low) low = value;

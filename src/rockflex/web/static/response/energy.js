@@ -38,6 +38,7 @@ export class Energy {
     this.note.textContent = energy.note ?? "";
     this.chart.element.hidden = this.keys.hidden = Boolean(energy.note);
     if (energy.note) return;
+    const until = view.models.find((m) => m.label === energy.label)?.fall_time ?? Infinity;
     const x = decode(energy.t);
     let below = new Float32Array(x.length);
     const series = [];
@@ -45,15 +46,14 @@ export class Energy {
       const values = energy[name] ? decode(energy[name]) : [];
       if (!values.some((value) => value !== 0)) continue;
       const high = below.map((value, i) => value + values[i] / 1000);
-      series.push({ kind: "band", x, low: below, high, color: name, alpha: 0.75, edge: true, label });
+      series.push({ kind: "band", x, low: below, high, color: name, alpha: 0.75, edge: true, label, until });
       below = high;
     }
     const input = decode(energy.input).map((value) => value / 1000);
-    series.push({ x, y: input, color: "text", width: 1.2, label: "put in by the ground" });
-    const fall = view.models.find((m) => m.label === energy.label)?.fall_time ?? Infinity;
+    series.push({ x, y: input, color: "text", width: 1.2, label: "put in by the ground", until });
     this.chart.set({
-      series, xRange: [0, view.end], yUntil: fall,
-      vlines: fall < Infinity ? [{ x: fall, color: "error", label: "does not come back" }] : [],
+      series, xRange: [0, view.end],
+      vlines: until < Infinity ? [{ x: until, color: "error", label: "does not come back" }] : [],
     });
     this.keys.replaceChildren(legend(series));
   }

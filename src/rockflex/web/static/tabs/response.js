@@ -70,8 +70,9 @@ export default function responseTab(app) {
     const falls = view.models.map((m) => m.fall_time ?? Infinity).filter(Number.isFinite);
     const spans = uplifts(first);
     panels.forEach(([key, chart], p) => chart.set({
-      series: view.models.map((m, i) => ({ x: m.t, y: m.scaled[key], label: m.label, ...m.look, width: i ? 1.2 : 1.6 })),
-      spans, xRange: [0, view.end], yUntil: Math.min(...falls),
+      series: view.models.map((m, i) => (
+        { x: m.t, y: m.scaled[key], until: m.fall_time ?? Infinity, label: m.label, ...m.look, width: i ? 1.2 : 1.6 })),
+      spans, xRange: [0, view.end],
       ticks: p === 0 ? first.impact_times : [],
       vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "does not come back" : "" })),
     }));
