@@ -279,7 +279,7 @@ def test_a_chart_is_zoomed_and_clicked(visitor) -> None:
     assert page.evaluate("rockflexStage.panel.zoom") is None
 
 
-@pytest.mark.parametrize(("ready", "said"), [(True, "Computing …"), (False, "some twenty seconds")])
+@pytest.mark.parametrize(("ready", "said"), [(True, "Computing …"), (False, "half a minute")])
 def test_a_long_wait_is_explained(visitor, ready, said) -> None:
     page, held = visitor.page, []
     page.evaluate("ready => { rockflexPage.about.ready = ready; }", ready)

@@ -24,7 +24,7 @@ const FILES = [
 ];
 
 const PATIENCE = 1500; // ms after which somebody wonders
-const FIRST = "Computing … The first time after an installation the kernels are compiled, which takes some twenty seconds.";
+const FIRST = "Computing … The first time after an installation the kernels are compiled, which takes half a minute or so.";
 
 export default function responseTab(app) {
   let view = null;
