@@ -49,6 +49,7 @@ HOME = {
     "jinja2": {"report"},
     "starlette": {"web"},
     "uvicorn": {"web"},
+    "tomli_w": {"web"},
 }
 NEVER_AT_IMPORT = {"pandas"}  # only inside functions, or for the type checker
 NOT_LOADED = {

@@ -3,7 +3,6 @@
 import inspect
 import json
 import math
-import tomllib
 from contextlib import suppress
 
 import numpy as np
@@ -19,7 +18,6 @@ from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state
 from rockflex.web._structures import build, structure_view
-from rockflex.web._toml import toml
 
 FRAME = PRESETS[0]["structure"]
 
@@ -188,16 +186,3 @@ def test_a_thinned_curve_keeps_its_extremes() -> None:
     for values in curves:
         assert values[kept].max() == values.max()
         assert values[kept].min() == values.min()
-
-
-@given(
-    st.dictionaries(
-        st.from_regex(r"[a-z][a-z_]{0,6}", fullmatch=True),
-        st.integers(-(10**9), 10**9) | st.floats(allow_nan=False) | st.booleans()
-        | st.text(st.characters(exclude_categories=["Cs", "Cc"])) | st.lists(st.floats(allow_nan=False), max_size=3),
-        max_size=4,
-    )
-)  # fmt: skip
-def test_toml_is_read_back(table) -> None:
-    content = {"a": 1.0, **table, "inner": table, "many": [table, {"x": {"y": [[1.0, 2.0]]}}]}
-    assert tomllib.loads(toml(content)) == content

@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import tomli_w
 
 from rockflex._errors import InputError
 from rockflex.models import parse_model
@@ -19,7 +20,6 @@ from rockflex.web._response import check_energy, responses
 from rockflex.web._script import cloud_script, design_script, response_script
 from rockflex.web._state import State
 from rockflex.web._studies import runs_of
-from rockflex.web._toml import toml
 from rockflex.web._uploads import Uploads, clean_name
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _record(state: State, uploads: Uploads) -> tuple[str, str]:
 
 
 def _structure_toml(state: State, _: Uploads) -> tuple[str, str]:
-    return "structure.toml", toml(state.structure.model_dump(exclude_none=True))
+    return "structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))
 
 
 def _study(state: State, uploads: Uploads) -> tuple[str, str]:
@@ -141,7 +141,7 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
     }
     content |= state.assumed(yields=any(parse_model(label).yields for label in state.models))
     structure = state.structure.model_dump(exclude_none=True)
-    return "study.toml", head + toml(content | {"records": records, "structures": [structure]})
+    return "study.toml", head + tomli_w.dumps(content | {"records": records, "structures": [structure]})
 
 
 def _python(state: State, uploads: Uploads) -> tuple[str, str]:
@@ -150,7 +150,7 @@ def _python(state: State, uploads: Uploads) -> tuple[str, str]:
 
 
 def _cloud_study(state: State, _: Uploads) -> tuple[str, str]:
-    return "cloud.toml", "# rockflex cloud cloud.toml --out study\n" + toml(
+    return "cloud.toml", "# rockflex cloud cloud.toml --out study\n" + tomli_w.dumps(
         cloud_study(state).model_dump(exclude_none=True)
     )
 
@@ -161,7 +161,7 @@ def _cloud_python(state: State, _: Uploads) -> tuple[str, str]:
 
 def _design_study(state: State, _: Uploads) -> tuple[str, str]:
     content = design_study(state).model_dump(exclude_none=True)
-    return "design.toml", "# rockflex design design.toml --out study\n" + toml(content)
+    return "design.toml", "# rockflex design design.toml --out study\n" + tomli_w.dumps(content)
 
 
 def _design_python(state: State, _: Uploads) -> tuple[str, str]:

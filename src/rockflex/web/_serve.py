@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 __all__ = ["make_app", "serve"]
 
-NEEDED = ("anyio", "starlette", "uvicorn")
+NEEDED = ("anyio", "starlette", "tomli_w", "uvicorn")
 
 
 def make_app(host: str = "127.0.0.1") -> "Starlette":
