@@ -1,14 +1,10 @@
-"""What a report holds, and its files."""
+"""What a report holds."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Protocol
 
-from rockflex._files import write_whole
-from rockflex.plot import save_figure
-
-__all__ = ["Document", "Line", "Section", "write_report"]
+__all__ = ["Document", "Line", "Section"]
 
 
 class Line(Protocol):
@@ -124,39 +120,3 @@ class Document:
         """Lines with each verdict."""
         lines = [str(line.verdict) for section in self.sections for line in section.numbers]
         return {verdict: lines.count(verdict) for verdict in self.verdicts}
-
-
-def write_report(document: Document, folder: Path, progress: Callable[[str], None] | None = None) -> list[Path]:
-    """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.
-
-    Parameters
-    ----------
-    document
-        What to write.
-    folder
-        Where to; it is made if it is not there.
-    progress
-        Called with the stem of every figure that is drawn.
-
-    Returns
-    -------
-    list of Path
-        The files, figures first.
-    """
-    from rockflex.report._csv import to_csv
-    from rockflex.report._html import to_html
-    from rockflex.report._markdown import to_markdown
-
-    figures: dict[str, Path] = {}
-    for section in document.sections:
-        for stem, draw in section.figures.items():
-            figures[stem] = save_figure(draw(), folder / f"{stem}.svg")
-            if progress is not None:
-                progress(stem)
-    drawings = {stem: path.read_text("utf-8") for stem, path in figures.items()}
-    texts = {
-        "report.html": to_html(document, drawings),
-        "report.md": to_markdown(document),
-        "numbers.csv": to_csv(document),
-    }
-    return [*figures.values(), *(write_whole(folder / name, text.encode()) for name, text in texts.items())]

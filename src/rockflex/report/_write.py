@@ -1,0 +1,45 @@
+"""The files of a report."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from rockflex._files import write_whole
+from rockflex.plot import save_figure
+from rockflex.report._csv import to_csv
+from rockflex.report._document import Document
+from rockflex.report._html import to_html
+from rockflex.report._markdown import to_markdown
+
+__all__ = ["write_report"]
+
+
+def write_report(document: Document, folder: Path, progress: Callable[[str], None] | None = None) -> list[Path]:
+    """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.
+
+    Parameters
+    ----------
+    document
+        What to write.
+    folder
+        Where to; it is made if it is not there.
+    progress
+        Called with the stem of every figure that is drawn.
+
+    Returns
+    -------
+    list of Path
+        The files, figures first.
+    """
+    figures: dict[str, Path] = {}
+    for section in document.sections:
+        for stem, draw in section.figures.items():
+            figures[stem] = save_figure(draw(), folder / f"{stem}.svg")
+            if progress is not None:
+                progress(stem)
+    drawings = {stem: path.read_text("utf-8") for stem, path in figures.items()}
+    texts = {
+        "report.html": to_html(document, drawings),
+        "report.md": to_markdown(document),
+        "numbers.csv": to_csv(document),
+    }
+    return [*figures.values(), *(write_whole(folder / name, text.encode()) for name, text in texts.items())]
