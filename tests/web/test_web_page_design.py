@@ -15,7 +15,9 @@ def test_design_answers_how_wide(visitor) -> None:
     visitor.run_study()
     answers = page.locator("#width p")
     assert answers.count() == 2
-    assert re.search(r"no tendon: B = [\d.]+ m is enough \(now B = 1\.05 m", answers.first.inner_text())
+    assert re.search(
+        r"no tendon: a base [\d.]+ m wide \(B = [\d.]+ m\) is enough \(now 2\.11 m", answers.first.inner_text()
+    )
     free, held = (visitor.value(f'#width p[data-tendon="{name}"]') for name in ("no tendon", "F₀ = 0.2 W"))
     assert held < free
     visitor.fill("design.target", "0.0001")

@@ -117,15 +117,15 @@ class Model:
         InputError
             If the structure has fewer modes than the model keeps, or the model cannot have what is given.
         """
+        if self.n_modes != 0 and properties.n_modes == 0:
+            message = f'Model {self.label} needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".'
+            raise InputError(message)
         if self.n_modes is not None and self.n_modes > properties.n_modes:
             whole = Model(None, self.lifts, self.complete, self.closure, self.yields).label
             message = (
                 f"Model {self.label} needs {_modes(self.n_modes)}, but the structure has {properties.n_modes}. "
                 f"Give more modes, or use {whole} for all there are."
             )
-            raise InputError(message)
-        if self.n_modes is None and properties.n_modes == 0:
-            message = f'Model {self.label} needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".'
             raise InputError(message)
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         label = self._check_yielding(kept, bouc_wen)

@@ -12,7 +12,7 @@ from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.middleware.trustedhost import TrustedHostMiddleware
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
@@ -21,8 +21,9 @@ from rockflex._errors import InputError, SolverError
 from rockflex.web._cloud import cloud_plan, cloud_view
 from rockflex.web._design import design_plan, design_view
 from rockflex.web._download import cloud_files, design_files, download
-from rockflex.web._exchange import body_of, file_answer, question_of, state_of, step_of
+from rockflex.web._exchange import file_answer, file_of, question_of, state_of, step_of
 from rockflex.web._forms import forms
+from rockflex.web._headers import Headers
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
 from rockflex.web._packing import plain
@@ -39,14 +40,8 @@ __all__ = ["LOOPBACK", "create"]
 STATIC = Path(__file__).parent / "static"
 LOOPBACK = ("127.0.0.1", "localhost")
 THREADS = 4  # answers computed at once: the kernels hold no lock, and long ones must not keep short ones waiting
-HEADERS = {
-    "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'",
-    "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",
-    "Cache-Control": "no-cache",
-}
-
+FILES = 2  # files made at once: they are long, and much of them holds the lock
+LONGEST = 1000  # characters of a message: some repeat what was given
 Answer = Callable[[], Any]
 
 
@@ -56,7 +51,7 @@ class Server:
     def __init__(self) -> None:
         self.uploads, self.jobs = Uploads(), Jobs()
         self._ready = Event()
-        self._limiter: anyio.CapacityLimiter | None = None
+        self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
     def warm_up(self) -> None:
         """Load the kernels, or compile them where that was never done, before the first visitor needs them."""
@@ -66,20 +61,20 @@ class Server:
         response_view(state, self.uploads)
         self._ready.set()
 
-    async def _answer(self, work: Answer) -> Any:
-        """Compute off the event loop."""
-        if self._limiter is None:
-            self._limiter = anyio.CapacityLimiter(THREADS)
-        return await anyio.to_thread.run_sync(work, limiter=self._limiter)
+    async def _answer(self, work: Answer, most: int = THREADS) -> Any:
+        """Compute off the event loop, at most so many of a kind at once."""
+        if most not in self._limiters:
+            self._limiters[most] = anyio.CapacityLimiter(most)
+        return await anyio.to_thread.run_sync(work, limiter=self._limiters[most])
 
     async def about(self, _: Request) -> Response:
         """Forms, presets, suites, pulses and limits, and whether the kernels are ready."""
-        return JSONResponse(await self._answer(_about) | {"ready": self._ready.is_set()})
+        return JSONResponse(await anyio.to_thread.run_sync(_about) | {"ready": self._ready.is_set()})
 
     async def suite(self, request: Request) -> Response:
         """Records of a suite."""
         name = request.path_params["name"]
-        return JSONResponse(await self._answer(lambda: suite_view(name)))
+        return JSONResponse(await anyio.to_thread.run_sync(suite_view, name))
 
     async def state(self, request: Request) -> Response:
         """Check the state of a link, and fill in what it leaves out."""
@@ -107,25 +102,25 @@ class Server:
     async def response(self, request: Request) -> Response:
         """Response tab."""
         state, content = await question_of(request)
-        focus = str(content.get("focus", ""))[:40]
+        focus = content.get("focus")
         return JSONResponse(await self._answer(lambda: response_view(state, self.uploads, focus)))
 
     async def upload(self, request: Request) -> Response:
         """A record from a file, whose bytes are the body; its name and unit are in the query."""
-        body, query = await body_of(request), request.query_params
+        body, query = await file_of(request), request.query_params
         name, units = query.get("name", "record"), query.get("units") or None
         dt = step_of(query.get("dt", ""))
 
         def work() -> Any:
             motion = read_record(name, body, units, dt)
-            key = self.uploads.add(motion, body, f"{units} {dt}")
+            key = self.uploads.add(motion, body, f"{units} {dt} {motion.name}")
             return {"upload": key, "name": motion.name, "samples": motion.acceleration.size, "pga": motion.pga}
 
         return JSONResponse(await self._answer(work))
 
     async def matrices(self, request: Request) -> Response:
         """Matrices from a file."""
-        body, query = await body_of(request), request.query_params
+        body, query = await file_of(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
         return JSONResponse(await self._answer(lambda: read_matrices(name, body, part)))
 
@@ -133,7 +128,7 @@ class Server:
         """A file of what the page shows."""
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self._answer(lambda: download(state, what, self.uploads)))
+        return file_answer(*await self._answer(lambda: download(state, what, self.uploads), FILES))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
@@ -157,7 +152,7 @@ class Server:
         kind, job = self._job(request)
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self._answer(lambda: _STUDIES[kind][2](job, state, what)))
+        return file_answer(*await self._answer(lambda: _STUDIES[kind][2](job, state, what), FILES))
 
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
@@ -197,9 +192,9 @@ def create(host: str) -> Starlette:
         yield
         server.jobs.close()
 
-    middleware = [Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3)]
+    middleware = [Middleware(Headers), Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3)]
     if host in LOOPBACK:  # a foreign page whose name points here must not read the answers
-        middleware.insert(0, Middleware(TrustedHostMiddleware, allowed_hosts=[*LOOPBACK, "testserver"]))
+        middleware.insert(1, Middleware(TrustedHostMiddleware, allowed_hosts=list(LOOPBACK)))
     routes = [
         Route("/", _page),
         Route("/api/about", server.about),
@@ -221,13 +216,14 @@ def create(host: str) -> Starlette:
         Refusal: _refused,
         InputError: _unusable,
         SolverError: _unusable,
+        ClientDisconnect: _gone,
         Exception: _failed,
     }
     return Starlette(routes=routes, middleware=middleware, exception_handlers=handlers, lifespan=lifespan)
 
 
 async def _page(_: Request) -> Response:
-    return FileResponse(STATIC / "index.html", headers=HEADERS)
+    return FileResponse(STATIC / "index.html")
 
 
 def _about() -> dict[str, Any]:
@@ -244,11 +240,16 @@ def _about() -> dict[str, Any]:
 
 async def _refused(_: Request, error: Exception) -> Response:
     assert isinstance(error, Refusal)
-    return JSONResponse({"errors": error.errors}, status_code=error.status)
+    errors = {path[:200]: text[:LONGEST] for path, text in error.errors.items()}
+    return JSONResponse({"errors": errors}, status_code=error.status)
 
 
 async def _unusable(_: Request, error: Exception) -> Response:
-    return JSONResponse({"errors": {"": str(error)}}, status_code=422)
+    return JSONResponse({"errors": {"": str(error)[:LONGEST]}}, status_code=422)
+
+
+async def _gone(_: Request, __: Exception) -> Response:
+    return Response(status_code=400)  # nobody reads it: the visitor left in the middle of a request
 
 
 async def _failed(_: Request, error: Exception) -> Response:

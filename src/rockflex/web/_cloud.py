@@ -13,7 +13,7 @@ from rockflex.web._jobs import Job
 from rockflex.web._packing import plain
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import UNITS, planned, runs_of, shared, study_of
+from rockflex.web._studies import UNITS, none_solved, planned, runs_of, shared, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -71,6 +71,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
     runs = runs_of(job)
     if runs is None:
         return view
+    view |= none_solved(job, runs)
     solved = runs[runs["status"].notna() & runs[choice.measure].notna()]
     failed = len(runs) - len(solved)
     if failed:
@@ -122,6 +123,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
     if choice.limit == "rotation":
         try:
             found["p"] = fit.outcomes.exceedance(grid, choice.rotation)
+            found["median"] = _median(grid, found["p"])
             low, high = _band(part, im, rotation, fallen, choice, grid)
             found |= {"low": low, "high": high}
         except (InputError, SolverError) as error:
@@ -134,6 +136,16 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
     if note:
         notes.append(f"{fit.model}: {note}")
     return found | {"p": curve.probability(grid), "low": low, "high": high, "median": median}
+
+
+def _median(grid: Array, p: Array) -> float | None:
+    """Least intensity at which a probability passes one half, between points of the curve; None if it does not."""
+    above = np.flatnonzero(p >= 0.5)
+    if not above.size or above[0] == 0:
+        return None
+    k = int(above[0])
+    share = (0.5 - p[k - 1]) / (p[k] - p[k - 1])
+    return float(np.exp(np.log(grid[k - 1]) + share * np.log(grid[k] / grid[k - 1])))
 
 
 def _band(

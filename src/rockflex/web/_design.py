@@ -11,7 +11,7 @@ from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import UNITS, planned, runs_of, shared, study_of
+from rockflex.web._studies import UNITS, none_solved, planned, runs_of, shared, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -103,9 +103,11 @@ def design_view(job: Job, state: State) -> dict[str, Any]:
         "answers": [],
         "notes": [],
     }
-    table = design_table_of(job, choice)
+    runs = runs_of(job)
+    lost = {} if runs is None else none_solved(job, runs)
+    table = None if lost else design_table_of(job, choice)
     if table is None:
-        return plain(view)
+        return plain(view | lost)
     for tendon, part in table.groupby("tendon", observed=True, sort=False):
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import tomli_w
 
-from rockflex._errors import InputError
+from rockflex._errors import InputError, SolverError
+from rockflex.fragility import fit_clouds
 from rockflex.models import parse_model
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, design_table_of
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["cloud_files", "design_files", "download", "svg"]
+
+ROWS = 250_000  # of a table of histories
 
 
 def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes]:
@@ -106,7 +109,14 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
     names = ("time", "side", "ground_acceleration", "rotation", "top_displacement", "base_moment", "base_shear")
     units = ("s", "", "m/s2", "rad", "m", "N m", "N")
     writer.writerow(["model", *(f"{name} ({unit})" if unit else name for name, unit in zip(names, units, strict=True))])
-    for response in responses(state, uploads)[2]:
+    found = responses(state, uploads)[2]
+    rows = sum(response.time.size for response in found)
+    if rows > ROWS:
+        message = (
+            f"the histories have {rows} rows, but the page writes {ROWS} at most. Choose fewer models, or Python lines."
+        )
+        raise Refusal({"models": message})
+    for response in found:
         columns = np.column_stack([getattr(response, name) for name in names])
         writer.writerows([response.model, *(f"{value:.9g}" for value in row)] for row in columns.tolist())
     return "histories.csv", text.getvalue()
@@ -182,9 +192,10 @@ def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
     from rockflex.plot import plot_fragility
 
     try:
-        figure = plot_fragility(runs, state.cloud.measure, level=state.cloud.level, overturning=True)
+        fits = fit_clouds(runs, state.cloud.measure, nominal=state.cloud.limit == "nominal")
+        figure = plot_fragility(fits, level=state.cloud.level, overturning=True)
         return "fragility.svg", "image/svg+xml", svg(figure)
-    except InputError as error:
+    except (InputError, SolverError) as error:
         raise Refusal(str(error)) from error
 
 

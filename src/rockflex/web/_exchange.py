@@ -1,6 +1,8 @@
 """What comes with a request, and files as answers."""
 
+import re
 from typing import Any
+from urllib.parse import quote
 
 import anyio
 from starlette.requests import Request
@@ -10,7 +12,10 @@ from rockflex.web._limits import BODY, FILE
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state
 
-__all__ = ["body_of", "file_answer", "question_of", "state_of", "step_of"]
+__all__ = ["file_answer", "file_of", "question_of", "state_of", "step_of"]
+
+
+PATIENCE = 60.0  # s for a body to arrive
 
 
 async def state_of(request: Request) -> State:
@@ -36,15 +41,26 @@ async def question_of(request: Request) -> tuple[State, dict[str, Any]]:
     return await anyio.to_thread.run_sync(_question, body)  # large ones would keep the event loop busy
 
 
-async def body_of(request: Request) -> bytes:
-    """Body of a request, read no further than it may be long."""
+async def file_of(request: Request) -> bytes:
+    """Bytes of an uploaded file; another type of content would let foreign pages send them unasked."""
+    _check_type(request, "application/octet-stream")
+    return await _body_of(request)
+
+
+async def _body_of(request: Request) -> bytes:
+    """Body of a request, read no further than it may be long, and no longer than a visitor may take."""
     chunks, size = list[bytes](), 0
-    async for chunk in request.stream():
-        size += len(chunk)
-        if size <= BODY:
-            chunks.append(chunk)
-        elif size > 5 * BODY:
-            break
+    try:
+        with anyio.fail_after(PATIENCE):
+            async for chunk in request.stream():
+                size += len(chunk)
+                if size <= BODY:
+                    chunks.append(chunk)
+                elif size > 5 * BODY:
+                    break
+    except TimeoutError as error:
+        message = f"The request did not arrive within {PATIENCE:g} s."
+        raise Refusal(message, 408) from error
     if size > BODY:  # the rest was read and dropped: an answer before its end would be lost to most clients
         message = f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes."
         raise Refusal(message, 413)
@@ -53,10 +69,14 @@ async def body_of(request: Request) -> bytes:
 
 async def _json_of(request: Request) -> bytes:
     """Body of a request; another type of content would let foreign pages ask without the browser's question."""
-    if request.headers.get("content-type", "").split(";")[0].strip() != "application/json":
-        message = "A request must be application/json."
+    _check_type(request, "application/json")
+    return await _body_of(request)
+
+
+def _check_type(request: Request, wanted: str) -> None:
+    if request.headers.get("content-type", "").split(";")[0].strip().lower() != wanted:
+        message = f"A request must be {wanted}."
         raise Refusal(message, 415)
-    return await body_of(request)
 
 
 def _question(body: bytes) -> tuple[State, dict[str, Any]]:
@@ -86,4 +106,7 @@ def step_of(text: str) -> float | None:
 
 def file_answer(name: str, kind: str, content: bytes) -> Response:
     """Return a file to be kept by a name."""
-    return Response(content, media_type=kind, headers={"Content-Disposition": f'attachment; filename="{name}"'})
+    # A header holds Latin letters only: others are given in the long form, and as underscores in the short one.
+    short = re.sub(r"[^ -~]", "_", name)
+    disposition = f"attachment; filename=\"{short}\"; filename*=UTF-8''{quote(name)}"
+    return Response(content, media_type=kind, headers={"Content-Disposition": disposition})

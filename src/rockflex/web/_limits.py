@@ -1,12 +1,13 @@
 """What one visitor may ask of the page: the same for forms, for links and for files."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -26,6 +27,8 @@ __all__ = [
     "check_motion",
     "check_numbers",
     "check_runs",
+    "check_together",
+    "errors_of_numbers",
     "pace",
 ]
 
@@ -36,9 +39,9 @@ SAMPLES = 200_000
 DURATION = 300.0  # s of a record
 MODELS = 4  # side by side
 RUNS = 20_000  # of a study
-EFFORT = 4e7  # of one run, see `Pace`: some seconds
+EFFORT = 5e7  # of one run, see `Pace`: some seconds
+TOGETHER = 8e7  # of the runs of one answer
 STUDY_EFFORT = 6e9  # of all runs of a study: some ten minutes
-SWINGS = 2e6  # duration times the highest circular frequency, of a model that is integrated
 
 INFINITE = frozenset({"stiffness_ratio", "stiffness_parameter", "beam_stiffness"})
 LARGEST = 1e15
@@ -80,6 +83,13 @@ def check_numbers(path: str, value: Any) -> None:
 
     Text would be the path of a file: nothing that a visitor writes reaches the file system.
     """
+    errors = errors_of_numbers(path, value)
+    if errors:
+        raise Refusal(errors)
+
+
+def errors_of_numbers(path: str, value: Any) -> dict[str, str]:
+    """What is wrong with numbers, lists and text, each by itself, in a message for each field."""
     errors: dict[str, str] = {}
     for place, name, each in _leaves(path, value):
         if isinstance(each, str):
@@ -93,8 +103,7 @@ def check_numbers(path: str, value: Any) -> None:
                 continue
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
-    if errors:
-        raise Refusal(errors)
+    return errors
 
 
 def _leaves(path: str, value: Any, name: str = "") -> Iterator[tuple[str, str, Any]]:
@@ -144,27 +153,30 @@ class Pace:
 
     def history(self, motion: GroundMotion, free_vibration: float) -> float:
         """Return about how much work a run with its history is, in some 1e-7 s; as the others, from measurements."""
-        return self._work(motion, free_vibration, 20.0 + self.modes**2 / 7.0, 12.0)
+        return self._work(motion, free_vibration, 20.0 + self.modes**2 / 7.0, 120.0 if self._integrated else 35.0)
 
     def peaks(self, motion: GroundMotion, free_vibration: float) -> float:
         """Return about how much work a run of which only peaks are kept is."""
-        return self._work(motion, free_vibration, 5.0 + self.modes / 2.0, 12.0)
+        return self._work(motion, free_vibration, 5.0 + self.modes / 2.0, 60.0 if self._integrated else 12.0)
 
     def energy(self, motion: GroundMotion, free_vibration: float) -> float:
         """Return about how much work the energies of a run are, after the run."""
         turned = (35.0 + 4.0 * self.fastest * motion.dt) * (1.0 + self.modes / 10.0)
         return self._work(motion, free_vibration, 15.0 + 5.0 * self.modes, turned)
 
+    @property
+    def _integrated(self) -> bool:
+        model = parse_model(self.label)
+        return model.complete or model.yields
+
     def _work(self, motion: GroundMotion, free_vibration: float, each: float, turned: float) -> float:
         """Work of all samples, of which each takes so much, and so much more for each radian of the fastest motion."""
         samples = motion.acceleration.size + free_vibration / motion.dt
         return samples * (each + turned * self.fastest * motion.dt)
 
-    def check(self, work: float, motion: GroundMotion, free_vibration: float, path: str) -> None:
+    def check(self, work: float, motion: GroundMotion, path: str) -> None:
         """Refuse a run whose work would keep the page busy for long."""
-        model = parse_model(self.label)
-        swings = (motion.duration + free_vibration) * self.fastest
-        if work > EFFORT or ((model.complete or model.yields) and swings > SWINGS):
+        if work > EFFORT:
             message = (
                 f"{self.label} with {self.modes} modes over {motion.acceleration.size} samples takes too long for a "
                 "page. Choose a model with fewer modes, a wider base or a shorter record, or use the library."
@@ -195,8 +207,30 @@ def pace(properties: RockingProperties, label: str) -> Pace:
     return Pace(label, modes, max(math.sqrt(max(float(squares[-1]), 0.0)), highest))
 
 
+def check_together(properties: RockingProperties, labels: Sequence[str], motion: GroundMotion, free: float) -> None:
+    """Refuse runs with their histories that take too long, one by one or together."""
+    together = 0.0
+    for label in labels:
+        known = pace(properties, label)
+        work = known.history(motion, free)
+        known.check(work, motion, "models")
+        together += work
+    if together > TOGETHER:
+        message = "these models take too long together for a page. Choose fewer of them, or a shorter record."
+        raise Refusal({"models": message})
+
+
+def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
+    """Refuse a model that the structure cannot have, as one with modes of a rigid block."""
+    assumptions, model = plan.bench.assumptions, parse_model(label)
+    try:
+        model.of(properties, assumptions.impact, assumptions.bouc_wen if model.yields else None)
+    except InputError as error:
+        raise Refusal({path: str(error)}) from error
+
+
 def check_runs(plan: "CloudPlan", path: str) -> None:
-    """Refuse a study that has too many runs, or whose runs take too long, one by one or together."""
+    """Refuse a study of which no run can be made, that has too many, or whose runs take too long."""
     if plan.n_runs > RUNS:
         message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use the command line."
         raise Refusal({path: message})
@@ -206,10 +240,11 @@ def check_runs(plan: "CloudPlan", path: str) -> None:
     work = 0.0
     for properties in bench.structures:
         for label in bench.labels:
+            _check_model(plan, properties, label, path)
             known = pace(properties, label)
             for motion in bench.motions:
                 one = known.peaks(motion, free)
-                known.check(one, motion, free, path)
+                known.check(one, motion, path)
                 work += each * one
     if work > STUDY_EFFORT:
         message = "it takes too long for a page. Choose models with fewer modes, or use the command line."

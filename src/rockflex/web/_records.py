@@ -155,7 +155,7 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
                 "name": "Sa(T₁)",
                 "value": sa,
                 "unit": "m/s²",
-                "help": "spectral acceleration at the first period and damping",
+                "help": f"spectral acceleration at the first period and its damping, {built.properties.zeta[0]:.3g}",
             }
         )
     return plain(

@@ -11,7 +11,7 @@ from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
 from rockflex.study import simulate
-from rockflex.web._limits import pace
+from rockflex.web._limits import check_together, pace
 from rockflex.web._packing import envelope, pack, plain
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
@@ -47,9 +47,8 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     motion = motion_of(state.record, uploads).scaled(state.scale)
     found: list[Response] = []
     free, law = state.free_vibration, state.law()
+    check_together(built.properties, state.models, motion, free)
     for label in state.models:
-        known = pace(built.properties, label)
-        known.check(known.history(motion, free), motion, free, "models")
         yielding = state.hysteresis() if parse_model(label).yields else None
         try:
             found.append(simulate(built.structure, motion, label, free_vibration=free, bouc_wen=yielding, impact=law))
@@ -58,7 +57,7 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     return built, motion, found
 
 
-def response_view(state: State, uploads: Uploads, focus: str = "") -> dict[str, Any]:
+def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[str, Any]:
     """Return histories, events and peaks of all models; the energy of the one named `focus`, or of the first."""
     built, motion, found = responses(state, uploads)
     main = next((r for r in found if r.model == focus), found[0])

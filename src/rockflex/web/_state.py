@@ -10,7 +10,7 @@ from rockflex._errors import InputError
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table
 from rockflex.study.assumed import Assumed
-from rockflex.web._limits import MODELS, check_numbers
+from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._refusal import Refusal
 
 __all__ = ["CloudChoice", "DesignChoice", "PulseChoice", "RecordChoice", "State", "parse_json", "parse_state"]
@@ -144,10 +144,16 @@ def parse_state(content: Any) -> State:
             raise Refusal(message, 413)
         state = State.model_validate(_infinite(content))
     except ValidationError as error:
-        raise Refusal(_messages(error, content)) from error
+        structure = _infinite(content.get("structure"))
+        ranges = errors_of_numbers("structure", structure) if isinstance(structure, dict) else {}
+        raise Refusal(dict([*(ranges | _messages(error, content)).items()][:TOLD])) from error
     except RecursionError as error:
         message = "The link is nested too deep."
         raise Refusal(message) from error
+    try:
+        state.structure.name.encode()
+    except UnicodeEncodeError as error:
+        raise Refusal({"structure.name": "it holds a character that cannot be written."}) from error
     check_numbers("structure", state.structure.model_dump(exclude={"name"}))
     _check_models(state)
     _check_assumed(state)

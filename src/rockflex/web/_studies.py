@@ -14,7 +14,7 @@ from rockflex.web._state import State
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["UNITS", "planned", "runs_of", "shared", "study_of"]
+__all__ = ["UNITS", "none_solved", "planned", "runs_of", "shared", "study_of"]
 
 PER_CHUNK = 24  # runs between two looks at whether to go on
 CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
@@ -72,3 +72,10 @@ def runs_of(job: Job) -> "pd.DataFrame | None":
     """Return the table of the runs so far; None if there are none."""
     tables = list(job.tables)
     return to_frame(*tables) if tables else None
+
+
+def none_solved(job: Job, runs: "pd.DataFrame") -> dict[str, str]:
+    """Return what the page is to say of a study that is over and none of whose runs was solved."""
+    if not job.over or runs["status"].notna().any():
+        return {}
+    return {"status": "failed", "message": f"no run could be solved. {runs['error'].dropna().iloc[0]}"}

@@ -49,6 +49,6 @@ export async function drop(path) {
 export async function file(path, body) {
   const options = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
   const response = await request(path, options);
-  const name = /filename="([^"]*)"/.exec(response.headers.get("Content-Disposition") ?? "")?.[1] ?? "file";
-  return [name, await response.blob()];
+  const name = /filename\*=UTF-8''(\S+)/.exec(response.headers.get("Content-Disposition") ?? "")?.[1] ?? "file";
+  return [decodeURIComponent(name), await response.blob()];
 }

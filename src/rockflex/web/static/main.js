@@ -46,7 +46,7 @@ export const app = {
   complain(root, errors) {
     const left = showErrors(root, errors);
     const foot = root.querySelector(".foot");
-    if (foot) foot.textContent = left.join(" ");
+    if (foot) foot.textContent = left.map(elsewhere).join(" ");
   },
   async download(path, root, extra = {}) {
     try {
@@ -81,6 +81,12 @@ const titleOf = (tab) => TABS.find(([name]) => name === tab)[1];
 const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 
 // Tables are merged key by key; a structure is replaced, and undefined removes.
+// A message about a field of another tab, in words.
+function elsewhere(text) {
+  const found = /^structure(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
+  return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text;
+}
+
 function merge(target, patch) {
   for (const [key, value] of Object.entries(patch)) {
     const table = value && typeof value === "object" && !Array.isArray(value) && key !== "structure";

@@ -163,7 +163,7 @@ export class Stage {
   }
 
   #words(g, model, index, frame, centre, room) {
-    const [text, tone] = stateOf(model, frame);
+    const [text, tone] = stateOf(model, frame, this.time);
     g.textAlign = "center";
     g.textBaseline = "alphabetic";
     g.font = `600 ${FONT}`;
@@ -179,8 +179,9 @@ export class Stage {
 }
 
 // What a model does, and the colour to say it in.
-function stateOf(model, frame) {
+function stateOf(model, frame, time) {
   if (Math.abs(frame.theta) > 1.5) return ["overturned", "error"];
+  if ((model.fall_time ?? Infinity) <= time) return ["falling", "error"];
   if (frame.impact) return ["impact", "lost"];
   if (frame.side) return ["uplifted", "c1"];
   return [model.lifts ? "in contact" : "fixed base", "muted"];

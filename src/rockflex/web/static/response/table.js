@@ -23,8 +23,9 @@ function named(fixed) {
 export function table(view) {
   const held = view.tendons.length > 0;
   const lifting = view.models.filter((m) => m.lifts);
-  const fixed = [...new Set(lifting.map((m) => reference(view, m)).filter(Boolean).map(named))];
-  const last = held ? ["Tendon [kN]"] : [];
+  const standing = lifting.filter((m) => m.status !== "overturned");
+  const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
+  const last = held ? ["Largest tendon force [kN]"] : [];
   const head = ["Model", "Outcome", ...PEAKS.map(([, label]) => label), "Impacts", "θ_max/θ_nom", ...last];
   return [
     h("table", {},
@@ -49,7 +50,7 @@ function row(m, view, held) {
     PEAKS.map(cell),
     h("td", { "data-name": "n_impacts", "data-value": m.peaks.n_impacts }, String(m.peaks.n_impacts)),
     h("td", {}, m.lifts && !fell ? `${number((100 * m.peaks.max_rotation) / view.nominal, 3)} %` : "–"),
-    held ? h("td", {}, number(m.peaks.max_tendon_force / 1000)) : null);
+    held ? h("td", {}, m.lifts ? number(m.peaks.max_tendon_force / 1000) : "–") : null);
 }
 
 // A sentence or two on the first model, and whether others fall.

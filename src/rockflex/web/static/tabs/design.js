@@ -13,7 +13,7 @@ const LIMITS = [
   ["nominal", "the nominal limit 0.7 atan(B/h*₁)"],
   ["overturning", "overturning"],
 ];
-const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C"];
+const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
 const RUNS = ["suites", "scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
 const WIDTH = "half the width of the base B [m]";
@@ -128,13 +128,14 @@ export default function designTab(app) {
 
 // What a search found for one tendon.
 function sentence(each, present) {
-  const width = `B = ${number(each.half_width, 3)} m`;
-  const now = `now B = ${number(present, 3)} m`;
-  const sure = each.half_width_upper ? `; to be sure at 95 %, ${number(each.half_width_upper, 3)} m` : "";
+  const half = `B = ${number(each.half_width, 3)} m`;
+  const width = `${number(2 * each.half_width, 3)} m`;
+  const now = `now ${number(2 * present, 3)} m`;
+  const sure = each.half_width_upper ? `; to be sure at 95 %, ${number(2 * each.half_width_upper, 3)} m` : "";
   const said = {
-    met: `${width} is enough (${now}${sure}).`,
-    "met more than once": `${width} is enough (${now}${sure}).`,
-    "all meet it": `every base tried is wide enough, from ${width} (${now}).`,
+    met: `a base ${width} wide (${half}) is enough (${now}${sure}).`,
+    "met more than once": `a base ${width} wide (${half}) is enough (${now}${sure}).`,
+    "all meet it": `every base tried is wide enough, from ${width} (${half}; ${now}).`,
     "not met": `no base tried is wide enough (${now}).`,
   }[each.outcome];
   return h("p", { "data-tendon": each.tendon, "data-value": each.half_width },

@@ -66,7 +66,7 @@ export default function fragilityTab(app) {
       h("fieldset", {}, h("legend", {}, "Reading"), limit, rotation, measure, level)),
     results);
   results.append(study.downloads(element,
-    [["figure", "Figure (SVG)"], ["table", "Runs (CSV)"]],
+    [["figure", "Rocking and overturning (SVG)"], ["table", "Runs (CSV)"]],
     [["cloud-study", "Study (TOML)"], ["cloud-python", "Python lines"]]));
 
   function show(answer) {

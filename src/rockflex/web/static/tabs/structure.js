@@ -16,7 +16,15 @@ export default function structureTab(app) {
 
   function put(structure, redraw = false) {
     if (redraw) drawn = false;
-    app.change({ structure });
+    const rigid = "block" in structure;
+    app.change({ structure, ...(rigid === "block" in app.state.structure ? {} : modelsFor(rigid)) });
+  }
+
+  // A rigid block has no modes, and all but one of the models need some.
+  function modelsFor(rigid) {
+    const { models, cloud, design } = app.about.state;
+    return rigid ? { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } }
+      : { models, cloud: { models: cloud.models }, design: { model: design.model } };
   }
 
   const own = [["", "a structure of your own"], ...presets.map((p, i) => [String(i), p.title])];
@@ -102,6 +110,8 @@ export default function structureTab(app) {
     return [
       h("h2", {}, view.name || kinds[view.kind].title),
       view.adequacy ? h("p", { class: "answer", id: "adequacy" }, view.adequacy.reason) : "",
+      view.adequacy ? h("p", { class: "hint" }, "Judged by masses and frequencies. Impacts excite higher modes than that, and ",
+        "the base shear most of all: compare with MDOF-S on the Response tab.") : "",
       pictures(view),
       h("dl", { class: "values" }, view.properties.map(parameter)),
       table(view),
@@ -118,7 +128,7 @@ export default function structureTab(app) {
 }
 
 function parameter(p) {
-  const value = p.symbol === "α" && p.value === null ? "never: tendons" : number(p.value);
+  const value = p.symbol === "α" && p.value === null ? "none: the tendons always bring it back" : number(p.value);
   return h("div", {}, h("dt", {}, symbol(p.symbol), p.unit ? ` [${p.unit}]` : ""),
     h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.help));
 }
