@@ -11,10 +11,10 @@ def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
     page = visitor.page
     visitor.tab("fragility")
     assert page.locator("#status").inner_text() == "No run yet."
-    assert page.get_by_role("button", name="Figure (SVG)").is_disabled()
+    assert page.get_by_role("button", name="Rocking and overturning (SVG)").is_disabled()
     visitor.run_study()
     assert page.locator("#status").inner_text() == "Done: 132 runs."
-    assert page.get_by_role("button", name="Figure (SVG)").is_enabled()
+    assert page.get_by_role("button", name="Rocking and overturning (SVG)").is_enabled()
     runs = rf.run_cloud(frame, rf.load_suite("fema-p695-far-field"), "MDOF-S", [0.5, 1.0, 2.0], free_vibration="settle")
     (fit,) = rf.fit_clouds(runs, "pgv")
     assert visitor.value('#fits [data-name="median"]') == pytest.approx(fit.outcomes.initiation.median)

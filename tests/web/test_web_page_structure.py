@@ -128,3 +128,21 @@ def test_lumped_masses_of_a_beam_are_added_and_removed(visitor, visit) -> None:
     assert "lumped_masses" not in visitor.state()["structure"]["beam"]
     assert page.evaluate("document.activeElement.textContent") == "Add"
     assert page.locator(".error:visible").count() == 0
+
+
+def test_a_block_brings_the_models_that_it_can_have(visitor) -> None:
+    page, before = visitor.page, visitor.state()
+    page.get_by_label("Kind").select_option("block")
+    state = visitor.state()
+    assert (state["models"], state["cloud"]["models"], state["design"]["model"]) == (["rigid"], ["rigid"], "rigid")
+    visitor.tab("response")
+    visitor.shown(1, ["rigid"])
+    block = rf.rigid_block(**state["structure"]["block"])
+    expected = rf.simulate(block, rf.load_suite("el-centro-1940")[0], "rigid", free_vibration=5.0)
+    assert visitor.peak("rigid", "max_rotation") == expected.max_rotation
+    visitor.tab("structure")
+    page.get_by_label("Kind").select_option("frame")
+    state = visitor.state()
+    assert [state[name] for name in ("models", "cloud", "design")] == [
+        before[name] for name in ("models", "cloud", "design")
+    ]
