@@ -106,7 +106,7 @@ def test_a_spring_makes_any_model_of_one_mode_yield(label, named, complete):
             Model(1, complete=True),
             BLOCK,
             {},
-            "Model 2DOF-C needs 1 mode, but the structure has 0. Give more modes, or use MDOF-C for all there are.",
+            'Model 2DOF-C needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".',
         ),
         (
             Model(),
