@@ -16,6 +16,7 @@ __all__ = ["file_answer", "file_of", "question_of", "state_of", "step_of"]
 
 
 PATIENCE = 60.0  # s for a body to arrive
+SMALL = 20_000  # bytes that are judged within a millisecond or some; more would keep the event loop busy
 
 
 async def state_of(request: Request) -> State:
@@ -38,7 +39,9 @@ async def question_of(request: Request) -> tuple[State, dict[str, Any]]:
         As `state_of`.
     """
     body = await _json_of(request)
-    return await anyio.to_thread.run_sync(_question, body)  # large ones would keep the event loop busy
+    if len(body) <= SMALL:
+        return _question(body)
+    return await anyio.to_thread.run_sync(_question, body)
 
 
 async def file_of(request: Request) -> bytes:
