@@ -27,5 +27,5 @@ def serve(
 
     if host not in ("127.0.0.1", "localhost", "::1"):
         note(f"The page is open to everybody who reaches {host}: it has no passwords.")
-    note(f"http://{host}:{port} (stop with Ctrl-C)")
+    note(f"http://{f'[{host}]' if ':' in host else host}:{port} (stop with Ctrl-C)")
     start(port, host, open_browser=open_browser)
