@@ -13,7 +13,7 @@ from rockflex.web._jobs import Job
 from rockflex.web._packing import plain
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import UNITS, none_solved, planned, runs_of, shared, study_of
+from rockflex.web._studies import none_solved, planned, progress, runs_of, shared, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,12 +36,7 @@ def cloud_study(state: State) -> CloudStudy:
         If it is not one.
     """
     choice = state.cloud
-    content = shared(state, choice.models, "Cloud") | {
-        "records": {"suites": list(choice.suites)},
-        "models": list(choice.models),
-        "scales": list(choice.scales),
-    }
-    return study_of(CloudStudy, content, "cloud")
+    return study_of(CloudStudy, shared(state, choice, choice.models, "Cloud"), "cloud")
 
 
 def cloud_plan(state: State) -> CloudPlan:
@@ -58,16 +53,8 @@ def cloud_plan(state: State) -> CloudPlan:
 
 def cloud_view(job: Job, state: State) -> dict[str, Any]:
     """Return progress, points and curves for the measure and the limit state that are chosen."""
-    choice, total = state.cloud, job.plan.n_runs
-    view: dict[str, Any] = {
-        "status": job.status,
-        "message": job.message,
-        "done": job.runs,
-        "total": total,
-        "unit": UNITS[choice.measure],
-        "curves": [],
-        "notes": [],
-    }
+    choice = state.cloud
+    view = progress(job, choice.measure)
     runs = runs_of(job)
     if runs is None:
         return view

@@ -11,7 +11,7 @@ from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import UNITS, none_solved, planned, runs_of, shared, study_of
+from rockflex.web._studies import none_solved, planned, progress, runs_of, shared, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,10 +46,7 @@ def design_study(state: State) -> DesignStudy:
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0
             levels.append({"prestress_ratio": force, "stiffness_ratio": stiffness, "name": name})
-    content = shared(state, [choice.model], "Design") | {
-        "records": {"suites": list(choice.suites)},
-        "models": [choice.model],
-        "scales": list(choice.scales),
+    content = shared(state, choice, [choice.model], "Design") | {
         "half_widths": [float(f"{width:.6g}") for width in widths],
         "tendons": levels,
         "measure": choice.measure,
@@ -92,17 +89,8 @@ def design_table_of(job: Job, choice: DesignChoice) -> "pd.DataFrame | None":
 def design_view(job: Job, state: State) -> dict[str, Any]:
     """Return progress, the probability over the half width for every tendon, and the answer."""
     choice = state.design
-    view: dict[str, Any] = {
-        "status": job.status,
-        "message": job.message,
-        "done": job.runs,
-        "total": job.plan.n_runs,
-        "unit": UNITS[choice.measure],
-        "present": build(state.structure).properties.half_width,
-        "curves": [],
-        "answers": [],
-        "notes": [],
-    }
+    present = build(state.structure).properties.half_width
+    view: dict[str, Any] = progress(job, choice.measure) | {"present": present, "answers": []}
     runs = runs_of(job)
     lost = {} if runs is None else none_solved(job, runs)
     table = None if lost else design_table_of(job, choice)

@@ -9,12 +9,12 @@ from rockflex.study.plans import CloudPlan, CloudStudy, DesignStudy, to_frame
 from rockflex.web._jobs import Job
 from rockflex.web._limits import check_runs
 from rockflex.web._refusal import Refusal
-from rockflex.web._state import State
+from rockflex.web._state import CloudChoice, DesignChoice, State
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["UNITS", "none_solved", "planned", "runs_of", "shared", "study_of"]
+__all__ = ["none_solved", "planned", "progress", "runs_of", "shared", "study_of"]
 
 PER_CHUNK = 24  # runs between two looks at whether to go on
 CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
@@ -26,12 +26,15 @@ UNITS = {
 AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
 
 
-def shared(state: State, labels: Sequence[str], name: str) -> dict[str, Any]:
-    """Return the part of a study's content that the tabs before it determine; `name` is for a nameless structure."""
+def shared(state: State, choice: CloudChoice | DesignChoice, labels: Sequence[str], name: str) -> dict[str, Any]:
+    """Return the content that both kinds of study have; `name` is for a nameless structure."""
     yields = any(parse_model(label).yields for label in labels)
     return {
         "name": state.structure.name or name,
         "structures": [state.structure.model_dump(exclude_none=True)],
+        "records": {"suites": list(choice.suites)},
+        "models": list(labels),
+        "scales": list(choice.scales),
         "free_vibration": CALM if yields else "settle",
         "runs_per_chunk": PER_CHUNK,
         **state.assumed(yields=yields),
@@ -72,6 +75,19 @@ def runs_of(job: Job) -> "pd.DataFrame | None":
     """Return the table of the runs so far; None if there are none."""
     tables = list(job.tables)
     return to_frame(*tables) if tables else None
+
+
+def progress(job: Job, measure: str) -> dict[str, Any]:
+    """Return how far a study is, and room for what follows from its runs."""
+    return {
+        "status": job.status,
+        "message": job.message,
+        "done": job.runs,
+        "total": job.plan.n_runs,
+        "unit": UNITS[measure],
+        "curves": [],
+        "notes": [],
+    }
 
 
 def none_solved(job: Job, runs: "pd.DataFrame") -> dict[str, str]:
