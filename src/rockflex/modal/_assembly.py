@@ -97,4 +97,5 @@ def rocking_properties(
         zeta=zeta[kept],
         translational_inertia=inertia,
         floors=FloorModes(h, displacement, mass_times(m, displacement) * omega**2),
+        base_mass=base,
     )

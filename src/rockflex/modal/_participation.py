@@ -113,6 +113,8 @@ class MassNormalisedModes:
             zeta=zeta[kept],
             translational_inertia=self.inertia,
             floors=floors,
+            top_height=float(self.heights[-1]),
+            base_mass=base_mass,
         )
 
 

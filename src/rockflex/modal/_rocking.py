@@ -57,6 +57,12 @@ class RockingProperties:
         I_θ - m_tot B², which is exact for lumped masses without rotary inertia.
     floors : FloorModes or None
         Floor displacements and forces of the same n modes, for quantities above the base.
+    top_height : float or None
+        Height of the top above the base in m, where `top_ordinate` is taken. Default: the highest floor; None where it
+        is not known, and the total displacement of the top with it.
+    base_mass : float or None
+        Mass m_0 of the base in kg, a part of `m_tot`. Default: what all modes together leave of `m_tot`; None where
+        modes are missing, and the mass that they would move is not known.
     tendons : tuple of Tendon
         What holds the base down beside its weight; within the base, and symmetric about its centre.
 
@@ -78,6 +84,8 @@ class RockingProperties:
     translational_inertia: float
     floors: FloorModes | None = field(repr=False)
     tendons: tuple[Tendon, ...]
+    top_height: float | None
+    base_mass: float | None
 
     def __init__(
         self,
@@ -93,6 +101,8 @@ class RockingProperties:
         translational_inertia: float | None = None,
         floors: FloorModes | None = None,
         tendons: Tendon | Iterable[Tendon] = (),
+        top_height: float | None = None,
+        base_mass: float | None = None,
     ) -> None:
         modes = {
             "omega": finite_vector("omega", omega, "rad/s"),
@@ -114,12 +124,35 @@ class RockingProperties:
             raise InputError(message)
         damping = damping_ratios("zeta", zeta, n_modes)
         held = _tendons_within(tendon_set(tendons), scalars["half_width"])
-        vars(self).update(modes, **scalars, zeta=damping, translational_inertia=inertia, floors=floors, tendons=held)
+        vars(self).update(
+            modes,
+            **scalars,
+            zeta=damping,
+            translational_inertia=inertia,
+            floors=floors,
+            tendons=held,
+            top_height=_top_height(floors, top_height),
+            base_mass=_base_mass(modes, scalars["m_tot"], inertia, base_mass),
+        )
 
     @property
     def n_modes(self) -> int:
         """Number of modes n."""
         return self.omega.size
+
+    @property
+    def mass_left_out(self) -> Float:
+        """Σ m_i, Σ m_i h_i and Σ m_i h_i² above the base that the n modes leave out, in kg, kg m and kg m², shape (3,).
+
+        Modes that are left out because they are stiff move with the base, and so does this mass. The first is NaN where
+        `base_mass` is not known.
+        """
+        above = math.nan if self.base_mass is None else self.m_tot - self.base_mass
+        moments = np.array([above, self.l0r, self.translational_inertia])
+        shares = np.array([self.effective_mass * self.effective_height**k for k in range(3)]).sum(axis=1)
+        left = moments - shares
+        left[np.abs(left) <= _SLACK * np.abs(moments)] = 0.0
+        return left
 
     @property
     def weight_moment(self) -> float:
@@ -132,9 +165,19 @@ class RockingProperties:
         return sum((tendon.initial_force for tendon in self.tendons), 0.0)
 
     @property
+    def resting_reaction(self) -> float:
+        """Vertical reaction m_tot g + prestress of a base at rest, in N."""
+        return self.m_tot * GRAVITY + self.prestress
+
+    @property
     def resisting_moment(self) -> float:
         """M_r = (m_tot g + prestress) B in N m: the base lifts when the overturning moment exceeds it (Eq. 24)."""
         return self.weight_moment + self.prestress * self.half_width
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Sum of the tendons' stiffnesses in N/m: what a base that is lifted without turning would feel."""
+        return sum((each.stiffness for each in self.tendons), 0.0)
 
     @property
     def tendon_stiffness(self) -> float:
@@ -173,6 +216,8 @@ class RockingProperties:
             top_ordinate=self.top_ordinate[:k],
             zeta=self.zeta[:k],
             floors=None if self.floors is None or k == 0 else self.floors.truncated(k),
+            top_height=self.top_height,
+            base_mass=self.base_mass,
         )
 
 
@@ -209,6 +254,28 @@ def _tendons_within(tendons: tuple[Tendon, ...], half_width: float) -> tuple[Ten
             )
             raise InputError(message)
     return tendons
+
+
+def _top_height(floors: FloorModes | None, given: float | None) -> float | None:
+    if given is not None:
+        return positive("top_height", given, "m")
+    return None if floors is None else float(floors.heights.max())
+
+
+def _base_mass(modes: dict[str, Float], m_tot: float, inertia: float, given: float | None) -> float | None:
+    mass = modes["effective_mass"]
+    modal_mass = float(mass.sum())
+    if given is not None:
+        base = positive("base_mass", given, "kg", zero=True)
+        if m_tot - base < modal_mass - _SLACK * m_tot:
+            message = (
+                f"base_mass must leave the {modal_mass:.9g} kg that the modes move, but {base:.9g} kg of m_tot = "
+                f"{m_tot:.9g} kg was given."
+            )
+            raise InputError(message)
+        return base
+    complete = mass.size > 0 and float(mass @ modes["effective_height"] ** 2) >= (1.0 - _SLACK) * inertia
+    return max(m_tot - modal_mass, 0.0) if complete else None
 
 
 @computable("The inertia of the modes, from effective_mass and effective_height,")

@@ -34,6 +34,8 @@ class Field(NamedTuple):
     half_width: float
     prestress_moment: float  # B times the tendons' initial force
     tendon_stiffness: float  # Σ k (B - x)²
+    prestress: float  # the tendons' initial force
+    axial_stiffness: float  # Σ k
     gravity: float  # g
     yield_displacement: float
     post_yield_ratio: float

@@ -1,7 +1,7 @@
 """The paper's names of models: "2DOF-S", ... "MDOF-S", "2DOF-C", "3DOF-C-SI", "fixed", "rigid" and their kin."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -19,11 +19,12 @@ __all__ = ["Model", "RockingModel", "parse_model"]
 RockingModel = LinearModel | NonlinearModel
 
 _PATTERN = re.compile(
-    r"(?:(?P<count>[1-9][0-9]{0,5})|(?P<all>M))DOF-(?P<kind>S|C|fixed)(?:-(?P<closure>SI|E))?(?P<yields>-BW)?"
+    r"(?:(?P<count>[1-9][0-9]{0,5})|(?P<all>M))DOF-(?P<kind>S|C|fixed)(?:-(?P<closure>SI|E))?(?P<yields>-BW)?(?P<missing>-R)?"
 )
 _EXPECTED = (
     '"2DOF-S", "3DOF-S", ... or "MDOF-S" (all modes); "2DOF-C" or "MDOF-C"; "2DOF-C-SI", "3DOF-C-E", ...; "rigid" or '
-    '"rigid-C"; "fixed" or "5DOF-fixed"; with one mode also "2DOF-S-BW" and its like'
+    '"rigid-C"; "fixed" or "5DOF-fixed"; with one mode also "2DOF-S-BW" and its like; and any of them with modes as '
+    '"2DOF-S-R", whose base shear and moment count the mass that the modes leave out'
 )
 _SAME = 1e-6  # Σ m* h*² over Σ m_i h_i², for all modes to count as kept
 
@@ -45,6 +46,9 @@ class Model:
         scaled to meet Eq. 19. None for Eqs. 19 and 29 themselves, which need one mode or all of them.
     yields
         Whether the label promises a Bouc-Wen superstructure ("2DOF-S-BW").
+    missing_mass
+        Whether base shear and base moment count the mass that the modes leave out as if it moved with the base
+        ("2DOF-S-R"): the missing-mass, or residual, correction of response-history analysis. The motion is the same.
 
     Raises
     ------
@@ -57,6 +61,7 @@ class Model:
     complete: bool = False
     closure: Literal["SI", "E"] | None = None
     yields: bool = False
+    missing_mass: bool = False
 
     def __post_init__(self) -> None:
         if self.n_modes is not None:
@@ -64,7 +69,8 @@ class Model:
         meanings = {
             "lifts": "True (the base can lift) or False (it is fixed)",
             "complete": "True (Eqs. 13 and 14) or False (Eq. 23)",
-            "yields": "True (the label ends in -BW) or False",
+            "yields": "True (the label has -BW) or False",
+            "missing_mass": "True (the label ends in -R) or False",
         }
         for name, meaning in meanings.items():
             value = getattr(self, name)
@@ -85,6 +91,8 @@ class Model:
             message = "A fixed base has no complete model: its rotation is zero. Leave complete out."
         elif self.n_modes == 0 and not self.lifts:
             message = "A rigid block on a fixed base does not move. Keep a mode, or let the base lift."
+        elif self.n_modes == 0 and self.missing_mass:
+            message = "A rigid block has no base shear of its own to correct. Leave missing_mass out."
         elif self.yields and self.n_modes not in (None, 1):
             message = f"A Bouc-Wen superstructure has one mode, but {self.n_modes} were asked for. Use 2DOF-S-BW."
         elif self.complete and self.closure is None and self.n_modes not in (None, 0, 1):
@@ -101,6 +109,7 @@ class Model:
         """Name in the paper's manner: degrees of freedom, the rotation counted where the base can lift."""
         kind = "C" if self.complete else "S"
         end = (f"-{self.closure}" if self.closure else "") + ("-BW" if self.yields else "")
+        end += "-R" if self.missing_mass else ""
         if self.n_modes == 0:
             return "rigid-C" if self.complete else "rigid"
         if self.n_modes is None:
@@ -121,19 +130,28 @@ class Model:
             message = f'Model {self.label} needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".'
             raise InputError(message)
         if self.n_modes is not None and self.n_modes > properties.n_modes:
-            whole = Model(None, self.lifts, self.complete, self.closure, self.yields).label
+            whole = replace(self, n_modes=None).label
             message = (
                 f"Model {self.label} needs {_modes(self.n_modes)}, but the structure has {properties.n_modes}. "
                 f"Give more modes, or use {whole} for all there are."
             )
             raise InputError(message)
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
+        self._check_missing_mass(kept)
         label = self._check_yielding(kept, bouc_wen)
         law = impact if impact is not None else self._law(kept)
-        linear = LinearModel(label, kept, self.lifts, law)
+        linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
         if self.complete or bouc_wen is not None or linear.neutral:
-            return NonlinearModel(label, kept, self.lifts, law, self.complete, bouc_wen)
+            return NonlinearModel(label, kept, self.lifts, law, self.complete, bouc_wen, self.missing_mass)
         return linear
+
+    def _check_missing_mass(self, kept: RockingProperties) -> None:
+        if self.missing_mass and kept.base_mass is None:
+            message = (
+                f"{self.label} needs the mass above the base, but these properties tell the total mass alone. Give "
+                "RockingProperties their base_mass, in kg."
+            )
+            raise InputError(message)
 
     def _check_yielding(self, kept: RockingProperties, bouc_wen: BoucWen | None) -> str:
         """The label with its -BW."""
@@ -149,7 +167,7 @@ class Model:
                 "it out."
             )
             raise InputError(message)
-        return self.label if self.yields else f"{self.label}-BW"
+        return self.label if self.yields else replace(self, yields=True).label
 
     def _law(self, kept: RockingProperties) -> ImpactLaw:
         """The model's own impact law."""
@@ -184,6 +202,8 @@ def parse_model(model: str | Model) -> Model:
     named = {
         "fixed": Model(lifts=False),
         "fixed-BW": Model(lifts=False, yields=True),
+        "fixed-R": Model(lifts=False, missing_mass=True),
+        "fixed-BW-R": Model(lifts=False, yields=True, missing_mass=True),
         "rigid": Model(0),
         "rigid-C": Model(0, complete=True),
     }
@@ -201,4 +221,6 @@ def parse_model(model: str | Model) -> Model:
     if odd:
         message = f"Unknown model {model!r}. Expected {_EXPECTED}, or a Model."
         raise InputError(message)
-    return Model(n_modes, lifts, complete, closure, found["yields"] is not None)
+    return Model(
+        n_modes, lifts, complete, closure, yields=found["yields"] is not None, missing_mass=found["missing"] is not None
+    )

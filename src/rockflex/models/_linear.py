@@ -33,12 +33,15 @@ class LinearModel:
         Whether the base can lift; if not, this is the structure on a fixed base.
     law
         What happens at an impact.
+    missing_mass
+        Whether base shear and base moment count the mass that the modes leave out, as if it moved with the base.
     """
 
     label: str
     properties: RockingProperties
     lifts: bool = True
     law: ImpactLaw = field(default_factory=VVELSimplified)
+    missing_mass: bool = False
     free_inertia: float = field(init=False)
     """I_θ - Σ m* h*², the inertia that is left to the rotation while the modes move freely (kg m²)."""
 

@@ -37,6 +37,8 @@ class NonlinearModel:
         Eqs. 13, 14 and 16 with all trigonometric, centrifugal and P-Δ terms; else Eqs. 23 and 24.
     bouc_wen
         Hysteresis of the one mode, or None for an elastic superstructure.
+    missing_mass
+        As in `LinearModel`.
     """
 
     label: str
@@ -45,11 +47,12 @@ class NonlinearModel:
     law: ImpactLaw = field(default_factory=VVELSimplified)
     complete: bool = True
     bouc_wen: BoucWen | None = None
+    missing_mass: bool = False
 
     @property
     def linear(self) -> LinearModel:
         """The simplified, elastic model of the same modes."""
-        return LinearModel(self.label, self.properties, self.lifts, self.law)
+        return LinearModel(self.label, self.properties, self.lifts, self.law, self.missing_mass)
 
     def stiffness(self) -> Array:
         """The restoring accelerations over (D_1..D_N, z), shape (N, N + 1): ω² D, or Eq. 37."""
@@ -77,6 +80,26 @@ class NonlinearModel:
         guards[1, 2 * n] = 1.0
         return guards
 
+    def angular_acceleration(self) -> Array:
+        """θ'' while a simplified model rocks, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (2N + 5,)."""
+        linear = self.linear
+        row = -self.guards()[0]
+        row[-5] = -self.properties.rocking_stiffness
+        row[-1] = -self.properties.resisting_moment
+        return row / linear.free_inertia
+
+    def modal_accelerations(self, *, rocking: bool) -> Array:
+        """D'' of every mode in contact, or while a simplified model rocks, in m/s²: rows, shape (N, 2N + 5)."""
+        p = self.properties
+        n = p.n_modes
+        rows = np.zeros((n, 2 * n + 5))
+        stiffness = self.stiffness()
+        rows[:, :n] = -stiffness[:, :-1]
+        rows[:, n : 2 * n] = -np.diag(2.0 * p.zeta * p.omega)
+        rows[:, 2 * n + 2] = -stiffness[:, -1]
+        rows[:, -2] = -1.0
+        return rows - np.outer(p.effective_height, self.angular_acceleration()) if rocking else rows
+
     def field(self) -> Field:
         """Coefficients of the vector field."""
         p = self.properties
@@ -94,6 +117,8 @@ class NonlinearModel:
             half_width=p.half_width,
             prestress_moment=p.prestress * p.half_width,
             tendon_stiffness=p.tendon_stiffness,
+            prestress=p.prestress,
+            axial_stiffness=p.axial_stiffness,
             gravity=GRAVITY,
             yield_displacement=b.yield_displacement,
             post_yield_ratio=b.post_yield_ratio,

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from rockflex._kernel import kernel
 from rockflex.models import EXTRA, Field, LinearModel, RockingModel, field_rates
 
-__all__ = ["accelerations", "acting_side"]
+__all__ = ["accelerations", "acting_side", "motion_rates", "rates_of"]
 
 Array = NDArray[np.float64]
 
@@ -37,6 +37,17 @@ def accelerations(model: RockingModel, nodes: Array) -> Array:
     motion = np.ascontiguousarray(nodes[:, 3:])
     _rates_at(model.field(), side, nodes[:, 2].copy(), motion, rates)
     return np.column_stack((rates[:, n : 2 * n], rates[:, 2 * n + 1]))
+
+
+def motion_rates(model: RockingModel, nodes: Array) -> Array:
+    """D', D'', θ' and θ'' at every node in the order of the state, shape (n_nodes, 2N + 2)."""
+    return rates_of(model, nodes, accelerations(model, nodes))
+
+
+def rates_of(model: RockingModel, nodes: Array, found: Array) -> Array:
+    """As `motion_rates`, from the accelerations D'' and θ''."""
+    n = model.properties.n_modes
+    return np.column_stack((nodes[:, 3 + n : 3 + 2 * n], found[:, :-1], nodes[:, 4 + 2 * n], found[:, -1]))
 
 
 @kernel

@@ -30,11 +30,20 @@ from rockflex.response._response import PEAKS, Response
 
 __all__ = ["load", "save"]
 
-FORMAT = "rockflex-response-1"
+FORMAT = "rockflex-response-2"
 PROPERTIES = (
-    "omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width", "zeta",
+    "omega",
+    "effective_mass",
+    "effective_height",
+    "top_ordinate",
+    "i_theta",
+    "l0r",
+    "m_tot",
+    "half_width",
+    "zeta",
     "translational_inertia",
-)  # fmt: skip
+)
+KNOWN_OR_NOT = ("top_height", "base_mass")  # fmt: skip
 LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "VVELSimplified": VVELSimplified,
     "VVELComplete": VVELComplete,
@@ -42,7 +51,7 @@ LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "ForgottenLaw": ForgottenLaw,
 }
 FLOOR_MODES = ("heights", "displacement", "force")
-FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration")
+FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 
 
 def save(response: Response, path: Path) -> Path:
@@ -56,6 +65,8 @@ def save(response: Response, path: Path) -> Path:
         model = response.history.model
         scalars["lifts"] = model.lifts
         scalars["law"] = _described(model.law)
+        scalars["missing_mass"] = model.missing_mass
+        scalars |= {name: getattr(model.properties, name) for name in KNOWN_OR_NOT}
         if isinstance(model, NonlinearModel):
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
@@ -131,10 +142,14 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
     tendons = [Tendon(**each) for each in _typed(scalars, "tendons", list)]
-    properties = RockingProperties(**values, floors=floors, tendons=tendons)
+    known = {name: scalars[name] for name in KNOWN_OR_NOT}
+    properties = RockingProperties(**values, floors=floors, tendons=tendons, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
+    missing = _typed(scalars, "missing_mass", bool)
     law = LAWS[parameters.pop("law")](**parameters)
     if "complete" not in scalars:
-        return LinearModel(scalars["model"], properties, lifts, law)
+        return LinearModel(scalars["model"], properties, lifts, law, missing)
     bouc_wen = None if scalars["bouc_wen"] is None else BoucWen(**scalars["bouc_wen"])
-    return NonlinearModel(scalars["model"], properties, lifts, law, _typed(scalars, "complete", bool), bouc_wen)
+    return NonlinearModel(
+        scalars["model"], properties, lifts, law, _typed(scalars, "complete", bool), bouc_wen, missing
+    )

@@ -27,6 +27,8 @@ class FloorPeaks:
         Sum of the elastic forces from each floor up, in N.
     floor_acceleration : ndarray, shape (N_floors,)
         Total horizontal acceleration of each floor, in m/s²; of the nonlinear models at samples and events only.
+    total_floor_displacement : ndarray, shape (N_floors,)
+        Horizontal displacement of each floor relative to the ground in m, the rotation of the base included (Eq. 3).
 
     Raises
     ------
@@ -37,12 +39,20 @@ class FloorPeaks:
     story_drift: Array
     story_shear: Array
     floor_acceleration: Array
+    total_floor_displacement: Array
 
-    def __init__(self, story_drift: ArrayLike, story_shear: ArrayLike, floor_acceleration: ArrayLike) -> None:
+    def __init__(
+        self,
+        story_drift: ArrayLike,
+        story_shear: ArrayLike,
+        floor_acceleration: ArrayLike,
+        total_floor_displacement: ArrayLike,
+    ) -> None:
         peaks = {
             "story_drift": finite_vector("story_drift", story_drift, "m"),
             "story_shear": finite_vector("story_shear", story_shear, "N"),
             "floor_acceleration": finite_vector("floor_acceleration", floor_acceleration, "m/s²"),
+            "total_floor_displacement": finite_vector("total_floor_displacement", total_floor_displacement, "m"),
         }
         sizes = [values.size for values in peaks.values()]
         if len(set(sizes)) > 1:
@@ -54,4 +64,4 @@ class FloorPeaks:
 
     def __reduce__(self) -> tuple[Callable[..., "FloorPeaks"], tuple[Any, ...]]:
         # Rebuilt on unpickling: NumPy forgets that an array was read-only.
-        return FloorPeaks, (self.story_drift, self.story_shear, self.floor_acceleration)
+        return FloorPeaks, (self.story_drift, self.story_shear, self.floor_acceleration, self.total_floor_displacement)

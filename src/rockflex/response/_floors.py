@@ -13,10 +13,13 @@ __all__ = ["floor_accelerations", "floor_histories"]
 Array = NDArray[np.float64]
 
 
-def floor_histories(model: RockingModel, floors: FloorModes, nodes: Array) -> tuple[Array, Array, Array]:
-    """Story drifts (m), story shears (N) and total horizontal accelerations (m/s²), shape (n_nodes, N_floors) each."""
-    drift, shear = np.split(elastic_observables(model, floors).evaluate(nodes), 2, axis=1)
-    return drift, shear, floor_accelerations(model, floors, nodes)
+def floor_histories(model: RockingModel, floors: FloorModes, nodes: Array) -> tuple[Array, Array, Array, Array]:
+    """Story drifts (m), story shears (N), total horizontal accelerations (m/s²) and displacements (m).
+
+    Shape (n_nodes, N_floors) each.
+    """
+    drift, shear, displacement = np.split(elastic_observables(model, floors).evaluate(model, nodes), 3, axis=1)
+    return drift, shear, floor_accelerations(model, floors, nodes), displacement
 
 
 def floor_accelerations(model: RockingModel, floors: FloorModes, nodes: Array) -> Array:

@@ -1,61 +1,26 @@
-"""The friction that keeps a base from sliding (Silva & Stojadinović 2024, Eqs. 20-22).
-
-With u_i of the modes kept, Σ m_i u_i = Σ m*_n D_n, and the sums over the masses come down to m_tot, L_0^r and that one.
-"""
+"""The friction that keeps a base from sliding (Silva & Stojadinović 2024, Eq. 20)."""
 
 import math
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._checks import positive, real_or_nan
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.models import EXTRA, LinearModel, NonlinearModel, RockingModel
-from rockflex.response._accelerations import accelerations, acting_side
+from rockflex.response._accelerations import accelerations
 from rockflex.response._energy import is_impact
-from rockflex.response._tendons import tendon_forces
+from rockflex.response._reactions import Reactions, printed_reactions, reactions
 from rockflex.solve import ExactEngine
 
-__all__ = ["IMPACT_WINDOW", "Friction", "Reactions", "reactions"]
+__all__ = ["IMPACT_WINDOW", "Friction"]
 
 Array = NDArray[np.float64]
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has its short spikes
 TURN = 0.2  # radians of the fastest mode from one look to the next
 FEWEST, MOST = 4, 2000  # looks at the interval from one node to the next
-
-
-class Reactions(NamedTuple):
-    """What the ground gives the base, in N, shape (n,) each."""
-
-    horizontal: Array
-    vertical: Array
-
-
-def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
-    """Σ m_i (a + x''_i) of Eq. 21 and Σ m_i (g + z''_i), Eq. 22 with the weight's sign mended, and the tendons' pull.
-
-    A tendon's force points from where it leaves the base to where it left it in contact: at θ/2 from the vertical.
-
-    `nodes` as in `History`, and D''_n and θ'' at each of them, shape (n, N + 1).
-    """
-    p = model.properties
-    n = p.n_modes
-    theta, spin, turn = nodes[:, 3 + 2 * n], nodes[:, 4 + 2 * n], rates[:, -1]
-    sine, cosine = np.sin(theta), np.cos(theta)
-    # Σ m_i (s B - u_i), and how fast the masses move along the base.
-    across = acting_side(nodes) * p.m_tot * p.half_width - nodes[:, 3 : 3 + n] @ p.effective_mass
-    speed, push = nodes[:, 3 + n : 3 + 2 * n] @ p.effective_mass, rates[:, :-1] @ p.effective_mass
-    x = turn * (across * sine + p.l0r * cosine) + spin**2 * (across * cosine - p.l0r * sine)
-    z = turn * (across * cosine - p.l0r * sine) - spin**2 * (across * sine + p.l0r * cosine)
-    force = tendon_forces(model, nodes).sum(axis=1)
-    return Reactions(
-        p.m_tot * nodes[:, 2] + x + push * cosine - 2.0 * spin * speed * sine + force * np.sin(0.5 * theta),
-        p.m_tot * GRAVITY + z - push * sine - 2.0 * spin * speed * cosine + force * np.cos(0.5 * theta),
-    )
 
 
 class Friction:
@@ -66,7 +31,7 @@ class Friction:
     model, nodes
         As in `History`.
     printed
-        Eq. 22 as the paper prints it, Σ m_i (-g + z''_i), of which the magnitude counts.
+        Eqs. 21 and 22 as printed, for every model: with Σ m_i (-g + z''_i), of which the magnitude counts.
     """
 
     def __init__(self, model: RockingModel, nodes: Array, *, printed: bool = False) -> None:
@@ -86,7 +51,7 @@ class Friction:
     @cached_property
     def reactions(self) -> Reactions:
         """Forces at the nodes."""
-        return reactions(self._model, self._nodes, self._rates)
+        return self._reactions_at(self._nodes, self._rates)
 
     @cached_property
     def demand(self) -> Array:
@@ -216,8 +181,8 @@ class Friction:
         rows, moved = self._between(nodes, rates, place)
         rows = rows[lasting]
         if moved is None:
-            return self._angle(reactions(self._model, rows, accelerations(self._model, rows)))
-        return self._angle(reactions(self._model, rows, moved[lasting]))
+            return self._angle(self._reactions_at(rows, accelerations(self._model, rows)))
+        return self._angle(self._reactions_at(rows, moved[lasting]))
 
     def _between(self, nodes: Array, rates: Array, place: float) -> tuple[Array, Array | None]:
         """States at a place of every interval, and their accelerations where no state tells (a hysteretic spring).
@@ -241,11 +206,12 @@ class Friction:
         rows[:, -EXTRA:] = 0.0
         return rows, bend if self._engine is None else None
 
+    def _reactions_at(self, nodes: Array, rates: Array) -> Reactions:
+        return (printed_reactions if self._printed else reactions)(self._model, nodes, rates)
+
     def _angle(self, forces: Reactions) -> Array:
         """Angle of the reaction from the vertical, from 0 to π: tan μ, and it stays finite where the base lifts off."""
-        support = forces.vertical
-        if self._printed:
-            support = np.abs(support - 2.0 * self._model.properties.m_tot * GRAVITY)
+        support = np.abs(forces.vertical) if self._printed else forces.vertical
         return np.arctan2(np.abs(forces.horizontal), support)
 
 

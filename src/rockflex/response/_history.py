@@ -121,13 +121,27 @@ class History:
         return self._global[:, 0]
 
     @property
+    def total_top_displacement(self) -> Array:
+        """Horizontal displacement of the top relative to the ground in m, shape (n_nodes,).
+
+        u_top + h_top θ; in the complete models that of Eq. 3, from its place before the base lifted.
+        """
+        if self.model.properties.top_height is None:
+            message = (
+                "The height of the top is not known, so there is no total displacement. Give RockingProperties their "
+                "top_height, in m above the base."
+            )
+            raise MissingQuantityError(message)
+        return self._global[:, 3]
+
+    @property
     def base_moment(self) -> Array:
-        """M_b = Σ m*_n h*_n ω_n² D_n (or Eq. 37's force) in N m, shape (n_nodes,)."""
+        """M_b = Σ m*_n h*_n ω_n² D_n (or Eq. 37's force) in N m, shape (n_nodes,); -R: and that of mass left out."""
         return self._global[:, 1]
 
     @property
     def base_shear(self) -> Array:
-        """V_b = Σ m*_n ω_n² D_n (or Eq. 37's force) in N, shape (n_nodes,)."""
+        """V_b = Σ m*_n ω_n² D_n (or Eq. 37's force) in N, shape (n_nodes,); -R: and that of the mass left out."""
         return self._global[:, 2]
 
     @property
@@ -156,20 +170,29 @@ class History:
         return self._floors[2]
 
     @property
+    def total_floor_displacement(self) -> Array:
+        """Horizontal displacement of each floor relative to the ground, as the top's, in m, (n_nodes, N_floors)."""
+        return self._floors[3]
+
+    @property
     def tendon_force(self) -> Array:
         """Force of each tendon in N, in the order of `RockingProperties.tendons`, shape (n_nodes, n_tendons)."""
         return tendon_forces(self.model, self.nodes)
 
     @property
     def horizontal_reaction(self) -> Array:
-        """What the ground gives the base across, Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_nodes,)."""
+        """What the ground gives the base across, Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_nodes,).
+
+        In the simplified models for small rotations, m_tot a + L_0^r θ'' + Σ m* D''.
+        """
         return self._friction.reactions.horizontal
 
     @property
     def vertical_reaction(self) -> Array:
         """What the ground gives the base upward, Σ m_i (g + z''_i), in N, shape (n_nodes,).
 
-        Eq. 22 with the sign of the weight mended; as printed, it is less by 2 m_tot g. Tendons add their pull.
+        Eq. 22 with the sign of the weight mended; as printed, it is less by 2 m_tot g. Tendons add their pull. In the
+        simplified models for small rotations, m_tot (g + s B θ'').
         """
         return self._friction.reactions.vertical
 
@@ -236,7 +259,7 @@ class History:
 
     @cached_property
     def _global(self) -> Array:
-        values = global_observables(self.model).evaluate(self.nodes)
+        values = global_observables(self.model).evaluate(self.model, self.nodes)
         values.setflags(write=False)
         return values
 
@@ -254,12 +277,13 @@ class History:
         return Friction(self.model, self.nodes, printed=True) if printed else self._friction
 
     @cached_property
-    def _floors(self) -> tuple[Array, Array, Array]:
+    def _floors(self) -> tuple[Array, Array, Array, Array]:
         floors = self.model.properties.floors
         if floors is None:
             message = (
-                "The structure's properties name no floors, so there are no story drifts, story shears or floor "
-                "accelerations. Simulate a Frame or a LumpedStructure, or give RockingProperties its floors."
+                "The structure's properties name no floors, so there are no story drifts, story shears, floor "
+                "accelerations or floor displacements. Simulate a Frame or a LumpedStructure, or give "
+                "RockingProperties its floors."
             )
             raise MissingQuantityError(message)
         histories = floor_histories(self.model, floors, self.nodes)

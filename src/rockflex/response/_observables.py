@@ -1,70 +1,113 @@
-"""Responses as linear functionals of the motion, whose peaks the solver tracks."""
+"""Responses as functionals of the motion, whose peaks the solver tracks."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex.modal import FloorModes
-from rockflex.models import LinearModel, RockingModel
-from rockflex.response._accelerations import acting_side
+from rockflex.models import (
+    HORIZONTAL,
+    LEFT_OUT,
+    LINEAR,
+    SWAY,
+    LinearModel,
+    NonlinearModel,
+    RockingModel,
+    horizontal_row,
+    missing_mass_rows,
+    observe_all,
+)
+from rockflex.response._accelerations import acting_side, motion_rates
 
 __all__ = ["GLOBAL", "Observables", "elastic_observables", "floor_observables", "global_observables"]
 
 Array = NDArray[np.float64]
 
-GLOBAL = ("top_displacement", "base_moment", "base_shear")
+GLOBAL = ("top_displacement", "base_moment", "base_shear", "total_top_displacement", "horizontal_reaction")
 
 
 @dataclass(frozen=True, eq=False)
 class Observables:
-    """Rows over [D.., D'.., θ, θ', a, s] in contact and while rocking, (F, 2N + 4) each; nonlinear: z after θ'."""
+    """Rows over [D.., D'.., θ, θ', a, s] in contact and while rocking, (F, 2N + 4) each; nonlinear: z after θ'.
+
+    While a complete model rocks, `kinds` (F,) say what becomes of a row there, with `levers` (F, 2): see
+    `rockflex.models`. Elsewhere they are all `LINEAR`.
+    """
 
     contact: Array
     rocking: Array
+    kinds: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    levers: Array = field(default_factory=lambda: np.zeros((0, 2)))
+
+    def __post_init__(self) -> None:
+        rows = self.contact.shape[0]
+        object.__setattr__(self, "kinds", np.append(self.kinds, np.full(rows - self.kinds.size, LINEAR, np.int64)))
+        object.__setattr__(self, "levers", np.vstack((self.levers, np.zeros((rows - self.levers.shape[0], 2)))))
 
     def __add__(self, other: "Observables") -> "Observables":
-        return Observables(np.vstack((self.contact, other.contact)), np.vstack((self.rocking, other.rocking)))
+        return Observables(
+            np.vstack((self.contact, other.contact)),
+            np.vstack((self.rocking, other.rocking)),
+            np.append(self.kinds, other.kinds),
+            np.vstack((self.levers, other.levers)),
+        )
 
-    def evaluate(self, nodes: Array) -> Array:
+    def evaluate(self, model: RockingModel, nodes: Array) -> Array:
         """Values at the nodes of a history (time, side, a, motion), shape (n_nodes, F)."""
         side = acting_side(nodes)
         vector = np.column_stack((nodes[:, 3 : self.contact.shape[1] + 1], nodes[:, 2], side))
-        return np.where(side[:, None] != 0.0, vector @ self.rocking.T, vector @ self.contact.T)
+        values = np.where(side[:, None] != 0.0, vector @ self.rocking.T, vector @ self.contact.T)
+        curved = np.flatnonzero(self.kinds != LINEAR)
+        rocking = side != 0.0
+        if curved.size and rocking.any() and isinstance(model, NonlinearModel):
+            known = model.field(), side[rocking], nodes[rocking, 2], np.ascontiguousarray(nodes[rocking, 3:])
+            rates = motion_rates(model, nodes)[rocking]
+            for f in curved:
+                found = values[rocking, f]
+                observe_all(known[0], int(self.kinds[f]), found, *self.levers[f], *known[1:], rates)
+                values[rocking, f] = found
+        return values
 
 
 def global_observables(model: RockingModel) -> Observables:
-    """u_top = Σ Γ φ_top D, M_b = Σ m* h* ω² D and V_b = Σ m* ω² D, the elastic forces alone, in this order.
+    """u_top, M_b, V_b, the total displacement of the top and ΣF_x, in the order of `GLOBAL`.
 
-    Of a superstructure that yields, the forces are those of Eq. 37.
+    M_b = Σ m* h* ω² D and V_b = Σ m* ω² D are those of the elastic forces alone, of a superstructure that yields those
+    of Eq. 37; with the missing mass, of what moves with the base too. Where the height of the top is not known, the row
+    of its total displacement is zero.
     """
     p = model.properties
-    n = p.n_modes
     force = p.effective_mass[:, None] * _restoring(model)
-    rows = np.zeros((3, force.shape[1]))
-    rows[0, :n] = p.top_ordinate
-    rows[1] = p.effective_height @ force
-    rows[2] = force.sum(axis=0)
-    return Observables(rows, rows)
+    top = np.zeros((1, force.shape[1]))
+    top[0, : p.n_modes] = p.top_ordinate
+    elastic = np.vstack((p.effective_height @ force, force.sum(axis=0)))
+    return (
+        Observables(top, top)
+        + (_with_missing_mass(model, elastic) if model.missing_mass else Observables(elastic, elastic))
+        + (_swaying(model, top, np.array([p.top_height])) if p.top_height else Observables(0.0 * top, 0.0 * top))
+        + _horizontal(model)
+    )
 
 
 def elastic_observables(model: RockingModel, floors: FloorModes) -> Observables:
-    """Story drifts (m) and story shears (N), N_floors rows of each.
+    """Story drifts (m), story shears (N) and total displacements of the floors (m), N_floors rows of each.
 
     A drift is the displacement of a floor less that of the one below, relative to the rotated base; a story shear is
-    the sum of the elastic forces from its floor up.
+    the sum of the elastic forces from its floor up; a total displacement is horizontal and relative to the ground.
     """
     n = model.properties.n_modes
     restoring = _restoring(model)
-    drift = np.zeros((floors.heights.size, restoring.shape[1]))
-    drift[:, :n] = np.diff(floors.displacement, axis=0, prepend=0.0)
+    sway = np.zeros((floors.heights.size, restoring.shape[1]))
+    sway[:, :n] = floors.displacement
+    drift = np.diff(sway, axis=0, prepend=0.0)
     shear = np.cumsum((floors.force / model.properties.omega**2)[::-1], axis=0)[::-1] @ restoring
     rows = np.vstack((drift, shear))
-    return Observables(rows, rows)
+    return Observables(rows, rows) + _swaying(model, sway, floors.heights)
 
 
 def floor_observables(model: LinearModel, floors: FloorModes) -> Observables:
-    """Story drifts, story shears and total floor accelerations a + h θ'' + Σ Γ φ D'' (m/s²), N_floors rows of each."""
+    """Those of `elastic_observables`, and total floor accelerations a + h θ'' + Σ Γ φ D'' (m/s²), N_floors rows."""
     contact = floors.displacement @ model.modal_accelerations(rocking=False)
     rocking = floors.displacement @ model.modal_accelerations(rocking=True)
     rocking += np.outer(floors.heights, model.angular_acceleration())
@@ -85,3 +128,37 @@ def _restoring(model: RockingModel) -> Array:
     rows[:, :n] = stiffness[:, :-1]
     rows[:, 2 * n + 2] = stiffness[:, -1]
     return rows
+
+
+def _swaying(model: RockingModel, rows: Array, heights: Array) -> Observables:
+    """Horizontal displacements relative to the ground of points at some heights whose u are the rows (Eq. 3)."""
+    rotation = 2 * model.properties.n_modes
+    if _complete(model):
+        levers = np.column_stack((heights, np.zeros(heights.size)))
+        return Observables(rows, rows, np.full(heights.size, SWAY, dtype=np.int64), levers)
+    total = rows.copy()
+    total[:, rotation] = heights
+    return Observables(rows, total)
+
+
+def _horizontal(model: RockingModel) -> Observables:
+    contact = horizontal_row(model, rocking=False)[None]
+    if _complete(model):
+        return Observables(contact, np.zeros_like(contact), np.array([HORIZONTAL]))
+    rocking = horizontal_row(model, rocking=True)[None] if model.lifts else contact
+    return Observables(contact, rocking)
+
+
+def _with_missing_mass(model: RockingModel, elastic: Array) -> Observables:
+    """M_b and V_b with the masses left out."""
+    contact = elastic + missing_mass_rows(model, rocking=False)
+    if _complete(model):
+        left = model.properties.mass_left_out
+        levers = np.array([[left[1], left[2]], [left[0], left[1]]])
+        return Observables(contact, elastic, np.full(2, LEFT_OUT, dtype=np.int64), levers)
+    rocking = elastic + missing_mass_rows(model, rocking=True) if model.lifts else contact
+    return Observables(contact, rocking)
+
+
+def _complete(model: RockingModel) -> bool:
+    return isinstance(model, NonlinearModel) and model.complete

@@ -1,5 +1,6 @@
 """What one run answers: peaks, when they occurred, how the run ended and, where kept, its history."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -51,10 +52,11 @@ class Response:
     All peaks are the largest magnitudes of the continuous motion, between samples too. A response that keeps its
     history has the history's quantities as its own: `time`, `side`, `ground_acceleration`, `modal_displacement`,
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
-    `top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`, `story_drift`, `story_shear`,
-    `floor_acceleration`, `tendon_force`, `horizontal_reaction`, `vertical_reaction`, `friction_demand`,
-    `required_friction`, `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. One that
-    keeps peaks only has none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
+    `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
+    `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `tendon_force`,
+    `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
+    `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. One that keeps peaks only has
+    none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
 
     Parameters
     ----------
@@ -73,6 +75,16 @@ class Response:
         Largest |M_b| of the elastic forces in N m, and when; zero for a rigid block, which has none.
     max_base_shear, time_of_max_base_shear
         Largest |V_b| of the elastic forces in N, and when; zero for a rigid block.
+    max_total_top_displacement, time_of_max_total_top_displacement
+        Largest horizontal displacement of the top relative to the ground in m, what the rotation of the base carries it
+        included, and when: u_top + h_top θ, in the complete models by Eq. 3. NaN where the height of the top is not
+        known.
+    max_horizontal_reaction, time_of_max_horizontal_reaction
+        Largest |ΣF_x| that the ground must hold in N (Eq. 21), and when: the base's mass, the damping forces and the
+        mass of modes left out are in it, other than in `max_base_shear`. What an impact gives in an instant is not.
+    min_vertical_reaction, time_of_min_vertical_reaction
+        Least vertical force between base and ground in N (Eq. 22 with the sign of the weight mended), and when.
+        Where it is negative the model pulls the base down, which no ground can: the pivot would lift.
     max_tendon_force
         Largest force of any tendon in N; zero without tendons.
     tendon_utilisation
@@ -104,6 +116,12 @@ class Response:
     time_of_max_base_moment: float
     max_base_shear: float
     time_of_max_base_shear: float
+    max_total_top_displacement: float
+    time_of_max_total_top_displacement: float
+    max_horizontal_reaction: float
+    time_of_max_horizontal_reaction: float
+    min_vertical_reaction: float
+    time_of_min_vertical_reaction: float
     max_tendon_force: float
     tendon_utilisation: float
     n_uplifts: int
@@ -125,6 +143,7 @@ class Response:
     rotation_acceleration = _OfHistory[Array]()
     yielding = _OfHistory[Array]()
     top_displacement = _OfHistory[Array]()
+    total_top_displacement = _OfHistory[Array]()
     base_moment = _OfHistory[Array]()
     base_shear = _OfHistory[Array]()
     uplift_times = _OfHistory[Array]()
@@ -132,6 +151,7 @@ class Response:
     story_drift = _OfHistory[Array]()
     story_shear = _OfHistory[Array]()
     floor_acceleration = _OfHistory[Array]()
+    total_floor_displacement = _OfHistory[Array]()
     tendon_force = _OfHistory[Array]()
     horizontal_reaction = _OfHistory[Array]()
     vertical_reaction = _OfHistory[Array]()
@@ -146,6 +166,23 @@ class Response:
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
             f"u_top,max={self.max_top_displacement:.4g} m, {self.n_impacts} impacts)"
         )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the run asks of the ground or of its tendons that they cannot do, a sentence each."""
+        found: list[str] = []
+        if self.min_vertical_reaction < 0.0:
+            found.append(
+                f"The vertical reaction falls to {self.min_vertical_reaction:.4g} N at "
+                f"{self.time_of_min_vertical_reaction:.4g} s: {self.model} pulls the base down there, which no ground "
+                "can. The pivot would lift, and what follows is to be read with care."
+            )
+        if self.tendon_utilisation > 1.0:
+            found.append(
+                f"A tendon carries {self.tendon_utilisation:.4g} times its yield force. Tendons stay elastic in the "
+                "model, so the run is not to be used."
+            )
+        return tuple(found)
 
     def peaks(self) -> dict[str, Any]:
         """Every scalar by its name, as a row of a table or a JSON object."""
@@ -186,6 +223,8 @@ def respond(model: RockingModel, motion: str, solution: Solution) -> Response:
     tracked = slice(1, globals_end)
     peaks = {f"max_{name}": float(value) for name, value in zip(GLOBAL, solution.peaks[tracked], strict=True)}
     times = {f"time_of_max_{name}": float(t) for name, t in zip(GLOBAL, solution.peak_times[tracked], strict=True)}
+    if model.properties.top_height is None:
+        peaks["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
     force, utilisation = largest_tendon_force(model, rotation)
     return Response(
         model=model.label,
@@ -195,6 +234,8 @@ def respond(model: RockingModel, motion: str, solution: Solution) -> Response:
         time_of_max_rotation=float(solution.peak_times[0]),
         **peaks,
         **times,
+        min_vertical_reaction=model.properties.resting_reaction - solution.lost_support,
+        time_of_min_vertical_reaction=solution.time_of_lost_support,
         max_tendon_force=force,
         tendon_utilisation=utilisation,
         n_uplifts=solution.n_uplifts,
@@ -209,11 +250,12 @@ def respond(model: RockingModel, motion: str, solution: Solution) -> Response:
 
 def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
     if isinstance(model, LinearModel):
-        return FloorPeaks(*np.split(peaks, 3))
+        drift, shear, displacement, acceleration = np.split(peaks, 4)
+        return FloorPeaks(drift, shear, acceleration, displacement)
     # Accelerations of the nonlinear models are no linear functionals: their largest stands at a sample or an event.
     floors = model.properties.floors
     accelerations = np.zeros(0)
     if floors is not None and solution.nodes is not None:
         accelerations = np.abs(floor_accelerations(model, floors, solution.nodes)).max(axis=0)
-    drift, shear = np.split(peaks, 2)
-    return FloorPeaks(drift, shear, accelerations)
+    drift, shear, displacement = np.split(peaks, 3)
+    return FloorPeaks(drift, shear, accelerations, displacement)

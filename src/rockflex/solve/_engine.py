@@ -30,7 +30,7 @@ class Engine(ABC):
     model
         The model's parameters.
     n_rows
-        Number of responses whose peaks are wanted, the rotation included.
+        Number of rows whose peaks are kept: the rotation, the responses wanted, and the loss of support.
     failures
         Where exceptions of the user's impact law gather.
     """
@@ -84,6 +84,7 @@ class Engine(ABC):
         room_for = record.size + EVENTS + (0 if settle else free) if history else 0
         while True:
             log = Log(np.zeros(self._n_rows), np.zeros(self._n_rows), np.zeros(3, dtype=np.int64))
+            log.peaks[-1] = -np.inf
             motion = self._motion(start)
             nodes = np.zeros((room_for, HEADER + motion.size))
             status, samples, count = self._carry(motion, record, dt, free, settle, side, log, nodes)
@@ -96,8 +97,10 @@ class Engine(ABC):
             overturned=status == OVERTURNED,
             settled=status == SETTLED,
             end_time=end,
-            peaks=log.peaks,
-            peak_times=log.times,
+            peaks=log.peaks[:-1],
+            peak_times=log.times[:-1],
+            lost_support=float(log.peaks[-1]),
+            time_of_lost_support=float(log.times[-1]),
             n_uplifts=int(log.tally[UPLIFTS]),
             n_impacts=int(log.tally[IMPACTS]),
             nodes=nodes[:count] if history else None,

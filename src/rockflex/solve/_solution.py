@@ -22,6 +22,8 @@ class Solution:
         Time of the last state, s.
     peaks, peak_times
         Largest magnitude of each row and its time (s), shape (F,); row 0 is the rotation.
+    lost_support, time_of_lost_support
+        Largest fall of the vertical reaction below its value at rest, N; negative where it never rested. And when, s.
     n_uplifts, n_impacts
         Number of uplifts and of impacts.
     nodes
@@ -34,6 +36,8 @@ class Solution:
     end_time: float
     peaks: Array
     peak_times: Array
+    lost_support: float
+    time_of_lost_support: float
     n_uplifts: int
     n_impacts: int
     nodes: Array | None

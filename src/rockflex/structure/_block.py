@@ -46,4 +46,6 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
         m_tot=m,
         half_width=r * math.sin(alpha),
         zeta=(),
+        top_height=2.0 * r * math.cos(alpha),
+        base_mass=0.0,
     )

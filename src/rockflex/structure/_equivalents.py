@@ -70,6 +70,8 @@ def equivalent_2hz_long_base(base_mass_ratio: float, damping_ratio: float, n_mod
         m_tot=1.0 + heavy,
         half_width=half_width,
         zeta=float(zeta),
+        top_height=length,
+        base_mass=heavy,
     )
 
 

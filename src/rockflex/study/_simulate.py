@@ -109,4 +109,4 @@ def make_engine(model: RockingModel, output: Output) -> Engine:
         return ExactEngine(model, rows.contact, rows.rocking)
     if floors is not None:
         rows = rows + elastic_observables(model, floors)
-    return AdaptiveEngine(model, rows.contact)
+    return AdaptiveEngine(model, rows.contact, rows.rocking, rows.kinds, rows.levers)

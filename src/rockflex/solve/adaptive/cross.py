@@ -8,6 +8,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.models import Impact, field_rates, inertia_left, kinetic_energy, stick, strike
+from rockflex.solve.adaptive.curves import is_curved, raise_curves
 from rockflex.solve.adaptive.glance import nothing_hides
 from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
 from rockflex.solve.adaptive.step import FAILED, expand_nested, extend, row_poly, settle_on, step_over, take_step
@@ -133,13 +134,17 @@ def cross(
             if turns:
                 stop, ends, tipped = turn, True, False
         if side != 0.0:
-            raise_peak(polys, GUARD, stop, now, step, log)
+            raise_peak(polys, GUARD, side, stop, now, step, log)
+        if side != 0.0 and flow.field.complete:
+            raise_curves(flow, side, here, slope, step, stop, now, log, stages)
         for f in range(1, log.peaks.size):
+            if is_curved(flow, f, side):
+                continue
             if linear:
                 row_series(system.plain_rows, phase, f, room.series, here, slope, side, step, polys)
             else:
                 row_poly(f, flow.rows[phase, f], here, slope, side, step, stages)
-            raise_peak(polys, f, stop, now, step, log)
+            raise_peak(polys, f, side, stop, now, step, log)
         excess = 0.0
         if not ends and side == 0.0 and resume > 0.0 and stop == resume:
             excess = max(abs(evaluate(polys, GUARD, stop)[0]) - resistance, 0.0)

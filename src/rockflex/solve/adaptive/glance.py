@@ -6,15 +6,14 @@ own bend (for a harmonic of ω: (ωh)²/48); a fifth of the bend is allowed for.
 """
 
 from rockflex._kernel import kernel
+from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Log
-from rockflex.solve.exact.peaks import raise_peaks
-from rockflex.solve.exact.probe import QUARTER_TURN, cubic_range
+from rockflex.solve.exact.peaks import raise_peaks, size_of
+from rockflex.solve.exact.probe import QUARTER_TURN
 
 __all__ = ["nothing_hides"]
-
-STRAY = 0.2
 
 
 @kernel
@@ -30,7 +29,15 @@ def nothing_hides(
         before, after = room.branch[0] * room.rates[0, modes], room.branch[0] * room.rates[LAST, modes]
         if stretch(first, last, step * before, step * after)[0] < 0.0:
             return False
+    if (
+        side != 0.0
+        and flow.field.complete
+        and curves_hide(flow, side, acceleration, slope, step, time, room.trial, room.rates[LAST], log, room)
+    ):
+        return False
     for f in range(log.peaks.size):
+        if is_curved(flow, f, side):
+            continue
         first = flow.rows[phase, f, n] * acceleration + flow.rows[phase, f, n + 1] * side
         before = flow.rows[phase, f, n] * slope
         last, after = first + before * step, before
@@ -44,7 +51,8 @@ def nothing_hides(
         low, high = stretch(first, last, step * before, step * after)
         if f > 0:
             # At the ends a peak is no secret: it is noted below.
-            hidden = max(high, -low) > max(log.peaks[f], abs(first), abs(last))
+            known = max(log.peaks[f], max(size_of(first, f, side, log), size_of(last, f, side, log)))
+            hidden = max(size_of(high, f, side, log), size_of(low, f, side, log)) > known
         elif side == 0.0:
             hidden = high > flow.resistance or -low > flow.resistance
         else:
@@ -55,13 +63,3 @@ def nothing_hides(
         room.ends[f] = last
     raise_peaks(room.ends, side, time + step, log)
     return True
-
-
-@kernel
-def stretch(first: float, last: float, before: float, after: float) -> tuple[float, float]:
-    """Least and largest value that a smooth function may have over [0, 1], from its values and slopes at the ends."""
-    slack = STRAY * (abs(last - first - before) + abs(last - first - after))
-    if before * after > 0.0 and min(abs(before), abs(after)) > 8.0 * slack:  # it rises or falls all along
-        return min(first, last), max(first, last)
-    low, high = cubic_range(first, last, before, after)
-    return low - slack, high + slack

@@ -25,6 +25,9 @@ class Flow(NamedTuple):
     resistance: float  # M_r; infinite on a base that cannot lift
     free_inertia: float  # I_θ - Σ m* h*²
     rows: Array  # (2, F, 2N + 5)
+    kinds: NDArray[np.int64]  # (F,): what becomes of the rows while rocking, see `rockflex.models`
+    levers: Array  # (F, 2): of those that are no linear functionals
+    rest: float  # vertical reaction at rest
     scale: Array  # (2N + 3,): sizes below which a component's error does not matter
     tolerance: float  # relative, for each step
 
@@ -42,6 +45,16 @@ class Stages(NamedTuple):
     branch: Array  # (1,): sign of the hysteretic spring's velocity
     known: NDArray[np.bool_]  # (1,): whether the first stage is the last one of the step before
     size: Array  # (2N + 3,): largest magnitude of each component so far
+    place: Array  # (2N + 6,): the motion within the step
+    place_rates: Array  # (2N + 6,)
+    end: Array  # (2N + 6,): the motion where the stretch under examination ends
+    end_rates: Array  # (2N + 6,)
+    starts: Array  # (F,): the curved rows at the start of the step
+    starts_ahead: Array  # (F,): a little later
+    ends_ahead: Array  # (F,): a little after its end
+    values: Array  # (F,): within it
+    told: NDArray[np.bool_]  # (1,): whether `starts` is filled in
+    doubt: NDArray[np.bool_]  # (F,): curved rows that may hide a peak
 
 
 def stages(motion: Array, rows: int) -> Stages:
@@ -58,4 +71,14 @@ def stages(motion: Array, rows: int) -> Stages:
         np.ones(1),
         np.zeros(1, dtype=np.bool_),
         np.zeros(n - EXTRA + 1),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(1, dtype=np.bool_),
+        np.zeros(rows, dtype=np.bool_),
     )

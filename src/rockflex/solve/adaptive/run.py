@@ -3,13 +3,16 @@
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.models import Impact
+from rockflex.models import Impact, field_rates
 from rockflex.solve.adaptive.cross import cross
+from rockflex.solve.adaptive.curves import is_curved, tell
 from rockflex.solve.adaptive.glide import glide
 from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.step import choose_branch
 from rockflex.solve.exact.history import append
 from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
+from rockflex.solve.exact.peaks import raise_row
 from rockflex.solve.exact.probe import EVENT
 from rockflex.solve.exact.run import SETTLED, UNSETTLED, settled
 from rockflex.solve.exact.sample import cross_sample
@@ -149,10 +152,16 @@ def raise_to_motion(flow: Flow, side: float, acceleration: float, time: float, l
     """Raise all peaks to the present motion."""
     phase = ROCKING if side != 0.0 else CONTACT
     n = flow.rows.shape[2] - 2
+    if flow.field.hysteretic:
+        choose_branch(flow, side, acceleration, stages)
+    field_rates(flow.field, side, stages.branch[0], acceleration, stages.motion, stages.rates[0])
+    if side != 0.0 and flow.field.complete:
+        tell(flow, side, acceleration, stages.motion, stages.rates[0], stages.values)
     for f in range(0 if side != 0.0 else 1, log.peaks.size):
-        value = flow.rows[phase, f, n] * acceleration + flow.rows[phase, f, n + 1] * side
-        for i in range(n):
-            value += flow.rows[phase, f, i] * stages.motion[i]
-        if abs(value) > log.peaks[f]:
-            log.peaks[f] = abs(value)
-            log.times[f] = time
+        if is_curved(flow, f, side):
+            value = stages.values[f]
+        else:
+            value = flow.rows[phase, f, n] * acceleration + flow.rows[phase, f, n + 1] * side
+            for i in range(n):
+                value += flow.rows[phase, f, i] * stages.motion[i]
+        raise_row(f, value, side, time, log)

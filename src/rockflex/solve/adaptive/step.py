@@ -9,7 +9,17 @@ from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.exact.layout import Array
 
-__all__ = ["FAILED", "expand_nested", "extend", "row_poly", "settle_on", "step_over", "take_step"]
+__all__ = [
+    "FAILED",
+    "choose_branch",
+    "expand_nested",
+    "extend",
+    "place_at",
+    "row_poly",
+    "settle_on",
+    "step_over",
+    "take_step",
+]
 
 SHORTEST = 1e-13  # s: a step this short means that the motion cannot be followed
 FAILED = -1.0
@@ -24,6 +34,7 @@ def take_step(flow: Flow, side: float, acceleration: float, slope: float, longes
     """
     step = min(room.step[0], longest)
     if not room.known[0]:
+        room.told[0] = False
         if flow.field.hysteretic:
             choose_branch(flow, side, acceleration, room)
         field_rates(flow.field, side, room.branch[0], acceleration, room.motion, room.rates[0])
@@ -108,16 +119,25 @@ def step_over(room: Stages) -> None:
         room.rates[0, i] = room.rates[LAST, i]
     for i in range(room.size.size):
         room.size[i] = max(room.size[i], abs(room.motion[i]))
+    for f in range(room.ends.size):
+        room.starts[f] = room.ends[f]
 
 
 @kernel
 def settle_on(u: float, room: Stages) -> None:
     """Put the motion at the fraction `u` of the step in place of that at its start."""
+    place_at(u, room, room.motion)
+
+
+@kernel
+def place_at(u: float, room: Stages, place: Array) -> None:
+    """Motion at the fraction `u` of the step."""
     v = 1.0 - u
     for i in range(room.motion.size):
         value = room.bends[5, i] + u * room.bends[6, i]
         value = room.bends[3, i] + u * (room.bends[4, i] + v * value)
-        room.motion[i] += u * (room.bends[0, i] + v * (room.bends[1, i] + u * (room.bends[2, i] + v * value)))
+        value = room.bends[0, i] + v * (room.bends[1, i] + u * (room.bends[2, i] + v * value))
+        place[i] = room.motion[i] + u * value
 
 
 @kernel

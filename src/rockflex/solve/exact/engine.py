@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rockflex._kernel import Entry
-from rockflex.models import LinearModel, impact_of
+from rockflex.models import LinearModel, impact_of, lost_support_row
 from rockflex.solve._engine import QUIET, Engine
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
@@ -31,11 +31,15 @@ class ExactEngine(Engine):
 
     def __init__(self, model: LinearModel, contact_rows: Array, rocking_rows: Array) -> None:
         impact, failures = impact_of(model.law, model.properties)
-        super().__init__(model, 1 + contact_rows.shape[0], failures)
+        super().__init__(model, 2 + contact_rows.shape[0], failures)
         self._impact, self._physics = impact, physics_of(model)
         rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
-        self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
+        supported = np.zeros_like(rotation)
+        lost = lost_support_row(model) if model.lifts else supported
+        self._rows = np.stack(
+            (np.vstack((model.contact_moment(), contact_rows, supported)), np.vstack((rotation, rocking_rows, lost)))
+        )
         self._contact = contact_basis(self._physics, self._rows[0])
         # A base that cannot lift never rocks, and a neutral one is integrated: the second phase only fills the place.
         self._rocking = self._contact

@@ -2,7 +2,8 @@
 
 The state is ``[D_1..D_N, D'_1..D'_N, θ, θ']``. A *row* is a linear functional of state, ground acceleration and side
 of rocking, ``[D.., D'.., θ, θ', a, s]``. Row 0 of each phase is its guard: the overturning moment in contact
-(Eq. 24), the rotation while rocking. The other rows are the responses whose peaks are wanted.
+(Eq. 24), the rotation while rocking. The last row, times the side, is what the base has lost of its support: it has a
+largest value and no least. The rows between are the responses whose peaks are wanted.
 
 Each phase is uncoupled into pairs of coordinates w, where state = basis · (w + forced part): N pairs in contact,
 K = N + 1 while rocking; pair k is ``(w[k], w[K + k])``. Under an acceleration that is linear in time, w moves without
@@ -61,7 +62,7 @@ class System(NamedTuple):
 class Log(NamedTuple):
     """What every run leaves: the peak of each row (row 0: of the rotation), when, and the count of events."""
 
-    peaks: Array  # (F,)
+    peaks: Array  # (F,): largest magnitudes, but of the last row
     times: Array  # (F,)
     tally: NDArray[np.int64]  # uplifts, impacts, events within the present sample
 

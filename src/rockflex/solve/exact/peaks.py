@@ -4,30 +4,44 @@ from rockflex._kernel import kernel
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
 from rockflex.solve.exact.series import bend, evaluate, first_descent
 
-__all__ = ["raise_peak", "raise_peaks", "raise_to", "raise_to_state"]
+__all__ = ["raise_peak", "raise_peaks", "raise_row", "raise_to", "raise_to_state", "size_of"]
 
 ROUNDING = 1e-16
 MOST_TURNS = 64  # of a row within a unit, in which no mode turns by more than a radian
 
 
 @kernel
-def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
-    """Note the values at the end of a step in which nothing hid."""
-    for f in range(0 if side != 0.0 else 1, values.size):
-        if abs(values[f]) > log.peaks[f]:
-            log.peaks[f] = abs(values[f])
-            log.times[f] = time
+def size_of(value: float, row: int, side: float, log: Log) -> float:
+    """What the peak of a row is the largest of: the magnitude, or for the last row the loss of support."""
+    return side * value if row == log.peaks.size - 1 else abs(value)
 
 
 @kernel
-def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, log: Log) -> None:
-    """Raise a row's peak to the largest magnitude of its polynomial over [0, stop]; the last row is for work."""
+def raise_row(row: int, value: float, side: float, time: float, log: Log) -> None:
+    """Note one value of a row."""
+    size = size_of(value, row, side, log)
+    if size > log.peaks[row]:
+        log.peaks[row] = size
+        log.times[row] = time
+
+
+@kernel
+def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
+    """Note the values at the end of a step in which nothing hid."""
+    for f in range(0 if side != 0.0 else 1, values.size):
+        raise_row(f, values[f], side, time, log)
+
+
+@kernel
+def raise_peak(polys: Array, row: int, side: float, stop: float, time: float, step: float, log: Log) -> None:
+    """Raise a row's peak to the largest size of its polynomial over [0, stop]; the last polynomial is for work."""
     reach = 0.0
     for k in range(polys.shape[1]):
         reach += abs(polys[row, k])
     if reach <= log.peaks[row]:
         return
-    first, last = abs(polys[row, 0]), abs(evaluate(polys, row, stop)[0])
+    first = size_of(polys[row, 0], row, side, log)
+    last = size_of(evaluate(polys, row, stop)[0], row, side, log)
     if max(first, last) > log.peaks[row]:
         log.peaks[row] = max(first, last)
         log.times[row] = time + (step * stop if last >= first else 0.0)
@@ -45,10 +59,7 @@ def raise_peak(polys: Array, row: int, stop: float, time: float, step: float, lo
         u = first_descent(polys, work, u, stop)
         if u >= stop:
             return
-        value = abs(evaluate(polys, row, u)[0])
-        if value > log.peaks[row]:
-            log.peaks[row] = value
-            log.times[row] = time + step * u
+        raise_row(row, evaluate(polys, row, u)[0], side, time + step * u, log)
         direction = -direction
         u += 1e-9
 
@@ -61,9 +72,7 @@ def raise_to(
     value = rows[phase, row, room.state.size] * acceleration + rows[phase, row, room.state.size + 1] * side
     for i in range(room.state.size):
         value += rows[phase, row, i] * room.state[i]
-    if abs(value) > log.peaks[row]:
-        log.peaks[row] = abs(value)
-        log.times[row] = time
+    raise_row(row, value, side, time, log)
 
 
 @kernel

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from rockflex._kernel import kernel
 from rockflex.solve.exact.layout import ROCKING, Log, Scratch, System
 
@@ -14,6 +16,7 @@ NOTHING, PEAK, EVENT = 0, 1, 2  # what a step may hide; the first row hides even
 @kernel
 def set_limits(side: float, resistance: float, log: Log, room: Scratch) -> None:
     """Limits beyond which a row calls for an event (row 0) or a new peak (all others, and row 0 while rocking)."""
+    support = log.peaks.size - 1
     for f in range(log.peaks.size):
         room.lower[f] = -log.peaks[f]
         room.upper[f] = log.peaks[f]
@@ -24,6 +27,10 @@ def set_limits(side: float, resistance: float, log: Log, room: Scratch) -> None:
         room.lower[0] = 0.0
     else:
         room.upper[0] = 0.0
+    if side <= 0.0:
+        room.upper[support] = np.inf
+    if side >= 0.0:
+        room.lower[support] = -np.inf
 
 
 @kernel

@@ -6,7 +6,7 @@ from rockflex._kernel import kernel
 from rockflex.solve.exact.grid import largest_step
 from rockflex.solve.exact.layout import CONTACT, ROCKING, Log, Scratch, System
 from rockflex.solve.exact.march import to_state
-from rockflex.solve.exact.peaks import raise_peak
+from rockflex.solve.exact.peaks import raise_peak, raise_row
 from rockflex.solve.exact.probe import examine, probe, set_limits
 from rockflex.solve.exact.series import expand, row_series
 
@@ -48,7 +48,7 @@ def survey(
                     clear = False
                 elif room.asked[f]:
                     room.clear[f] = place + stride
-                    raise_end(f, time + unit * (place + stride), log, room)
+                    raise_row(f, room.end[f], side, time + unit * (place + stride), log)
         if not clear and depth < levels:
             depth += 1
             probed = False
@@ -84,13 +84,5 @@ def survey_unit(
     for f in range(1, log.peaks.size):
         if room.doubt[f]:
             row_series(system.plain_rows, phase, f, room.series, acceleration, slope, side, step, room.polys)
-            raise_peak(room.polys, f, 1.0, time, step, log)
-            raise_end(f, time + step, log, room)
-
-
-@kernel
-def raise_end(row: int, time: float, log: Log, room: Scratch) -> None:
-    """Note the value of a row at the end of the step examined."""
-    if abs(room.end[row]) > log.peaks[row]:
-        log.peaks[row] = abs(room.end[row])
-        log.times[row] = time
+            raise_peak(room.polys, f, side, 1.0, time, step, log)
+            raise_row(f, room.end[f], side, time + step, log)

@@ -87,12 +87,12 @@ def cross_unit(
         if ends:
             stop = span
         if side != 0.0:
-            raise_peak(room.polys, GUARD, stop, now, step, log)
+            raise_peak(room.polys, GUARD, side, stop, now, step, log)
         advance(room.series, stop, step, room.state)
         for f in range(1, log.peaks.size):
             if not probed or room.doubt[f]:
                 row_series(system.plain_rows, phase, f, room.series, here, slope, side, step, room.polys)
-                raise_peak(room.polys, f, stop, now, step, log)
+                raise_peak(room.polys, f, side, stop, now, step, log)
             else:
                 there = here + slope * step * stop
                 raise_to(system.plain_rows, phase, f, there, side, now + step * stop, log, room)

@@ -139,6 +139,8 @@ class PropertiesTable(StructureTable):
     translational_inertia: float | None = Field(
         None, description="the sum of m_i h_i² (default: i_theta - m_tot half_width²), a number in kg m²"
     )
+    top_height: float | None = Field(None, description="the height of the top, for its total displacement, in m")
+    base_mass: float | None = Field(None, description="the mass of the base, a part of m_tot, a number in kg")
 
 
 class TaperedTowerTable(StructureTable):

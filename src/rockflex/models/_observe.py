@@ -1,0 +1,100 @@
+"""Quantities of the complete models that are not linear in the motion (Silva & Stojadinović 2024, Eqs. 3-22).
+
+In contact, and in the simplified models throughout, every quantity is a row over the motion. While a complete model
+rocks, the sway of a floor bends with the rotation, and forces follow from accelerations.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._kernel import kernel
+from rockflex.models._field import Field
+
+__all__ = ["HORIZONTAL", "LEFT_OUT", "LINEAR", "SWAY", "VERTICAL", "Posture", "observe", "observe_all", "posture_of"]
+
+Array = NDArray[np.float64]
+
+LINEAR = 0  # the row itself
+SWAY = 1  # horizontal displacement of a point at the height levers[0], whose u is the row (Eq. 3)
+LEFT_OUT = 2  # the row, and what the masses left out carry: levers[0] Σ m_i (h_i), levers[1] Σ m_i h_i (h_i²)
+HORIZONTAL = 3  # Σ F_x (Eq. 21) with the tendons' pull
+VERTICAL = 4  # Σ F_z (Eq. 22 with the sign of the weight mended) with the tendons' pull
+
+
+class Posture(NamedTuple):
+    """What all quantities share at one instant of rocking."""
+
+    sine: float
+    cosine: float
+    shift: float  # s B (1 - cos θ), by which the pivot's turn moves everything
+    drive: float  # a cos θ - g sin θ + s B θ'^2, which pushes the masses along the base
+    turn: float  # θ''
+    horizontal: float  # Σ F_x
+    vertical: float  # Σ F_z
+
+
+@kernel
+def posture_of(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
+    """Posture of a motion while rocking; `rates` holds D'' and θ''."""
+    n = field.omega2.size
+    spin, turn = motion[2 * n + 1], rates[2 * n + 1]
+    sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
+    upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
+    half = 0.5 * sine / upright
+    offset = side * field.half_width
+    across = field.total_mass * offset  # Σ m_i (s B - u_i)
+    speed = push = 0.0
+    for i in range(n):
+        across -= field.mass[i] * motion[i]
+        speed += field.mass[i] * motion[n + i]
+        push += field.mass[i] * rates[n + i]
+    along, beside = across * cosine - field.weight_arm * sine, across * sine + field.weight_arm * cosine
+    # A tendon points from where it leaves the base to where it left it in contact: at θ/2 from the vertical.
+    pull = field.prestress + 2.0 * field.axial_stiffness * field.half_width * abs(half)
+    square, coriolis = spin * spin, 2.0 * spin * speed
+    return Posture(
+        sine=sine,
+        cosine=cosine,
+        shift=2.0 * offset * half * half,
+        drive=acceleration * cosine - field.gravity * sine + square * offset,
+        turn=turn,
+        horizontal=field.total_mass * acceleration
+        + (turn * beside + push * cosine - coriolis * sine + square * along + pull * half),
+        vertical=field.total_mass * field.gravity
+        + (turn * along - push * sine - coriolis * cosine - square * beside + pull * upright),
+    )
+
+
+@kernel
+def observe(kind: int, value: float, near: float, far: float, posture: Posture) -> float:
+    """One quantity of a posture, from the value of its row and its two levers."""
+    if kind == SWAY:
+        return posture.shift + near * posture.sine + value * posture.cosine
+    if kind == LEFT_OUT:
+        return value - near * posture.drive - far * posture.turn
+    if kind == HORIZONTAL:
+        return posture.horizontal
+    if kind == VERTICAL:
+        return posture.vertical
+    return value
+
+
+@kernel
+def observe_all(
+    field: Field,
+    kind: int,
+    values: Array,
+    near: float,
+    far: float,
+    side: Array,
+    acceleration: Array,
+    motion: Array,
+    rates: Array,
+) -> None:
+    """Put one quantity at many instants in place of the `values` (n,) of its row; `motion`, `rates`: (n, 2N + 2)."""
+    for k in range(side.size):
+        posture = posture_of(field, side[k], acceleration[k], motion[k], rates[k])
+        values[k] = observe(kind, values[k], near, far, posture)

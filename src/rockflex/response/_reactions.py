@@ -1,0 +1,58 @@
+"""What the ground gives the base (Silva & Stojadinović 2024, Eqs. 21 and 22).
+
+With u_i of the modes kept, Σ m_i u_i = Σ m*_n D_n, and the sums over the masses come down to m_tot, L_0^r and that one.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex.models import HORIZONTAL, VERTICAL, NonlinearModel, RockingModel, observe_all
+from rockflex.response._accelerations import acting_side, rates_of
+
+__all__ = ["Reactions", "printed_reactions", "reactions"]
+
+Array = NDArray[np.float64]
+
+
+class Reactions(NamedTuple):
+    """What the ground gives the base, in N, shape (n,) each."""
+
+    horizontal: Array
+    vertical: Array
+
+
+def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
+    """Σ m_i (a + x''_i) of Eq. 21 and Σ m_i (g + z''_i), Eq. 22 with the weight's sign mended, and the tendons' pull.
+
+    In the simplified models as Eq. 23 has them, for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
+    m_tot (g + s B θ''). `nodes` as in `History`, and D''_n and θ'' at each of them, shape (n, N + 1).
+    """
+    if isinstance(model, NonlinearModel) and model.complete:
+        return _of_large_rotations(model, nodes, rates)
+    p = model.properties
+    turn, push = rates[:, -1], rates[:, :-1] @ p.effective_mass
+    raised = p.m_tot * turn * p.half_width
+    pull = p.half_width * p.axial_stiffness * np.abs(nodes[:, 3 + 2 * p.n_modes])
+    return Reactions(
+        p.m_tot * nodes[:, 2] + p.l0r * turn + push,
+        p.resting_reaction + acting_side(nodes) * raised + pull,
+    )
+
+
+def printed_reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
+    """Eqs. 21 and 22 as they are printed, for every model, and the tendons' pull: with Σ m_i (-g + z''_i)."""
+    x, z = _of_large_rotations(model, nodes, rates)
+    return Reactions(x, z - 2.0 * model.properties.m_tot * GRAVITY)
+
+
+def _of_large_rotations(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
+    field = NonlinearModel(model.label, model.properties, model.lifts, model.law).field()
+    side, motion = acting_side(nodes), np.ascontiguousarray(nodes[:, 3:])
+    moving = np.ascontiguousarray(rates_of(model, nodes, rates))
+    x, z = np.zeros(side.size), np.zeros(side.size)
+    for kind, values in ((HORIZONTAL, x), (VERTICAL, z)):
+        observe_all(field, kind, values, 0.0, 0.0, side, nodes[:, 2].copy(), motion, moving)
+    return Reactions(x, z)
