@@ -40,7 +40,7 @@ def measure(label: str, motion: rf.GroundMotion) -> tuple[str, ...]:
     structure = frame(5)
     tied = parse_model(label).of(structure.rocking(), None, bouc_wen)
     assert isinstance(tied, NonlinearModel)
-    reference = AdaptiveEngine(tied, global_observables(tied).contact, 1e-13).run(motion.acceleration, motion.dt)
+    reference = AdaptiveEngine(tied, global_observables(tied), 1e-13).run(motion.acceleration, motion.dt)
     row = 0 if tied.lifts else 1
     top = tied.properties.top_ordinate[0]
 

@@ -25,7 +25,7 @@ RECORD = load_suite("el-centro-1940")[0].acceleration[60:160] * 2.5
 
 def engine(label="2DOF-C", **options):
     model = parse_model(label).of(FRAME.rocking(), **options)
-    return AdaptiveEngine(model, global_observables(model).contact)
+    return AdaptiveEngine(model, global_observables(model))
 
 
 def test_a_history_finds_room_for_all_its_events(monkeypatch):

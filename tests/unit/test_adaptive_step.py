@@ -7,6 +7,7 @@ from scipy.integrate._ivp import dop853_coefficients as published
 
 from rockflex import BoucWen, Frame
 from rockflex.models import EXTRA, Model
+from rockflex.solve import Observables
 from rockflex.solve.adaptive import tableau
 from rockflex.solve.adaptive.engine import AdaptiveEngine
 from rockflex.solve.adaptive.layout import TERMS, stages
@@ -32,7 +33,7 @@ A, SLOPE = 1.5, -20.0
 def flow(tolerance=1e30):
     """A complete model of two modes, whose steps are never refused."""
     model = Model(complete=True).of(Frame(**FRAME).rocking())
-    return AdaptiveEngine(model, np.zeros((0, 9)), tolerance)._flow
+    return AdaptiveEngine(model, Observables.none(model), tolerance)._flow
 
 
 def exact(time):
@@ -183,7 +184,7 @@ def test_a_motion_that_leaves_all_numbers_cannot_be_followed():
 def test_the_branch_of_the_hysteresis(velocity):
     """By the velocity's sign, or where it stands still by what it will be: under a < 0 it is pushed forward."""
     model = Model(1, lifts=False).of(Frame(**FRAME).rocking(), bouc_wen=BoucWen(0.02))
-    given = AdaptiveEngine(model, np.zeros((0, 7)))._flow
+    given = AdaptiveEngine(model, Observables.none(model))._flow
     for a in (-2.0, 2.0):
         motion = np.zeros(4 + EXTRA)
         motion[1] = velocity

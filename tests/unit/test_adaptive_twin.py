@@ -98,7 +98,7 @@ def test_the_peaks_follow_the_tolerance(tolerance):
     record = motion("el-centro-1940")
     model = parse_model("2DOF-C").of(rf.Frame(**FRAME).rocking())
     loose, tight = (
-        AdaptiveEngine(model, global_observables(model).contact, t).run(record.acceleration, record.dt)
+        AdaptiveEngine(model, global_observables(model), t).run(record.acceleration, record.dt)
         for t in (tolerance, 1e-13)
     )
     assert loose.n_impacts == tight.n_impacts

@@ -34,7 +34,7 @@ def frame(**changes):
 def engine(given, label):
     tied = parse_model(label).of(Frame(**given).rocking())
     rows = global_observables(tied)
-    return ExactEngine(tied, rows.contact, rows.rocking)
+    return ExactEngine(tied, rows)
 
 
 def assert_same_peaks(one, other, rtol):

@@ -13,13 +13,14 @@ coefficients = st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=
 
 
 def log(*peaks):
-    return Log(np.array(peaks), np.full(len(peaks), -1.0), np.zeros(3, dtype=np.int64))
+    """Peaks of rows, and of the loss of support, which is the last."""
+    return Log(np.array([*peaks, -np.inf]), np.full(len(peaks) + 1, -1.0), np.zeros(3, dtype=np.int64))
 
 
 def raised(poly, stop, before=0.0):
     """Peak and time of a polynomial in units of 0.5 s from t = 3 s on."""
     book = log(before)
-    raise_peak(np.array([poly, np.zeros(len(poly))]), 0, stop, 3.0, 0.5, book)
+    raise_peak(np.array([poly, np.zeros(len(poly))]), 0, 1.0, stop, 3.0, 0.5, book)
     return float(book.peaks[0]), float(book.times[0])
 
 
@@ -82,9 +83,11 @@ def test_growth_from_rest(power):
 
 def test_ends_of_a_step():
     book = log(1.0, 2.0, 3.0)
-    raise_peaks(np.array([5.0, -4.0, 2.0]), 0.0, 7.0, book)  # in contact the first row is the moment, no rotation
-    assert book.peaks.tolist() == [1.0, 4.0, 3.0]
-    assert book.times.tolist() == [-1.0, 7.0, -1.0]
-    raise_peaks(np.array([-5.0, 4.0, 2.0]), -1.0, 8.0, book)
-    assert book.peaks.tolist() == [5.0, 4.0, 3.0]
-    assert book.times.tolist() == [8.0, 7.0, -1.0]
+    raise_peaks(np.array([5.0, -4.0, 2.0, 0.0]), 0.0, 7.0, book)  # in contact the first row is the moment, no rotation
+    assert book.peaks.tolist() == [1.0, 4.0, 3.0, 0.0]
+    assert book.times.tolist() == [-1.0, 7.0, -1.0, 7.0]
+    raise_peaks(np.array([-5.0, 4.0, 2.0, -0.5]), -1.0, 8.0, book)
+    assert book.peaks.tolist() == [5.0, 4.0, 3.0, 0.5]
+    assert book.times.tolist() == [8.0, 7.0, -1.0, 8.0]
+    raise_peaks(np.array([-5.0, 4.0, 2.0, 0.7]), -1.0, 9.0, book)  # support is gained
+    assert book.peaks.tolist() == [5.0, 4.0, 3.0, 0.5]

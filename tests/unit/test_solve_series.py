@@ -32,7 +32,7 @@ def prepared(n):
     """The engine's coefficients, and the generators of its twin, whose state is [θ, D, θ', D', s, a, a']."""
     tied = Model(n).of(Frame(**GIVEN).rocking())
     rows = global_observables(tied)
-    system = ExactEngine(tied, rows.contact, rows.rocking).system(DT)
+    system = ExactEngine(tied, rows).system(DT)
     return system, Exact(**frame_properties(**GIVEN, n_modes=n).kwargs(), dt=DT, substeps=1)
 
 

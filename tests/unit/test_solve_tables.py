@@ -51,7 +51,7 @@ def prepared(name, *, dense=False):
     with pytest.MonkeyPatch.context() as patch:
         if dense:
             patch.setattr(basis, "WORST_CONDITION", 0.0)
-        engine = ExactEngine(tied, rows.contact, rows.rocking)
+        engine = ExactEngine(tied, rows)
     twin = Exact(**frame_properties(**given(changes), n_modes=n).kwargs(), dt=DT, substeps=1)
     return engine, engine.system(DT), twin
 

@@ -2,7 +2,7 @@
 
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._field import EXTRA, Field, field_rates, inertia_left
-from rockflex.models._forces import horizontal_row, lost_support_row, missing_mass_rows
+from rockflex.models._forces import horizontal_row, lost_support_row, missing_mass_rows, row_size
 from rockflex.models._impact import ForgottenLaw, ImpactLaw, Restitution, VVELComplete, VVELSimplified, housner
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._linear import LinearModel
@@ -52,6 +52,7 @@ __all__ = [
     "observe_all",
     "parse_model",
     "posture_of",
+    "row_size",
     "stick",
     "strike",
 ]

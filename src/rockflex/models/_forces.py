@@ -10,9 +10,14 @@ from numpy.typing import NDArray
 from rockflex.models._linear import LinearModel
 from rockflex.models._nonlinear import NonlinearModel
 
-__all__ = ["horizontal_row", "lost_support_row", "missing_mass_rows"]
+__all__ = ["horizontal_row", "lost_support_row", "missing_mass_rows", "row_size"]
 
 Array = NDArray[np.float64]
+
+
+def row_size(model: LinearModel | NonlinearModel) -> int:
+    """Columns of a row: [D_1..D_N, D'_1..D'_N, θ, θ', a, s], of a nonlinear model with z after θ'."""
+    return 2 * model.properties.n_modes + (5 if isinstance(model, NonlinearModel) else 4)
 
 
 def horizontal_row(model: LinearModel | NonlinearModel, *, rocking: bool) -> Array:
@@ -44,7 +49,7 @@ def missing_mass_rows(model: LinearModel | NonlinearModel, *, rocking: bool) -> 
     Modes above those kept follow the base at once, so their elastic forces are the inertia of their masses.
     """
     left = model.properties.mass_left_out
-    rows = np.zeros((2, model.properties.n_modes * 2 + (5 if isinstance(model, NonlinearModel) else 4)))
+    rows = np.zeros((2, row_size(model)))
     rows[:, -2] = -left[1], -left[0]
     if rocking:
         rows -= np.outer((left[2], left[1]), model.angular_acceleration())

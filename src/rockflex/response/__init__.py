@@ -5,7 +5,6 @@ from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW
 from rockflex.response._history import History
 from rockflex.response._observables import (
-    Observables,
     elastic_observables,
     floor_observables,
     global_observables,
@@ -18,7 +17,6 @@ __all__ = [
     "EnergyLedger",
     "FloorPeaks",
     "History",
-    "Observables",
     "Response",
     "elastic_observables",
     "floor_observables",

@@ -16,7 +16,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.models import LinearModel, NonlinearModel, RockingModel
 from rockflex.response._tendons import stretch_per_arm
-from rockflex.solve import ExactEngine
+from rockflex.solve import ExactEngine, Observables
 
 __all__ = ["EnergyLedger", "energy_ledger", "is_impact"]
 
@@ -156,8 +156,7 @@ def _work(model: LinearModel, nodes: Array) -> tuple[Array, Array]:
     p = model.properties
     n = p.n_modes
     nodes = nodes[:, : 5 + 2 * n]
-    empty = np.zeros((0, 2 * n + 4))
-    engine = ExactEngine(model, empty, empty)
+    engine = ExactEngine(model, Observables.none(model))
     span = np.diff(nodes[:, 0])
     places, weights = _rule(model.label, engine.fastest, float(span.max(initial=0.0)))
     drag = 2.0 * p.zeta * p.omega * p.effective_mass

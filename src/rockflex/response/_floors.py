@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from rockflex.modal import FloorModes
 from rockflex.models import NonlinearModel, RockingModel
 from rockflex.response._accelerations import accelerations, acting_side
-from rockflex.response._observables import elastic_observables
+from rockflex.response._observables import elastic_observables, evaluate
 
 __all__ = ["floor_accelerations", "floor_histories"]
 
@@ -18,7 +18,7 @@ def floor_histories(model: RockingModel, floors: FloorModes, nodes: Array) -> tu
 
     Shape (n_nodes, N_floors) each.
     """
-    drift, shear, displacement = np.split(elastic_observables(model, floors).evaluate(model, nodes), 3, axis=1)
+    drift, shear, displacement = np.split(evaluate(elastic_observables(model, floors), model, nodes), 3, axis=1)
     return drift, shear, floor_accelerations(model, floors, nodes), displacement
 
 

@@ -12,7 +12,7 @@ from rockflex.models import EXTRA, LinearModel, NonlinearModel, RockingModel
 from rockflex.response._accelerations import accelerations
 from rockflex.response._energy import is_impact
 from rockflex.response._reactions import Reactions, printed_reactions, reactions
-from rockflex.solve import ExactEngine
+from rockflex.solve import ExactEngine, Observables
 
 __all__ = ["IMPACT_WINDOW", "Friction"]
 
@@ -42,8 +42,7 @@ class Friction:
         self._engine: ExactEngine | None = None
         linear = model.linear if isinstance(model, NonlinearModel) else model
         if isinstance(model, LinearModel) or model.bouc_wen is None:
-            empty = np.zeros((0, 2 * model.properties.n_modes + 4))
-            self._engine = ExactEngine(linear, empty, empty)
+            self._engine = ExactEngine(linear, Observables.none(linear))
         p = model.properties
         scale = np.sqrt(p.i_theta / linear.free_inertia)  # by which the frequencies rise at most, once uplifted
         self._fastest = self._engine.fastest if self._engine else float(p.omega.max(initial=0.0) * scale)

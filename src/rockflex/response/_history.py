@@ -15,7 +15,7 @@ from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
 from rockflex.response._floors import floor_histories
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._missing import MissingQuantityError
-from rockflex.response._observables import global_observables
+from rockflex.response._observables import evaluate, global_observables
 from rockflex.response._tendons import tendon_forces
 
 __all__ = ["History"]
@@ -259,7 +259,7 @@ class History:
 
     @cached_property
     def _global(self) -> Array:
-        values = global_observables(self.model).evaluate(self.model, self.nodes)
+        values = evaluate(global_observables(self.model), self.model, self.nodes)
         values.setflags(write=False)
         return values
 

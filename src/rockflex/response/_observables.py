@@ -1,7 +1,5 @@
 """Responses as functionals of the motion, whose peaks the solver tracks."""
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,57 +15,33 @@ from rockflex.models import (
     horizontal_row,
     missing_mass_rows,
     observe_all,
+    row_size,
 )
 from rockflex.response._accelerations import acting_side, motion_rates
+from rockflex.solve import Observables
 
-__all__ = ["GLOBAL", "Observables", "elastic_observables", "floor_observables", "global_observables"]
+__all__ = ["GLOBAL", "elastic_observables", "evaluate", "floor_observables", "global_observables"]
 
 Array = NDArray[np.float64]
 
 GLOBAL = ("top_displacement", "base_moment", "base_shear", "total_top_displacement", "horizontal_reaction")
 
 
-@dataclass(frozen=True, eq=False)
-class Observables:
-    """Rows over [D.., D'.., θ, θ', a, s] in contact and while rocking, (F, 2N + 4) each; nonlinear: z after θ'.
-
-    While a complete model rocks, `kinds` (F,) say what becomes of a row there, with `levers` (F, 2): see
-    `rockflex.models`. Elsewhere they are all `LINEAR`.
-    """
-
-    contact: Array
-    rocking: Array
-    kinds: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    levers: Array = field(default_factory=lambda: np.zeros((0, 2)))
-
-    def __post_init__(self) -> None:
-        rows = self.contact.shape[0]
-        object.__setattr__(self, "kinds", np.append(self.kinds, np.full(rows - self.kinds.size, LINEAR, np.int64)))
-        object.__setattr__(self, "levers", np.vstack((self.levers, np.zeros((rows - self.levers.shape[0], 2)))))
-
-    def __add__(self, other: "Observables") -> "Observables":
-        return Observables(
-            np.vstack((self.contact, other.contact)),
-            np.vstack((self.rocking, other.rocking)),
-            np.append(self.kinds, other.kinds),
-            np.vstack((self.levers, other.levers)),
-        )
-
-    def evaluate(self, model: RockingModel, nodes: Array) -> Array:
-        """Values at the nodes of a history (time, side, a, motion), shape (n_nodes, F)."""
-        side = acting_side(nodes)
-        vector = np.column_stack((nodes[:, 3 : self.contact.shape[1] + 1], nodes[:, 2], side))
-        values = np.where(side[:, None] != 0.0, vector @ self.rocking.T, vector @ self.contact.T)
-        curved = np.flatnonzero(self.kinds != LINEAR)
-        rocking = side != 0.0
-        if curved.size and rocking.any() and isinstance(model, NonlinearModel):
-            known = model.field(), side[rocking], nodes[rocking, 2], np.ascontiguousarray(nodes[rocking, 3:])
-            rates = motion_rates(model, nodes)[rocking]
-            for f in curved:
-                found = values[rocking, f]
-                observe_all(known[0], int(self.kinds[f]), found, *self.levers[f], *known[1:], rates)
-                values[rocking, f] = found
-        return values
+def evaluate(observables: Observables, model: RockingModel, nodes: Array) -> Array:
+    """Values at the nodes of a history (time, side, a, motion), shape (n_nodes, F)."""
+    side = acting_side(nodes)
+    vector = np.column_stack((nodes[:, 3 : row_size(model) + 1], nodes[:, 2], side))
+    values = np.where(side[:, None] != 0.0, vector @ observables.rocking.T, vector @ observables.contact.T)
+    curved = np.flatnonzero(observables.kinds != LINEAR)
+    rocking = side != 0.0
+    if curved.size and rocking.any() and isinstance(model, NonlinearModel):
+        rates = motion_rates(model, nodes)[rocking]
+        known = side[rocking], nodes[rocking, 2], np.ascontiguousarray(nodes[rocking, 3:]), rates
+        for f in curved:
+            found = values[rocking, f]
+            observe_all(model.field(), int(observables.kinds[f]), found, *observables.levers[f], *known)
+            values[rocking, f] = found
+    return values
 
 
 def global_observables(model: RockingModel) -> Observables:

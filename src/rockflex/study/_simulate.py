@@ -106,7 +106,7 @@ def make_engine(model: RockingModel, output: Output) -> Engine:
     if isinstance(model, LinearModel):
         if floors is not None:
             rows = rows + floor_observables(model, floors)
-        return ExactEngine(model, rows.contact, rows.rocking)
+        return ExactEngine(model, rows)
     if floors is not None:
         rows = rows + elastic_observables(model, floors)
-    return AdaptiveEngine(model, rows.contact, rows.rocking, rows.kinds, rows.levers)
+    return AdaptiveEngine(model, rows)

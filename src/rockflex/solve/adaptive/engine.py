@@ -3,12 +3,12 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._kernel import Entry
 from rockflex.models import EXTRA, LINEAR, VERTICAL, NonlinearModel, impact_of, lost_support_row
 from rockflex.solve._engine import QUIET, Engine
+from rockflex.solve._observables import Observables
 from rockflex.solve.adaptive.layout import Flow, stages
 from rockflex.solve.adaptive.run import run
 from rockflex.solve.exact.basis import contact_basis
@@ -30,38 +30,29 @@ class AdaptiveEngine(Engine):
     ----------
     model
         The model's parameters.
-    contact_rows, rocking_rows
-        Responses whose peaks are wanted, as functionals over [D.., D'.., θ, θ', z, a, s] in each phase, (F, 2N + 5).
-    kinds, levers
-        What becomes of the rows while a complete model rocks, (F,) and (F, 2): see `rockflex.models.observe`.
+    observables
+        Responses whose peaks are wanted.
     tolerance
         Relative error allowed in a step.
     """
 
-    def __init__(
-        self,
-        model: NonlinearModel,
-        contact_rows: Array,
-        rocking_rows: Array,
-        kinds: NDArray[np.int64],
-        levers: Array,
-        tolerance: float = TOLERANCE,
-    ) -> None:
+    def __init__(self, model: NonlinearModel, observables: Observables, tolerance: float = TOLERANCE) -> None:
         impact, failures = impact_of(model.law, model.properties)
-        super().__init__(model, 2 + contact_rows.shape[0], failures)
+        super().__init__(model, 2 + observables.contact.shape[0], failures)
         linear = model.linear
         guards = model.guards()
         supported = np.zeros_like(guards[0])
         lost = supported if model.complete or not model.lifts else lost_support_row(model)
-        both = np.stack((np.vstack((guards[0], contact_rows, supported)), np.vstack((guards[1], rocking_rows, lost))))
+        contact = np.vstack((guards[0], observables.contact, supported))
+        both = np.stack((contact, np.vstack((guards[1], observables.rocking, lost))))
         own = VERTICAL if model.complete else LINEAR
         self._flow = Flow(
             field=model.field(),
             resistance=linear.resistance,
             free_inertia=linear.free_inertia,
             rows=both,
-            kinds=np.concatenate(([LINEAR], kinds, [own])).astype(np.int64),
-            levers=np.vstack((np.zeros((1, 2)), levers, np.zeros((1, 2)))),
+            kinds=np.concatenate(([LINEAR], observables.kinds, [own])).astype(np.int64),
+            levers=np.vstack((np.zeros((1, 2)), observables.levers, np.zeros((1, 2)))),
             rest=model.properties.resting_reaction,
             scale=_scale(model),
             tolerance=tolerance,

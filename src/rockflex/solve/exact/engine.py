@@ -7,6 +7,7 @@ import numpy as np
 from rockflex._kernel import Entry
 from rockflex.models import LinearModel, impact_of, lost_support_row
 from rockflex.solve._engine import QUIET, Engine
+from rockflex.solve._observables import Observables
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log, Physics, System, scratch
@@ -25,21 +26,20 @@ class ExactEngine(Engine):
     ----------
     model
         The model's parameters.
-    contact_rows, rocking_rows
-        Responses whose peaks are wanted, as functionals over [D.., D'.., θ, θ', a, s] in each phase, (F, 2N + 4).
+    observables
+        Responses whose peaks are wanted.
     """
 
-    def __init__(self, model: LinearModel, contact_rows: Array, rocking_rows: Array) -> None:
+    def __init__(self, model: LinearModel, observables: Observables) -> None:
         impact, failures = impact_of(model.law, model.properties)
-        super().__init__(model, 2 + contact_rows.shape[0], failures)
+        super().__init__(model, 2 + observables.contact.shape[0], failures)
         self._impact, self._physics = impact, physics_of(model)
         rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
         supported = np.zeros_like(rotation)
         lost = lost_support_row(model) if model.lifts else supported
-        self._rows = np.stack(
-            (np.vstack((model.contact_moment(), contact_rows, supported)), np.vstack((rotation, rocking_rows, lost)))
-        )
+        contact = np.vstack((model.contact_moment(), observables.contact, supported))
+        self._rows = np.stack((contact, np.vstack((rotation, observables.rocking, lost))))
         self._contact = contact_basis(self._physics, self._rows[0])
         # A base that cannot lift never rocks, and a neutral one is integrated: the second phase only fills the place.
         self._rocking = self._contact

@@ -13,8 +13,8 @@ from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
 from rockflex.models import LinearModel
 from rockflex.motion import GroundMotion, Suite
-from rockflex.response import Observables, Response, global_observables, respond
-from rockflex.solve import ExactEngine
+from rockflex.response import Response, global_observables, respond
+from rockflex.solve import ExactEngine, Observables
 from rockflex.study._arguments import free_vibration_time
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study.plans._bench import record_columns, record_facts
@@ -119,7 +119,7 @@ class PopulationPlan(ChunkedPlan):
         modal = np.zeros((1, 2 * model.properties.n_modes + 4))
         modal[0, min(model.properties.n_modes, 2) - 1] = 1.0
         tracked = global_observables(model) + Observables(modal, modal)
-        engine = ExactEngine(model, tracked.contact, tracked.rocking)
+        engine = ExactEngine(model, tracked)
         solution = engine.run(motion.acceleration, motion.dt, free_vibration=self.free_vibration)
         usual = replace(solution, peaks=solution.peaks[:-1], peak_times=solution.peak_times[:-1])
         return respond(model, motion.name, usual), float(solution.peaks[-1])
