@@ -17,6 +17,10 @@ __all__ = ["Adequacy", "AdequacyTolerance", "adequacy"]
 Float = NDArray[np.float64]
 
 _SLACK = 1e-9  # rounding of sums that are equal when all modes are kept
+_LEFT_OUT = (
+    "What the ground must hold, ΣF_x, leaves no mass out: that of missing modes moves with the base there, as it does "
+    "in the base shear of models that end in -R."
+)
 
 
 @dataclass(frozen=True)
@@ -148,8 +152,8 @@ def adequacy(
     tolerance : AdequacyTolerance, optional
         What may be left out.
     base_mass : float, optional
-        Mass of the base in kg. `RockingProperties` know the total mass alone: without this the shares of the base
-        shear are those of the total, and so too small if the base has mass.
+        Mass of the base in kg. Default: `RockingProperties.base_mass`; where that is not known, the shares of the base
+        shear are those of the total mass, and so too small if the base has mass.
 
     Returns
     -------
@@ -177,7 +181,8 @@ def adequacy(
     limits = AdequacyTolerance() if tolerance is None else tolerance
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= _SLACK * p.translational_inertia
-    mass = _mass_above(p, base_mass, complete=complete)
+    base = p.base_mass if base_mass is None else base_mass
+    mass = p.m_tot if base is None else _mass_above(p, base)
     moment, shear = p.effective_mass * p.effective_height / p.l0r, p.effective_mass / mass
     others = np.append(np.cumsum(np.abs(moment)[::-1])[-2::-1], 0.0)
     lost = abs(1.0 - float(moment.sum()))
@@ -201,17 +206,15 @@ def adequacy(
         frequency_error=error,
         reference_error=reference,
         mass=mass,
-        base_known=complete or base_mass is not None,
+        base_known=base is not None,
         enough=_first(good),
         enough_for_shear=_first(shear_left <= limits.base_shear),
         tolerance=limits,
     )
 
 
-def _mass_above(p: RockingProperties, base_mass: float | None, *, complete: bool) -> float:
+def _mass_above(p: RockingProperties, base_mass: float) -> float:
     modal = float(p.effective_mass.sum())
-    if base_mass is None:
-        return modal if complete else p.m_tot
     mass = p.m_tot - positive("base_mass", base_mass, "kg", zero=True)
     if mass < modal * (1.0 - _SLACK):
         message = (
@@ -277,13 +280,14 @@ def _for_shear(a: Adequacy) -> str:
     carried = [_percent(1.0 - left) for left in a.base_shear_left]
     if a.enough_for_shear is None:
         remedy = "give more modes" if a.base_known else "give more modes, or the mass of the base"
-        return f"For the base shear {remedy}: only {carried[-1]} of {of} takes part with {_modes(a.n_modes)} {asked}."
+        only = f"only {carried[-1]} of {of} takes part with {_modes(a.n_modes)} {asked}"
+        return f"For the base shear {remedy}: {only}. {_LEFT_OUT}"
     if a.enough is not None and a.enough_for_shear <= a.enough:
         return f"That is enough for the base shear, too: {carried[a.enough - 1]} of {of} takes part {asked}."
     fewer = f", only {carried[a.enough - 1]} with {_modes(a.enough)}" if a.enough is not None else ""
     return (
         f"For the base shear take {a.model_for_shear}: {carried[a.enough_for_shear - 1]} of {of} takes part with "
-        f"{_modes(a.enough_for_shear)}{fewer} {asked}."
+        f"{_modes(a.enough_for_shear)}{fewer} {asked}. {_LEFT_OUT}"
     )
 
 

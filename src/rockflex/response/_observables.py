@@ -38,8 +38,8 @@ def evaluate(observables: Observables, model: RockingModel, nodes: Array) -> Arr
         rates = motion_rates(model, nodes)[rocking]
         known = side[rocking], nodes[rocking, 2], np.ascontiguousarray(nodes[rocking, 3:]), rates
         for f in curved:
-            found = values[rocking, f]
-            observe_all(model.field(), int(observables.kinds[f]), found, *observables.levers[f], *known)
+            found, (near, far) = values[rocking, f], observables.levers[f].tolist()
+            observe_all(model.field(), int(observables.kinds[f]), found, near, far, *known)
             values[rocking, f] = found
     return values
 
