@@ -1,6 +1,6 @@
-"""The two ways in which a call can fail."""
+"""The two ways in which a call can fail, and the one in which it goes on with less."""
 
-__all__ = ["InputError", "SolverError"]
+__all__ = ["InputError", "RecordWarning", "SolverError"]
 
 
 class InputError(ValueError):
@@ -9,3 +9,7 @@ class InputError(ValueError):
 
 class SolverError(RuntimeError):
     """A run that cannot be solved; the message carries the time and the state where it stopped."""
+
+
+class RecordWarning(UserWarning):
+    """Record files are left out of a suite; the message names them, and says why."""

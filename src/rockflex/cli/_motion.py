@@ -63,6 +63,7 @@ def motion(
     force: options.Force = False,
     units: options.Units = None,
     dt: options.Dt = None,
+    on_error: options.OnError = "raise",
 ) -> None:
     """Print what is known of ground motions and measured from them; without a name, list the embedded suites."""
     from rockflex.cli._motions import embedded_suites, find_motions
@@ -77,7 +78,7 @@ def motion(
         else:
             _print_suites(suites)
         return
-    found = find_motions(names or [], units, dt)
+    found = find_motions(names or [], units, dt, on_error)
     periods = list(dict.fromkeys(period or [1.0]))
     rows = [{**item.describe(), **_measures(item, periods, damping)} for item in found]
     document: dict[str, Any] = {

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex.motion._direction import direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number
@@ -52,7 +53,8 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
         times = np.array([number(cells[time_column], file, line) for line, cells in rows])
         step = _step(file, times, [line for line, _ in rows], dt)
     remedy = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
-    return build_motion(file, values, stated, step, RecordInfo(source=file.name), remedy)
+    info = RecordInfo(source=file.name, direction=direction_of(file))
+    return build_motion(file, values, stated, step, info, remedy)
 
 
 def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:

@@ -13,7 +13,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
-from rockflex.motion import GroundMotion
+from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.parallel import map_threads
 from rockflex.response import Response, respond
 from rockflex.study._arguments import Structure, check_options, described, positive_numbers, properties_of
@@ -85,6 +85,7 @@ def overturning_scales(
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
         raise InputError(message)
+    check_horizontal(motion)
     return _search(_runner(structure, model, impact), motion, tried, width)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, SupportsIndex
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
-from rockflex.motion import GroundMotion
+from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.parallel import map_threads
 from rockflex.response import respond
 from rockflex.solve import Engine
@@ -82,8 +82,8 @@ def simulate_many(
     Raises
     ------
     InputError
-        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, or a scaled
-        motion would overflow.
+        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, a motion is a
+        vertical component, or a scaled motion would overflow.
     """
     check_output(output)
     check_options(bouc_wen, impact)
@@ -92,6 +92,7 @@ def simulate_many(
         "structures", structures, is_structure, "a structure such as a Frame, or RockingProperties"
     )
     records = sequence_of("motions", motions, lambda given: isinstance(given, GroundMotion), "a GroundMotion")
+    check_horizontal(*records)
     labels = sequence_of(
         "models", models, lambda given: isinstance(given, str | Model), 'a label such as "2DOF-S", or a Model'
     )
