@@ -10,7 +10,7 @@ import numpy as np
 import tomli_w
 
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import fit_clouds
+from rockflex.fragility import fit_each_cloud
 from rockflex.models import parse_model
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, design_table_of
@@ -191,8 +191,11 @@ def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
         return "runs.csv", "text/csv", runs.to_csv(index=False).encode()
     from rockflex.plot import plot_fragility
 
+    fits, reasons = fit_each_cloud(runs, state.cloud.measure, nominal=state.cloud.limit == "nominal")
+    if not fits:
+        message = f"There is no curve to draw. {' '.join(f'{model}: {why}' for (_, model), why in reasons.items())}"
+        raise Refusal(message)
     try:
-        fits = fit_clouds(runs, state.cloud.measure, nominal=state.cloud.limit == "nominal")
         figure = plot_fragility(fits, level=state.cloud.level, overturning=True)
         return "fragility.svg", "image/svg+xml", svg(figure)
     except (InputError, SolverError) as error:
