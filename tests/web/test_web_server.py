@@ -304,6 +304,7 @@ def test_the_study_of_a_record_beside_it_is_run_by_the_command(client, tmp_path,
     (tmp_path / name).write_bytes(content)
     (tmp_path / "records").mkdir()
     name, content = client.download("/api/download/record", state)
+    assert name.startswith("Ricker" if source == "pulse" else "mine")
     (tmp_path / "records" / name).write_bytes(content)
     done = CliRunner().invoke(app, ["cloud", str(tmp_path / "study.toml"), "--out", str(tmp_path / "kept")])
     assert done.exit_code == 0, done.stderr

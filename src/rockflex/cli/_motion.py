@@ -71,7 +71,8 @@ def motion(
 
     check_folder(out, force=force)
     # A folder or a unit asks for motions, so an empty list of names is an error then.
-    if not names and out is None and units is None and dt is None and period is None:
+    about_files = units is not None or dt is not None or on_error != "raise"
+    if not names and out is None and period is None and not about_files:
         suites = embedded_suites()
         if json:
             typer.echo(to_json({"versions": versions(), "suites": suites}))
