@@ -92,6 +92,7 @@ def test_folder_of_many_motions_and_of_unknown_ones(tmp_path):
         (["el-centro-1940", "--period", "nan"], "periods must be finite"),
         (["el-centro-1940", "--dt", 0.01], "--units, --dt and --on-error are for record files, but none was given."),
         (["--units", "g"], "No ground motion was given."),
+        (["--on-error", "skip"], "No ground motion was given."),
         (["--period", 1], "No ground motion was given."),
     ],
 )
