@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.cli import _options as options
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def figures(
 ) -> None:
     """Draw what a study found: fragility curves, clouds, capacities, designs, or the agreement of models."""
     if kind not in FORMATS:
-        message = f"--format must be one of {', '.join(FORMATS)}, but {kind!r} was given."
+        message = f"--format must be one of {', '.join(FORMATS)}, but {shown(kind)} was given."
         raise InputError(message)
     from rockflex.cli._console import note
     from rockflex.cli._output import check_folder, staged, versions
@@ -98,5 +99,5 @@ def _figures(study: str, spec: dict[str, Any], table: "pd.DataFrame", measure: s
             word = limit if isinstance(limit, str) else f"{limit:g} rad"
             yield f"design_{'_'.join(word.split())}", plot.plot_design(designs, spec.get("target"))
     else:
-        message = f"There are no figures of a study of the kind {study!r}."
+        message = f"There are no figures of a study of the kind {shown(study)}."
         raise InputError(message)

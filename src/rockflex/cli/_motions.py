@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion import GroundMotion, load_suite, quiet_motion, read_motion, read_suite, suite_names
 
 __all__ = ["FoundMotion", "embedded_suites", "find_motions", "quiet_ground"]
@@ -87,8 +88,8 @@ def find_motions(names: Sequence[str], units: str | None = None, dt: float | Non
             first = found.setdefault(member.motion.name, member)
             if first.sha256 != member.sha256 or first.motion.dt != member.motion.dt:
                 message = (
-                    f"{member.origin} and {first.origin} hold different motions, both named {member.motion.name!r}. "
-                    "Rename one of the files."
+                    f"{member.origin} and {first.origin} hold different motions, both named "
+                    f"{shown(member.motion.name)}. Rename one of the files."
                 )
                 raise InputError(message)
     if not used_files and (units is not None or dt is not None):
@@ -125,7 +126,7 @@ def _from_path(name: str, units: str | None, dt: float | None) -> Iterator[Found
         near = get_close_matches(name.partition("/")[0], suite_names(), n=1)
         hint = f" Did you mean {near[0]}?" if near else ""
         message = (
-            f"{name!r} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
+            f"{shown(name)} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
             f"fema-p695-far-field/FF-12-a, nor a file or directory (working directory: {Path.cwd()}).{hint}"
         )
         raise InputError(message)

@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, in_range
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = ["confidence", "flags", "fractions", "log_at", "log_column", "log_measures", "same_length"]
 
@@ -86,7 +87,7 @@ def fractions(name: str, values: ArrayLike) -> Float:
     """Numbers strictly between 0 and 1, of any shape."""
     array = np.asarray(values, dtype=np.float64)
     if not ((array > 0.0) & (array < 1.0)).all():
-        message = f"{name} must lie between 0 and 1, but {values!r} was given. The 84 % quantile is {name}=0.84."
+        message = f"{name} must lie between 0 and 1, but {shown(values)} was given. The 84 % quantile is {name}=0.84."
         raise InputError(message)
     return array
 

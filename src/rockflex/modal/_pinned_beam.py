@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = ["PinnedBeam", "pinned_beam"]
 
@@ -63,7 +64,7 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     The limit k_r → 0 is that of Wiebe & Christopoulos, cited in Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
     """
     if behaviour not in ("flexure", "shear"):  # pyright: ignore[reportUnnecessaryContains]
-        message = f'behaviour must be "flexure" or "shear", but {behaviour!r} was given.'
+        message = f'behaviour must be "flexure" or "shear", but {shown(behaviour)} was given.'
         raise InputError(message)
     k = positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
     n = whole_number("n_modes", n_modes, 1)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._suite import Suite
@@ -76,7 +77,7 @@ def load_suite(name: str) -> Suite:
     if name not in NAMES:
         near = get_close_matches(str(name), NAMES, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
-        message = f"No embedded suite is named {name!r}; there are {', '.join(map(repr, NAMES))}.{hint}"
+        message = f"No embedded suite is named {shown(name)}; there are {', '.join(map(repr, NAMES))}.{hint}"
         raise InputError(message)
     return Suite((_motion(entry, samples) for entry, samples in read_embedded(name)), name)
 

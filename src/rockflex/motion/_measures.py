@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = [
     "arias_intensity",
@@ -73,7 +74,7 @@ def significant_duration(a: Float, dt: float, low: float, high: float) -> float:
     """Time between the first instants at which the fractions `low` and `high` of ∫a² dt are reached."""
     if not 0 <= low < high <= 1:
         message = (
-            f"low and high must be fractions with 0 <= low < high <= 1, but low={low!r} and high={high!r} "
+            f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and high={shown(high)} "
             "were given. Significant duration D5-95 is low=0.05, high=0.95."
         )
         raise InputError(message)

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._measures import velocity
 
 __all__ = ["band_pass", "baseline_correct", "refine", "refinement_of"]
@@ -30,7 +31,7 @@ def refinement_of(old: float, new: float) -> int:
     nearest = sorted({max(int(ratio), 1), max(int(ratio), 1) + (ratio > 1)})
     steps = " or ".join(f"{old / n:.12g} s" for n in nearest)
     message = (
-        f"A record with dt = {old:g} s cannot be resampled exactly to dt = {new!r} s: only a whole fraction "
+        f"A record with dt = {old:g} s cannot be resampled exactly to dt = {shown(new)} s: only a whole fraction "
         f"of its own step leaves it unchanged between samples. Ask for {steps}."
     )
     raise InputError(message)
@@ -60,7 +61,7 @@ def band_pass(a: Float, dt: float, low: float, high: float, order: int) -> Float
     if not 0 < low < high < nyquist:
         message = (
             f"The corner frequencies must satisfy 0 < low < high < {nyquist:g} Hz, the Nyquist frequency "
-            f"of dt = {dt:g} s, but low={low!r} and high={high!r} were given."
+            f"of dt = {dt:g} s, but low={shown(low)} and high={shown(high)} were given."
         )
         raise InputError(message)
     order = whole_number("order", order, 1)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rockflex._checks import finite, positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 
 __all__ = [
@@ -74,7 +75,7 @@ def ricker_pulse(
     Ricker (1943), Geophysics 8(4); Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618.
     """
     if kind not in ("antisymmetric", "symmetric"):
-        message = f'kind must be "antisymmetric" or "symmetric", but {kind!r} was given.'
+        message = f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.'
         raise InputError(message)
     positive("period", period, "s")
     periods = 2.0 if kind == "antisymmetric" else 1.5
@@ -237,7 +238,7 @@ def mavroeidis_papageorgiou_pulse(
     """
     positive("period", period, "s")
     if not 1 < gamma < math.inf:
-        message = f"gamma must be finite and above 1, but {gamma!r} was given. Usual values are 1 to 3."
+        message = f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3."
         raise InputError(message)
     finite("nu", nu, "rad")
     n, step = _intervals("period", gamma * period, dt)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import overload
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._readers import read_motion
 
@@ -91,7 +92,7 @@ class Suite(Sequence[GroundMotion]):
                 return motion
         near = get_close_matches(index, self.names, n=3, cutoff=0.4) or self.names[:3]
         message = (
-            f"No motion of the suite {self.name!r} is named {index!r}. "
+            f"No motion of the suite {shown(self.name)} is named {shown(index)}. "
             f"The nearest names are {', '.join(map(repr, near))}; .names lists all {len(self)}."
         )
         raise InputError(message)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from rockflex._errors import InputError
 from rockflex._files import write_whole
+from rockflex._shown import shown
 from rockflex.plot._style import styled
 
 __all__ = ["save_figure"]
@@ -43,8 +44,8 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     suffix = target.suffix.lower()
     if suffix not in _UNDATED:
         message = (
-            f"A figure can be saved as .png, .pdf or .svg, but the path {str(path)!r} ends in {target.suffix!r}. "
-            "Change the suffix."
+            f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
+            f"{shown(target.suffix)}. Change the suffix."
         )
         raise InputError(message)
     content = io.BytesIO()

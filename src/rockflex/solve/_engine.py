@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.models import LinearModel, NonlinearModel
 from rockflex.solve._solution import Solution
 from rockflex.solve.adaptive.cross import STALLED
@@ -113,14 +114,14 @@ class Engine(ABC):
         """Raise if the run could not be solved."""
         if status == BROKEN:
             failure = self._failures.pop()
-            message = f"The impact law {self.model.law!r} failed: {failure}"
+            message = f"The impact law {shown(self.model.law)} failed: {failure}"
             raise InputError(message) from failure
         label = self.model.label
         if status == CHATTER:
             what = f"The impacts of {label} accumulate without end in the sample before {time:.6g} s."
             mend = "Check the model's parameters, and refine the record."
         elif status == GAINED:
-            what = f"The impact law {self.model.law!r} returns energy in the sample before {time:.6g} s."
+            what = f"The impact law {shown(self.model.law)} returns energy in the sample before {time:.6g} s."
             mend = "A law can only lose energy: mend its `after`, or lower its restitution."
         elif status == STALLED:
             what = (

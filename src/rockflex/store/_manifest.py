@@ -11,6 +11,7 @@ from typing import Any, Self, SupportsIndex
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._files import write_whole
+from rockflex._shown import shown
 from rockflex.store._spec import differences, listed, plain
 
 __all__ = ["MANIFEST", "SPEC", "Manifest"]
@@ -99,7 +100,7 @@ class Manifest:
             raise InputError(message) from error
         if known != FORMAT:
             message = (
-                f"{path} has the format {known!r}, but this version of rockflex reads {FORMAT!r}. "
+                f"{path} has the format {shown(known)}, but this version of rockflex reads {FORMAT!r}. "
                 "Use the version that wrote it."
             )
             raise InputError(message)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from rockflex._checks import damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._beam_fe import finite_element_modes
 from rockflex.structure._profile import Along, Profile, profile
@@ -149,7 +150,7 @@ class Beam:
 
     def _check_method(self) -> None:
         if self.method not in ("fe", "ritz"):  # pyright: ignore[reportUnnecessaryContains]
-            message = f'method must be "fe" or "ritz", but {self.method!r} was given.'
+            message = f'method must be "fe" or "ritz", but {shown(self.method)} was given.'
             raise InputError(message)
         lacking = {"fe": {"shapes": "ritz"}, "ritz": {"n_elements": "fe", "shear_stiffness": "fe"}}
         for name, other in lacking[self.method].items():

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._checks import dimensions, finite_vector, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._lumped import LumpedStructure
 
@@ -175,7 +176,7 @@ def _beams(values: ArrayLike, n: int) -> Float:
     if array.shape != (n,) or not (array >= 0.0).all():
         message = (
             f"beam_stiffness must be one number, or one for each of the {n} stories, from 0 (no beams) to float('inf') "
-            f"(rigid beams) in N m/rad, but {values!r} was given."
+            f"(rigid beams) in N m/rad, but {shown(values)} was given."
         )
         raise InputError(message)
     array.setflags(write=False)

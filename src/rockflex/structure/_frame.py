@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockflex._checks import in_range, positive, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties
 from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
@@ -155,7 +156,7 @@ def _checked_stiffness_ratio(value: float) -> float:
     if not ratio >= 0.0:
         message = (
             f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
-            f"but {value!r} was given."
+            f"but {shown(value)} was given."
         )
         raise InputError(message)
     return ratio

@@ -11,6 +11,7 @@ import numpy as np
 from rockflex._checks import in_range
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion
@@ -221,6 +222,6 @@ def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: 
 def _scan(scales: Sequence[float]) -> list[float]:
     numbers = positive_numbers("scales", scales, "")
     if len(numbers) < 2 or any(b <= a for a, b in pairwise(numbers)):
-        message = f"scales must rise, two at least, but {scales!r} was given. They are the grid that is searched."
+        message = f"scales must rise, two at least, but {shown(scales)} was given. They are the grid that is searched."
         raise InputError(message)
     return numbers

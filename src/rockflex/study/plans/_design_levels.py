@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from rockflex._checks import positive, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.study._arguments import described, positive_numbers
 from rockflex.study._frequency_ratios import on_base
@@ -140,7 +141,7 @@ def half_widths_of(given: Any) -> list[float]:
         if set(given) != set(RANGE) or not sound:
             message = (
                 "half_widths must be a list in m, or a range {smallest = 1.0, largest = 3.0, count = 9} of "
-                f"positive numbers in m, 2 to {MOST} of them, but {given!r} was given."
+                f"positive numbers in m, 2 to {MOST} of them, but {shown(given)} was given."
             )
             raise InputError(message)
         given = np.linspace(smallest, largest, int(count))

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from rockflex._checks import in_range, positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import GroundMotion, Suite
@@ -181,7 +182,7 @@ def run_incremental(
     """
     bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact)
     if limit not in ("overturning", "nominal"):
-        message = f'limit must be "overturning" or "nominal", but {limit!r} was given.'
+        message = f'limit must be "overturning" or "nominal", but {shown(limit)} was given.'
         raise InputError(message)
     plan = IncrementalPlan(bench, smallest_scale, largest_scale, growth, tolerance, limit, 64)
     return run_plan(plan, workers)

@@ -4,6 +4,7 @@ import math
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
 
@@ -51,5 +52,5 @@ def factor_to(measures: dict[str, float], name: str, level: float) -> float:
 def check_measure(name: str) -> None:
     """Raise an InputError unless there is such a measure."""
     if name not in MEASURES:
-        message = f"measure must be one of {', '.join(MEASURES)}, but {name!r} was given."
+        message = f"measure must be one of {', '.join(MEASURES)}, but {shown(name)} was given."
         raise InputError(message)
