@@ -2,8 +2,9 @@
 
 import math
 import operator
+from collections.abc import Collection
 from numbers import Real
-from typing import Any, SupportsIndex
+from typing import Any, SupportsIndex, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,14 +13,18 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 
 __all__ = [
+    "MOST_MODES",
     "damping_ratios",
     "dimensions",
     "finite",
     "finite_matrix",
     "finite_rows",
     "finite_vector",
+    "float_array",
     "in_range",
+    "instance",
     "mode_count",
+    "one_of",
     "positive",
     "real_or_nan",
     "whole_number",
@@ -27,6 +32,10 @@ __all__ = [
 ]
 
 Float = NDArray[np.float64]
+
+T = TypeVar("T")
+
+MOST_MODES = 1000  # of a beam, which has as many as one asks for
 
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
 
@@ -179,12 +188,40 @@ def float_array(values: ArrayLike) -> Float | None:
         return None
 
 
+def instance(name: str, value: Any, kind: type[T]) -> T:
+    """Return `value` if it is a `kind`."""
+    if not isinstance(value, kind):
+        given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
+        message = f"{name} must be of type {kind.__name__}, but {given} was given."
+        raise InputError(message)
+    return value
+
+
+def one_of(value: object, words: Collection[str]) -> bool:
+    """Tell whether `value` is one of some words; an array of words is none."""
+    return isinstance(value, str) and value in words
+
+
 def _kind(values: object) -> str:
+    name = type(values).__name__
+    try:
+        given = np.asarray(values)
+        if given.dtype.kind == "c":
+            return f"{name} of complex numbers"
+        np.array(given, dtype=np.float64)
+    except OverflowError:
+        return f"{name} with a number too large for double precision"
+    except (TypeError, ValueError):
+        return f"{name} whose rows differ in length" if _ragged(values) else name
+    return name
+
+
+def _ragged(values: object) -> bool:
     try:
         np.asarray(values)
     except ValueError:
-        return f"a {type(values).__name__} whose rows differ in length"
-    return type(values).__name__
+        return True
+    return False
 
 
 def _number(name: str, value: float, unit: str) -> float:

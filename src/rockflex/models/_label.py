@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from rockflex._checks import whole_number
+from rockflex._checks import one_of, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
@@ -73,7 +73,7 @@ class Model:
                 message = f"{name} must be {meaning}, but {shown(value)} was given."
                 raise InputError(message)
             object.__setattr__(self, name, bool(value))
-        if self.closure not in (None, "SI", "E"):
+        if self.closure is not None and not one_of(self.closure, ("SI", "E")):
             message = f'closure must be "SI", "E" or None, but {shown(self.closure)} was given.'
             raise InputError(message)
         self._check_combination()

@@ -7,7 +7,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import overload
 
+from rockflex._checks import instance
 from rockflex._errors import InputError
+from rockflex._files import path_of
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._readers import read_motion
@@ -41,7 +43,11 @@ class Suite(Sequence[GroundMotion]):
     name: str = ""
 
     def __init__(self, motions: Iterable[GroundMotion], name: str = "") -> None:
+        if not isinstance(motions, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
+            raise InputError(message)
         members = tuple(motions)
+        instance("name", name, str)
         if not members:
             message = "A suite needs at least one motion, but none was given."
             raise InputError(message)
@@ -122,7 +128,7 @@ def read_suite(paths: str | Path | Iterable[str | Path], units: str | None = Non
     """
     name = ""
     if isinstance(paths, str | Path):
-        folder = Path(paths)
+        folder = path_of("paths", paths)
         if not folder.is_dir():
             message = (
                 f"{folder} is not a directory. Give a directory, or a list of files; "
@@ -134,7 +140,10 @@ def read_suite(paths: str | Path | Iterable[str | Path], units: str | None = Non
         if not files:
             message = f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}."
             raise InputError(message)
+    elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        files = [path_of("paths", path) for path in paths]
     else:
-        files = [Path(path) for path in paths]
+        message = f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given."
+        raise InputError(message)
     files.sort(key=lambda file: (file.name, str(file)))
     return Suite((read_motion(file, units=units, dt=dt) for file in files), name)

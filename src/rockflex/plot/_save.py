@@ -7,7 +7,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from rockflex._errors import InputError
-from rockflex._files import write_whole
+from rockflex._files import path_of, write_whole
 from rockflex._shown import shown
 from rockflex.plot._style import styled
 
@@ -40,7 +40,7 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     InputError
         If the suffix is none of .png, .pdf and .svg.
     """
-    target = Path(path)
+    target = path_of("path", path)
     suffix = target.suffix.lower()
     if suffix not in _UNDATED:
         message = (

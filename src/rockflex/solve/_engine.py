@@ -2,10 +2,12 @@
 
 import math
 from abc import ABC, abstractmethod
+from contextlib import AbstractContextManager
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
@@ -17,10 +19,20 @@ from rockflex.solve.exact.layout import Array, Log
 from rockflex.solve.exact.run import SETTLED, UNSETTLED
 from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURNED, UPLIFTS
 
-__all__ = ["QUIET", "Engine"]
+__all__ = ["QUIET", "Engine", "preparing"]
 
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
 EVENTS = 512  # nodes of a history between samples; if there are more, the run is done once more
+
+
+def preparing(model: LinearModel | NonlinearModel) -> AbstractContextManager[None]:
+    """Tell failures of arithmetic, met while an engine is made ready, in terms of the model's parameters."""
+    p = model.properties
+    modes = f"omega from {p.omega.min():.3g} to {p.omega.max():.3g} rad/s, " if p.n_modes else ""
+    return computable(
+        f"The motion of {model.label} with {modes}i_theta = {p.i_theta:.3g} kg m², l0r = {p.l0r:.3g} kg m, "
+        f"m_tot = {p.m_tot:.3g} kg and half_width = {p.half_width:.3g} m"
+    )
 
 
 class Engine(ABC):

@@ -11,7 +11,7 @@ from typing import Any, Self, SupportsIndex
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._files import write_whole
-from rockflex._shown import shown
+from rockflex._shown import shortened, shown
 from rockflex.store._spec import differences, listed, plain
 
 __all__ = ["MANIFEST", "SPEC", "Manifest"]
@@ -91,8 +91,8 @@ class Manifest:
                 intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
                 if intact:
                     return manifest
-        except (ValueError, TypeError, KeyError, AttributeError, FileNotFoundError) as error:
-            reason = f"{type(error).__name__}: {error}"
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FileNotFoundError) as error:
+            reason = f"{type(error).__name__}: {shortened(str(error))}"
             message = (
                 f"{path} or the {SPEC} beside it is damaged ({reason}). Restore both from a copy, "
                 f"or give another folder; the results in {folder / 'parts'} can still be read as Parquet."

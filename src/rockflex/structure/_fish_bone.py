@@ -7,7 +7,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import dimensions, finite_vector, positive
+from rockflex._checks import dimensions, finite_vector, float_array, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -167,10 +167,8 @@ def _check_signs(name: str, array: Float, unit: str) -> None:
 
 
 def _beams(values: ArrayLike, n: int) -> Float:
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        array = np.full(n, np.nan)
+    given = float_array(values)
+    array = np.full(n, np.nan) if given is None else given
     if array.ndim == 0:
         array = np.full(n, float(array))
     if array.shape != (n,) or not (array >= 0.0).all():

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
+from rockflex._files import path_of
 
 __all__ = ["Given", "checksum", "numbers"]
 
@@ -31,7 +32,7 @@ def numbers(name: str, given: Given) -> ArrayLike:
     """
     if not isinstance(given, str | Path):
         return given
-    path = Path(given)
+    path = path_of(name, given)
     if path.suffix.lower() not in _SUFFIXES:
         message = f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix."
         raise InputError(message)

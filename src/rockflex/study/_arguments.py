@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Any, Literal, Protocol, get_args
 
-from rockflex._checks import finite_vector, real_or_nan
+from rockflex._checks import finite_vector, one_of, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
@@ -45,7 +45,7 @@ class Structure(Protocol):
 
 def check_output(output: str) -> None:
     """Raise an InputError unless `output` is known."""
-    if output not in get_args(Output):
+    if not one_of(output, get_args(Output)):
         message = f'output must be "history" or "peaks", but {shown(output)} was given.'
         raise InputError(message)
 
@@ -188,7 +188,7 @@ def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list
 
 def _items(given: Any) -> list[Any] | None:
     """What a sequence holds; None where `given` is none."""
-    if isinstance(given, str):
+    if isinstance(given, str | bytes):
         return None
     try:
         items = iter(given)

@@ -142,6 +142,9 @@ def overturning_spectrum(
     unit = properties.resisting_moment / properties.l0r  # g α
     run = _runner(properties, model, impact)
     periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
+    if not callable(pulse):
+        message = f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given."
+        raise InputError(message)
     pulses = [pulse(unit, period) for period in periods]
     for made in pulses:
         if not isinstance(made, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from rockflex._checks import instance
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
@@ -183,6 +184,7 @@ def bench_of(
         option is out of range.
     """
     check_options(bouc_wen, impact)
+    instance("friction", friction, bool)
     wanted = 'a label such as "2DOF-S", or a Model'
     labels = sequence_of("models", models, lambda given: isinstance(given, str | Model), wanted)
     chosen = tuple(map(parse_model, labels))

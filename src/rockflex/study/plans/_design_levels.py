@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from rockflex._checks import positive, real_or_nan
+from rockflex._checks import instance, positive, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -53,6 +53,7 @@ class TendonLevel:
     def __post_init__(self) -> None:
         force = positive("prestress_ratio", self.prestress_ratio, "W", zero=True)
         stiffness = positive("stiffness_ratio", self.stiffness_ratio, "L_0^r g/B²", zero=True)
+        instance("name", self.name, str)
         words = f"F₀ = {force:.6g} W, k = {stiffness:.6g} L₀ʳg/B²" if force or stiffness else "no tendon"
         vars(self).update(prestress_ratio=force, stiffness_ratio=stiffness, name=self.name or words)
         if self.yield_ratio is not None:
