@@ -2,6 +2,7 @@
 
 import math
 import reprlib
+from itertools import islice
 
 __all__ = ["shortened", "shown"]
 
@@ -24,6 +25,12 @@ class _Short(reprlib.Repr):
         super().__init__()
         self.maxlevel, self.maxlist, self.maxtuple, self.maxdict, self.maxset = 3, 12, 12, 12, 12
         self.maxstring = self.maxother = WIDTH
+
+    def repr_dict(self, x: dict[object, object], level: int) -> str:
+        """The base class sorts the keys, which is not how they were written."""
+        items = [f"{self.repr1(k, level - 1)}: {self.repr1(v, level - 1)}" for k, v in islice(x.items(), self.maxdict)]
+        more = ["..."] if len(x) > self.maxdict else []
+        return f"{{{', '.join([*items, *more])}}}" if level > 0 else "{...}"
 
     def repr_int(self, x: int, level: int) -> str:
         digits = round(x.bit_length() * math.log10(2.0))  # Python refuses to write more than some thousands of them

@@ -15,6 +15,7 @@ IN_PLACE = ("largest", "smallest", "empty", "long list", "no rows", "no columns"
 NAMED = {
     "masses": "mass",
     "motions": "motion",
+    "models": "model",
     "structures": "structure",
     "im_levels": "im",
     "path": "file",

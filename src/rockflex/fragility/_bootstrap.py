@@ -155,8 +155,8 @@ def _column(name: str, values: ArrayLike) -> NDArray[Any]:
         column = np.asarray(values)
     except ValueError:
         column = np.zeros(())
-    if column.ndim != 1:
-        message = f"{name} must be one-dimensional, with a value for every run, but {shown(values)} was given."
+    if column.ndim == 0 or (name == "groups" and column.ndim != 1):
+        message = f"{name} must hold a value for every run, but {shown(values)} was given."
         raise InputError(message)
     return column
 
