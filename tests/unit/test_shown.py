@@ -112,7 +112,5 @@ def test_messages(check: object, message: str) -> None:
 
 
 def test_a_path_too_long() -> None:
-    with pytest.raises(
-        InputError, match=r"^path must be that of a file, but 'xxx.*xxx' was given: File name too long\.$"
-    ):
+    with pytest.raises(InputError, match=r"^path must be that of a file, but 'xxx.*x' was given: File name too long"):
         path_of("path", "x" * 10**5)
