@@ -247,3 +247,10 @@ def test_stripe_messages():
     bench = bench_of(rf.Frame(**FRAME), rf.quiet_motion(1.0), "2DOF-S", 0.0, None, None)
     with pytest.raises(rf.InputError, match=r"has no pgv for 'S1', so no scale takes it to a level\."):
         StripePlan(bench, "pgv", [1.0], 10)
+
+
+def test_a_ladder_beyond_double_precision():
+    with pytest.raises(
+        rf.InputError, match=r"largest_scale must be at most 1e\+12 times smallest_scale, 1e-300, but 1e"
+    ):
+        rf.run_incremental(rf.rigid_block(0.2, 2.0), rf.ricker_pulse(1.0, 1.0), "rigid", 1e-300, 1e300)

@@ -265,7 +265,7 @@ def test_messages(arguments, message):
 
 
 def test_messages_of_the_python_twin(plan):
-    with pytest.raises(rf.InputError, match="pairs must be a whole number of at least 1, but 0 was given"):
+    with pytest.raises(rf.InputError, match="pairs must be a whole number from 1 to 4294967295, but 0 was given"):
         run_population(plan.motions, 0)
     with pytest.raises(rf.InputError, match="seed must be a whole number of at least 0, but -1 was given"):
         run_population(plan.motions, 1, -1)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.cli import _options as options
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def figures(
 ) -> None:
     """Draw what a study found: fragility curves, clouds, capacities, designs, or the agreement of models."""
     if kind not in FORMATS:
-        message = f"--format must be one of {', '.join(FORMATS)}, but {kind!r} was given."
+        message = f"--format must be one of {', '.join(FORMATS)}, but {shown(kind)} was given."
         raise InputError(message)
     from rockflex.cli._console import note
     from rockflex.cli._output import check_folder, staged, versions
@@ -111,7 +112,7 @@ def _figures(
             target = spec.get("target")
             yield f"design_{'_'.join(word.split())}", lambda each=designs, target=target: plot.plot_design(each, target)
     else:
-        message = f"There are no figures of a study of the kind {study!r}."
+        message = f"There are no figures of a study of the kind {shown(study)}."
         raise InputError(message)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion import GroundMotion, OnError, folder_files, load_suite, quiet_motion, read_files, suite_names
 
 __all__ = ["FoundMotion", "embedded_suites", "find_motions", "quiet_ground"]
@@ -89,7 +90,7 @@ def find_motions(
             first = found.setdefault(motion.name, member)
             if first.sha256 != member.sha256 or first.motion.dt != motion.dt:
                 message = (
-                    f"{member.origin} and {first.origin} hold different motions, both named {motion.name!r}. "
+                    f"{member.origin} and {first.origin} hold different motions, both named {shown(motion.name)}. "
                     "Rename one of the files."
                 )
                 raise InputError(message)
@@ -128,7 +129,7 @@ def _files(name: str) -> list[Path]:
         near = get_close_matches(name.partition("/")[0], suite_names(), n=1)
         hint = f" Did you mean {near[0]}?" if near else ""
         message = (
-            f"{name!r} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
+            f"{shown(name)} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
             f"fema-p695-far-field/FF-12-a, nor a file or directory (working directory: {Path.cwd()}).{hint}"
         )
         raise InputError(message)

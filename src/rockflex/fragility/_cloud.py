@@ -47,7 +47,8 @@ class CloudFit:
 
     def median(self, im: ArrayLike) -> Float:
         """Median response exp(c1) IM^c2, of the shape of `im`."""
-        return np.exp(self.c1 + self.c2 * log_at(im))
+        with np.errstate(over="ignore"):
+            return np.exp(self.c1 + self.c2 * log_at(im))
 
     def quantile(self, im: ArrayLike, p: ArrayLike) -> Float:
         """Response that a fraction `p` of the runs at `im` stay below; `im` and `p` broadcast."""
@@ -62,7 +63,8 @@ class CloudFit:
         x = log_at(im)
         half = stdtrit(self.n - 2, 0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
         centre = self.c1 + self.c2 * x
-        return np.exp(centre - half), np.exp(centre + half)
+        with np.errstate(over="ignore"):
+            return np.exp(centre - half), np.exp(centre + half)
 
     def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Float:
         """Probability that the response exceeds `limit` at `im`; the two broadcast."""

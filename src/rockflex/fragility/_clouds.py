@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 
@@ -110,7 +111,7 @@ def _fits(
 ) -> CloudFits:
     solved = group[group["status"].notna()]
     if not len(solved):
-        message = f"No run of {structure!r} with {model} was solved. See the column error of the table."
+        message = f"No run of {shown(structure)} with {model} was solved. See the column error of the table."
         raise InputError(message)
     fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
     im, rotation, top = (

@@ -84,4 +84,5 @@ class LognormalFragility:
         return ndtr(z - half), ndtr(z + half)
 
     def _score(self, im: ArrayLike) -> Float:
-        return (log_at(im) - math.log(self.median)) / self.beta
+        with np.errstate(over="ignore"):  # a dispersion of all but zero makes a step
+            return (log_at(im) - math.log(self.median)) / self.beta

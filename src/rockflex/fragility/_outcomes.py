@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.fragility._arguments import flags, log_at, log_measures, same_length
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
@@ -87,7 +88,7 @@ class OutcomeFragility:
         limits = np.exp(log_at(limit, "limit"))
         if (limits < self.threshold * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
             message = (
-                f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {limit!r} was given. "
+                f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was given. "
                 "Below, a run counts as one without rocking; above, overturned runs need not exceed it."
             )
             raise InputError(message)

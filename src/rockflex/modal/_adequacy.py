@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import instance, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal._rocking import RockingProperties
@@ -170,11 +170,11 @@ def adequacy(
     ----------
     Silva & Stojadinović 2024, Sections 3.4 and 4.1.1.
     """
-    p = properties
+    p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
         message = "properties must have at least one mode, but a rigid structure was given: it needs none."
         raise InputError(message)
-    limits = AdequacyTolerance() if tolerance is None else tolerance
+    limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= _SLACK * p.translational_inertia
     mass = _mass_above(p, base_mass, complete=complete)

@@ -8,7 +8,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import damping_ratios, finite_vector, positive, whole_number
+from rockflex._checks import damping_ratios, finite_vector, instance, positive, whole_number
 from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
@@ -109,7 +109,7 @@ class RockingProperties:
         _check_modes(modes)
         n_modes = modes["omega"].size
         inertia = _translational_inertia(modes, scalars, translational_inertia)
-        if floors is not None and floors.n_modes != n_modes:
+        if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
             message = f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}."
             raise InputError(message)
         damping = damping_ratios("zeta", zeta, n_modes)

@@ -7,12 +7,16 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._checks import float_array, instance
 from rockflex._computable import computable
+from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal._rocking import RockingProperties
 
 __all__ = ["UpliftedModes", "frequency_equation", "lowest_uplifted", "uplifted_modes"]
 
 Float = NDArray[np.float64]
+HIGHEST = 1e60  # rad/s, whose fourth power is still a number
 
 _BESIDE = (1e-13, 1e-11, 1e-9)  # shifts beside a root, relative: the first at which no pivot is zero
 
@@ -79,7 +83,8 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     ----------
     Silva & Stojadinović 2024, Eq. 23 and Section 3.4 (Fig. 10).
     """
-    p = properties if n_modes is None else properties.truncated(n_modes)
+    p = instance("properties", properties, RockingProperties)
+    p = p if n_modes is None else p.truncated(n_modes)
     n = p.n_modes
     squares, motions = _lowest(p, n)
     omega = np.sqrt(squares[1:])
@@ -155,11 +160,21 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float
     ndarray
         In N m/rad, in the shape of `omega`; NaN at a frequency ω_n of the fixed base, where the sum has a pole.
 
+    Raises
+    ------
+    InputError
+        If a frequency is no number below 1e60 rad/s.
+
     References
     ----------
     Silva & Stojadinović 2024, Section 3.4 (Fig. 12).
     """
-    square = np.asarray(omega, dtype=np.float64)[..., None] ** 2
+    instance("properties", properties, RockingProperties)
+    frequencies = float_array(omega)
+    if frequencies is None or not (np.abs(frequencies) < HIGHEST).all():
+        message = f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given."
+        raise InputError(message)
+    square = frequencies[..., None] ** 2
     inertia = properties.effective_mass * properties.effective_height**2
     gap = properties.omega**2 - square
     terms = np.divide(square**2 * inertia, gap, out=np.full(gap.shape, np.nan), where=gap != 0.0)

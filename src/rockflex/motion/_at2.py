@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._files import path_of
 from rockflex.motion._direction import direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -51,7 +52,8 @@ def read_at2(path: str | Path) -> GroundMotion:
         NPTS, a value is not a finite number, the header speaks of another unit than g, or the peak
         exceeds 5 g.
     """
-    return parse_at2(Path(path), read_lines(path))
+    file = path_of("path", path)
+    return parse_at2(file, read_lines(file))
 
 
 def find_header(lines: list[str]) -> tuple[int, int, str] | None:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite, finite_vector, positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion import _measures, _processing
 from rockflex.motion._record_info import RecordInfo
 
@@ -60,7 +61,7 @@ class GroundMotion:
             )
             raise InputError(message)
         if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"name must be a string, but {name!r} was given."
+            message = f"name must be a string, but {shown(name)} was given."
             raise InputError(message)
         if not isinstance(metadata, RecordInfo | None):  # pyright: ignore[reportUnnecessaryIsInstance]
             message = (

@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from rockflex._errors import InputError, RecordWarning
+from rockflex._files import path_of
+from rockflex._shown import shown
 from rockflex.motion._direction import is_vertical
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._readers import read_motion
@@ -57,7 +59,13 @@ def read_suite(
     RecordWarning
         If a vertical component, or a file that cannot be read, is left out.
     """
-    name, files = ("", [Path(path) for path in paths]) if not isinstance(paths, str | Path) else _folder(Path(paths))
+    if isinstance(paths, str | Path):
+        name, files = _folder(path_of("paths", paths))
+    elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        name, files = "", [path_of("paths", path) for path in paths]
+    else:
+        message = f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given."
+        raise InputError(message)
     files.sort(key=lambda file: (file.name, str(file)))
     return Suite(read_files(files, units, dt, on_error).values(), name)
 
@@ -67,7 +75,7 @@ def read_files(
 ) -> dict[Path, GroundMotion]:
     """Read the horizontal components among record files, by their file; see `read_suite`."""
     if on_error not in get_args(OnError):
-        message = f'on_error must be "raise" or "skip", but {on_error!r} was given.'
+        message = f'on_error must be "raise" or "skip", but {shown(on_error)} was given.'
         raise InputError(message)
     motions: dict[Path, GroundMotion] = {}
     faults: dict[Path, str] = {}

@@ -64,7 +64,8 @@ def response_spectrum(acceleration: Float, dt: float, periods: ArrayLike, dampin
         peaks[i] = oscillator_peaks(acceleration, dt, 2 * np.pi / float(period[i]), zeta)
     sd, sv = peaks.T.copy()
     pga = np.full(period.size, np.max(np.abs(acceleration)))
-    sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
+    with np.errstate(over="ignore"):  # a period too long to be squared has no acceleration
+        sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
     for array in (sd, sv, sa):
         array.setflags(write=False)
     return ResponseSpectrum(period, zeta, sd, sv, sa)

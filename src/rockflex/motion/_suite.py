@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import overload
 
+from rockflex._checks import instance
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 
 __all__ = ["Suite"]
@@ -36,7 +38,11 @@ class Suite(Sequence[GroundMotion]):
     name: str = ""
 
     def __init__(self, motions: Iterable[GroundMotion], name: str = "") -> None:
+        if not isinstance(motions, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
+            raise InputError(message)
         members = tuple(motions)
+        instance("name", name, str)
         if not members:
             message = "A suite needs at least one motion, but none was given."
             raise InputError(message)
@@ -87,7 +93,7 @@ class Suite(Sequence[GroundMotion]):
                 return motion
         near = get_close_matches(index, self.names, n=3, cutoff=0.4) or self.names[:3]
         message = (
-            f"No motion of the suite {self.name!r} is named {index!r}. "
+            f"No motion of the suite {shown(self.name)} is named {shown(index)}. "
             f"The nearest names are {', '.join(map(repr, near))}; .names lists all {len(self)}."
         )
         raise InputError(message)

@@ -12,6 +12,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import write_whole
+from rockflex._shown import shown
 from rockflex.modal import FloorModes, RockingProperties, Tendon
 from rockflex.models import (
     BoucWen,
@@ -87,7 +88,7 @@ def load(path: Path) -> Response:
         message = f"{path} is not a saved response ({reason}). Give a file that Response.save wrote."
         raise InputError(message) from error
     if response is None:
-        message = f"{path} has the format {scalars['format']!r}, but {FORMAT!r} is expected."
+        message = f"{path} has the format {shown(scalars['format'])}, but {FORMAT!r} is expected."
         raise InputError(message)
     return response
 
@@ -111,7 +112,7 @@ def _response(scalars: dict[str, Any], arrays: dict[str, Any]) -> Response:
 
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
     if type(scalars[name]) is not kind:
-        message = f"{name} must be of type {kind.__name__}, but is {scalars[name]!r}."
+        message = f"{name} must be of type {kind.__name__}, but is {shown(scalars[name])}."
         raise InputError(message)
     return scalars[name]
 

@@ -8,6 +8,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._files import path_of
 from rockflex.models import LinearModel, RockingModel
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
@@ -155,7 +156,7 @@ class Response:
         """Write the response, history included, to one ``.npz`` file; see `load`."""
         from rockflex.response._file import save
 
-        return save(self, Path(path))
+        return save(self, path_of("path", path))
 
     @classmethod
     def load(cls, path: str | Path) -> "Response":
@@ -168,7 +169,7 @@ class Response:
         """
         from rockflex.response._file import load
 
-        return load(Path(path))
+        return load(path_of("path", path))
 
 
 PEAKS = tuple(f.name for f in fields(Response) if f.name not in ("floors", "history"))

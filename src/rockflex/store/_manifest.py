@@ -11,6 +11,7 @@ from typing import Any, Self, SupportsIndex
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._files import write_whole
+from rockflex._shown import shortened, shown
 from rockflex.store._spec import differences, listed, plain
 
 __all__ = ["MANIFEST", "SPEC", "Manifest"]
@@ -90,8 +91,8 @@ class Manifest:
                 intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
                 if intact:
                     return manifest
-        except (ValueError, TypeError, KeyError, AttributeError, FileNotFoundError) as error:
-            reason = f"{type(error).__name__}: {error}"
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FileNotFoundError) as error:
+            reason = f"{type(error).__name__}: {shortened(str(error))}"
             message = (
                 f"{path} or the {SPEC} beside it is damaged ({reason}). Restore both from a copy, "
                 f"or give another folder; the results in {folder / 'parts'} can still be read as Parquet."
@@ -99,7 +100,7 @@ class Manifest:
             raise InputError(message) from error
         if known != FORMAT:
             message = (
-                f"{path} has the format {known!r}, but this version of rockflex reads {FORMAT!r}. "
+                f"{path} has the format {shown(known)}, but this version of rockflex reads {FORMAT!r}. "
                 "Use the version that wrote it."
             )
             raise InputError(message)

@@ -174,7 +174,7 @@ def from_modes(
         message = f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes."
         raise InputError(message)
     given = numbers("shapes", shapes)
-    columns = np.asarray(given)[:, None] if dimensions(given) == 1 else given
+    columns = finite_vector("shapes", given, "any unit")[:, None] if dimensions(given) == 1 else given
     size = np.shape(columns)[0] if dimensions(columns) == 2 else 1
     phi = finite_matrix("shapes", columns, "any unit", (size, w.size))
     m = _mass_matrix(numbers("mass", mass), size)

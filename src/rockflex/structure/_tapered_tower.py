@@ -8,9 +8,10 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import one_of, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._beam import Beam
 
@@ -65,6 +66,9 @@ class TaperedTower:
     n_modes: int = 5
 
     def __post_init__(self) -> None:
+        if not one_of(self.method, ("fe", "ritz")):
+            message = f'method must be "fe" or "ritz", but {shown(self.method)} was given.'
+            raise InputError(message)
         vars(self).update(
             height=positive("height", self.height, "m"),
             base_radius=positive("base_radius", self.base_radius, "m"),

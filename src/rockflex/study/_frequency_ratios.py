@@ -4,9 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, SupportsIndex
 
-import numpy as np
-
-from rockflex._checks import whole_number
+from rockflex._checks import dimensions, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, uplifted_modes
 from rockflex.study._arguments import Structure, positive_numbers, properties_of
@@ -85,7 +83,7 @@ def frequency_ratios(
 
 
 def _several(n_modes: Any) -> list[Any]:
-    given = list(n_modes) if np.ndim(n_modes) == 1 else [n_modes]
+    given = list(n_modes) if dimensions(n_modes) == 1 else [n_modes]
     if not given:
         message = "n_modes is empty. Give at least one number of modes, or None for all."
         raise InputError(message)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, within
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.models import RockingModel
 
 __all__ = ["InitialState"]
@@ -88,8 +89,8 @@ class InitialState:
         state[-2:] = self.rotation, self.rotation_velocity
         if not model.lifts and np.any(state[-2:] != 0.0):
             message = (
-                f"{model.label} has a base that cannot lift, but rotation={self.rotation!r} and "
-                f"rotation_velocity={self.rotation_velocity!r} were given. Give zero, or a model that rocks."
+                f"{model.label} has a base that cannot lift, but rotation={shown(self.rotation)} and "
+                f"rotation_velocity={shown(self.rotation_velocity)} were given. Give zero, or a model that rocks."
             )
             raise InputError(message)
         return state

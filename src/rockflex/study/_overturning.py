@@ -11,6 +11,7 @@ import numpy as np
 from rockflex._checks import in_range
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
@@ -80,7 +81,7 @@ def overturning_scales(
     SolverError
         If a run cannot be solved.
     """
-    tried = _scan(scales)
+    tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
@@ -135,13 +136,16 @@ def overturning_spectrum(
         If a run cannot be solved.
     """
     ratios = positive_numbers("frequency_ratios", frequency_ratios, "")
-    tried = _scan(relative_amplitudes)
+    tried = _scan("relative_amplitudes", relative_amplitudes)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
     properties = properties_of(structure)
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
     unit = properties.resisting_moment / properties.l0r  # g α
     run = _runner(properties, model, impact)
     periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
+    if not callable(pulse):
+        message = f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given."
+        raise InputError(message)
     pulses = [pulse(unit, period) for period in periods]
     for made in pulses:
         if not isinstance(made, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -219,9 +223,9 @@ def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: 
     return stands, falls, impacts
 
 
-def _scan(scales: Sequence[float]) -> list[float]:
-    numbers = positive_numbers("scales", scales, "")
+def _scan(name: str, scales: Sequence[float]) -> list[float]:
+    numbers = positive_numbers(name, scales, "")
     if len(numbers) < 2 or any(b <= a for a, b in pairwise(numbers)):
-        message = f"scales must rise, two at least, but {scales!r} was given. They are the grid that is searched."
+        message = f"{name} must rise, two at least, but {shown(scales)} was given. They are the grid that is searched."
         raise InputError(message)
     return numbers

@@ -7,7 +7,7 @@ from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, LinearModel, Model, RockingModel, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.response import Response, elastic_observables, floor_observables, global_observables, respond
-from rockflex.solve import AdaptiveEngine, Engine, ExactEngine
+from rockflex.solve import AdaptiveEngine, Engine, ExactEngine, preparing
 from rockflex.study._arguments import (
     Output,
     Structure,
@@ -103,12 +103,13 @@ def simulate(
 
 def make_engine(model: RockingModel, output: Output) -> Engine:
     """Engine that tracks the global peaks and, for histories, those of the floors."""
-    rows = global_observables(model)
-    floors = model.properties.floors if output == "history" else None
-    if isinstance(model, LinearModel):
+    with preparing(model):
+        rows = global_observables(model)
+        floors = model.properties.floors if output == "history" else None
+        if isinstance(model, LinearModel):
+            if floors is not None:
+                rows = rows + floor_observables(model, floors)
+            return ExactEngine(model, rows.contact, rows.rocking)
         if floors is not None:
-            rows = rows + floor_observables(model, floors)
-        return ExactEngine(model, rows.contact, rows.rocking)
-    if floors is not None:
-        rows = rows + elastic_observables(model, floors)
-    return AdaptiveEngine(model, rows.contact)
+            rows = rows + elastic_observables(model, floors)
+        return AdaptiveEngine(model, rows.contact)

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._kernel import Entry
 from rockflex.models import LinearModel, impact_of
-from rockflex.solve._engine import QUIET, Engine
+from rockflex.solve._engine import QUIET, Engine, preparing
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log, Physics, System, scratch
@@ -32,16 +32,18 @@ class ExactEngine(Engine):
     def __init__(self, model: LinearModel, contact_rows: Array, rocking_rows: Array) -> None:
         impact, failures = impact_of(model.law, model.properties)
         super().__init__(model, 1 + contact_rows.shape[0], failures)
-        self._impact, self._physics = impact, physics_of(model)
+        self._impact = impact
         rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
         self._rows = np.stack((np.vstack((model.contact_moment(), contact_rows)), np.vstack((rotation, rocking_rows))))
-        self._contact = contact_basis(self._physics, self._rows[0])
-        # A base that cannot lift never rocks, and a neutral one is integrated: the second phase only fills the place.
-        self._rocking = self._contact
-        if model.lifts and not model.neutral:
-            accelerations = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
-            self._rocking = rocking_basis(self._physics, accelerations, self._rows[1])
+        with preparing(model):
+            self._physics = physics_of(model)
+            self._contact = contact_basis(self._physics, self._rows[0])
+            # A base that cannot lift never rocks, and a neutral one is integrated: the second phase fills the place.
+            self._rocking = self._contact
+            if model.lifts and not model.neutral:
+                accelerations = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
+                self._rocking = rocking_basis(self._physics, accelerations, self._rows[1])
         self._systems: dict[float, System] = {}
 
     def system(self, dt: float) -> System:

@@ -4,7 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from rockflex._checks import instance
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
 from rockflex.motion import GroundMotion, Suite
@@ -133,7 +135,7 @@ def check_different(name: str, values: Sequence[str]) -> None:
     """Raise an InputError if a value occurs more than once."""
     repeated = [value for place, value in enumerate(values) if value in values[:place]]
     if repeated:
-        message = f"{name}: {repeated[0]!r} occurs more than once. Give each once."
+        message = f"{name}: {shown(repeated[0])} occurs more than once. Give each once."
         raise InputError(message)
 
 
@@ -182,6 +184,7 @@ def bench_of(
         option is out of range.
     """
     check_options(bouc_wen, impact)
+    instance("friction", friction, bool)
     wanted = 'a label such as "2DOF-S", or a Model'
     labels = sequence_of("models", models, lambda given: isinstance(given, str | Model), wanted)
     chosen = tuple(map(parse_model, labels))

@@ -1,6 +1,6 @@
 """Design of a base: how wide it must be, and which tendon is to hold it down (Section 4.1)."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import GroundMotion, Suite
 from rockflex.structure.file import StructureEntry, Table
-from rockflex.study._arguments import Structure, factors_of
+from rockflex.study._arguments import Structure, described, factors_of
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._cloud import QUIET, CloudPlan
 from rockflex.study.plans._design_levels import Design, TendonLevel, designs_of, half_widths_of
@@ -225,6 +225,9 @@ def run_design(
         `run_cloud`.
     """
     given: Any = scales
+    if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        message = f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given."
+        raise InputError(message)
     bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact)
     designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
     return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)

@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from rockflex._checks import positive, real_or_nan
+from rockflex._checks import instance, positive, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.study._arguments import described, positive_numbers
 from rockflex.study._frequency_ratios import on_base
@@ -52,6 +53,7 @@ class TendonLevel:
     def __post_init__(self) -> None:
         force = positive("prestress_ratio", self.prestress_ratio, "W", zero=True)
         stiffness = positive("stiffness_ratio", self.stiffness_ratio, "L_0^r g/B²", zero=True)
+        instance("name", self.name, str)
         words = f"F₀ = {force:.6g} W, k = {stiffness:.6g} L₀ʳg/B²" if force or stiffness else "no tendon"
         vars(self).update(prestress_ratio=force, stiffness_ratio=stiffness, name=self.name or words)
         if self.yield_ratio is not None:
@@ -140,7 +142,7 @@ def half_widths_of(given: Any) -> list[float]:
         if set(given) != set(RANGE) or not sound:
             message = (
                 "half_widths must be a list in m, or a range {smallest = 1.0, largest = 3.0, count = 9} of "
-                f"positive numbers in m, 2 to {MOST} of them, but {given!r} was given."
+                f"positive numbers in m, 2 to {MOST} of them, but {shown(given)} was given."
             )
             raise InputError(message)
         given = np.linspace(smallest, largest, int(count))

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 from pydantic import Field, model_validator
 
-from rockflex._checks import in_range, positive
+from rockflex._checks import in_range, one_of, positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import GroundMotion, Suite
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["IncrementalPlan", "IncrementalStudy", "incremental_capacities", "run_incremental"]
 
 Limit = Literal["overturning", "nominal"]
+
+WIDEST = 1e12  # the last scale over the first
 
 
 class IncrementalStudy(StructuresSpec):
@@ -127,6 +130,12 @@ def check_ladder(smallest: float, largest: float, growth: float, tolerance: floa
     if not smallest < largest:
         message = f"largest_scale must be above smallest_scale, {smallest:g}, but {largest:g} was given."
         raise InputError(message)
+    if largest / smallest > WIDEST:
+        message = (
+            f"largest_scale must be at most {WIDEST:g} times smallest_scale, {smallest:g}, but {largest:g} was given. "
+            "Bring the two closer."
+        )
+        raise InputError(message)
     in_range("growth", growth, 1.0001, 100.0, hint="It is the factor from one scale to the next: 1.15 for 15 %.")
     in_range("tolerance", tolerance, 1e-9, 0.5)
 
@@ -180,8 +189,8 @@ def run_incremental(
         If the scales make no grid, a model's base cannot lift, or as in `run_cloud`.
     """
     bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact)
-    if limit not in ("overturning", "nominal"):
-        message = f'limit must be "overturning" or "nominal", but {limit!r} was given.'
+    if not one_of(limit, ("overturning", "nominal")):
+        message = f'limit must be "overturning" or "nominal", but {shown(limit)} was given.'
         raise InputError(message)
     plan = IncrementalPlan(bench, smallest_scale, largest_scale, growth, tolerance, limit, 64)
     return run_plan(plan, workers)

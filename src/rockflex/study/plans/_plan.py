@@ -1,6 +1,5 @@
 """A study cut into chunks that can be computed anywhere."""
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol, SupportsIndex
@@ -69,7 +68,7 @@ class ChunkedPlan(ABC):
     @property
     def n_chunks(self) -> int:
         """Number of chunks."""
-        return math.ceil(self.n_units / self.per_chunk)
+        return -(-self.n_units // self.per_chunk)
 
     @property
     def checksums(self) -> dict[str, str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 import numpy as np
 from pydantic import Field, field_validator
 
-from rockflex._checks import whole_number
+from rockflex._checks import instance, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
@@ -35,6 +35,9 @@ SECOND = "period_2 sd_2 sa_2 top_ordinate_2 effective_mass_2 effective_height_2"
 COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear srss_base_moment"
 
 
+MOST = 2**32 - 1  # pairs that have random numbers of their own
+
+
 class PopulationStudy(Spec):
     """Random structures under random records, each with MDOF-S and 2DOF-S (Section 3.3).
 
@@ -42,7 +45,9 @@ class PopulationStudy(Spec):
     """
 
     study: Literal["population"] = Field("population", description='"population"')
-    pairs: int = Field(1000, ge=1, description="the number of random structures, a whole number of at least 1")
+    pairs: int = Field(
+        1000, ge=1, le=MOST, description="the number of random structures, a whole number from 1 to 4294967295"
+    )
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     free_vibration: float | Literal["settle"] = Field(
         0.0, description='the free vibration after the record, a number in s or "settle"'
@@ -203,5 +208,6 @@ def run_population(
     InputError
         If a value is out of range.
     """
-    count, start = whole_number("pairs", pairs, 1), whole_number("seed", seed, 0)
+    instance("motions", motions, Suite)
+    count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
     return run_plan(PopulationPlan(motions, count, start, free_vibration_time(free_vibration), 32), workers)

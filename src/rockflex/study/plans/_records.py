@@ -8,6 +8,7 @@ from pathlib import Path
 from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion import GroundMotion, OnError, Suite, load_suite, read_suite
 from rockflex.structure.file import Table
 
@@ -50,8 +51,8 @@ class Records(Table):
         for pattern in self.include:
             if not any(fnmatchcase(name, pattern) for name in names):
                 message = (
-                    f"[records] include: no record's name fits {pattern!r}. There are {len(names)}, from {names[0]!r} "
-                    f"to {names[-1]!r}; * stands for any text and ? for one letter."
+                    f"[records] include: no record's name fits {shown(pattern)}. There are {len(names)}, from "
+                    f"{shown(names[0])} to {shown(names[-1])}; * stands for any text and ? for one letter."
                 )
                 raise InputError(message)
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))

@@ -7,6 +7,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, PrivateAttr, ValidationError, field_validator
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, problems
@@ -101,7 +102,7 @@ class StructuresSpec(Assumed, Spec):
             try:
                 properties[names[place - 1]] = properties_of(entry.build(self._folder))
             except InputError as error:
-                message = f"[[structures]] no. {place}{entry.name and f', {entry.name!r}'}: {error}"
+                message = f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"
                 raise InputError(message) from error
         free = free_vibration_time(self.free_vibration)
         models = tuple(map(parse_model, self.models))
