@@ -35,6 +35,7 @@ FOUNDATION = {
     "_files",
     "_kernel",
     "_matrices",
+    "_values",
 }  # every layer may import these; they only each other
 FACES = {"cli", "web", "papers", "__main__"}  # may import anything, and nothing below them or the front
 

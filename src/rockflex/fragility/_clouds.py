@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 
@@ -14,7 +15,7 @@ __all__ = ["CloudFits", "fit_clouds"]
 
 
 @dataclass(frozen=True, eq=False)
-class CloudFits:
+class CloudFits(Value):
     """What the cloud of one structure and one model says.
 
     Attributes

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import overload
 
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._readers import read_motion
 
@@ -17,7 +18,7 @@ SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class Suite(Sequence[GroundMotion]):
+class Suite(Value, Sequence[GroundMotion]):
     """An ordered set of motions with unique names: a sequence, and a mapping by name.
 
     ``suite[0]`` and ``suite["FF-12-a"]`` are motions, ``suite[:10]`` is a suite, ``"FF-12-a" in suite`` tells

@@ -8,6 +8,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._values import Value
 from rockflex.models import LinearModel, RockingModel
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
@@ -45,7 +46,7 @@ class _OfHistory(Generic[Quantity]):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Response:
+class Response(Value):
     """The response of one structure to one motion.
 
     All peaks are the largest magnitudes of the continuous motion, between samples too. A response that keeps its

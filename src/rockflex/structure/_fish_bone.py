@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._checks import dimensions, finite_vector, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._lumped import LumpedStructure
 
@@ -19,7 +20,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class FishBone:
+class FishBone(Value):
     """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
 
     The column stands for all columns of a story and the half beams for all beams of a floor; members are

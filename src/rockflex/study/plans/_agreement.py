@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rockflex._checks import in_range, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._values import Value
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +29,7 @@ SHOWN = (
 
 
 @dataclass(frozen=True, eq=False)
-class PopulationStatistics:
+class PopulationStatistics(Value):
     """Agreement of MDOF-S with what one mode, or one and the second on a fixed base, say of it.
 
     The tables `agreement` and `combination` have one row a comparison of y, from MDOF-S, with x, an estimate of it:
