@@ -45,7 +45,7 @@ def test_in_memory_and_in_a_folder_alike(tmp_path):
     assert table["error"].notna().sum() == 8
     pd.testing.assert_frame_equal(rf.run_study(STUDY, tmp_path / "kept", workers=1), table)
     single = rf.simulate(rf.Frame(**FRAME), rf.load_suite("fema-p695-far-field")["FF-1-b"].scaled(1.5), "2DOF-C")
-    row = table[(table["record"] == "FF-1-b") & (table["model"] == "2DOF-C") & (table["scale"] == 1.5)].iloc[0]
+    row = table[(table["motion"] == "FF-1-b") & (table["model"] == "2DOF-C") & (table["scale"] == 1.5)].iloc[0]
     assert row["max_rotation"] == single.max_rotation
 
 

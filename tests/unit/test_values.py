@@ -61,7 +61,7 @@ def statistics() -> rf.PopulationStatistics:
     pairs = pairs.assign(**{f"{name}_{model}": value for name, value in known.items() for model in ("mdof", "2dof")})
     others = ["structure_mass", "l0r_g", "sd_2", "srss_top_displacement", "srss_base_shear", "srss_base_moment"]
     facts = ["n_stories", "period", "aspect_ratio", "base_mass_ratio", "pga", "pgv"]
-    pairs = pairs.assign(**dict.fromkeys(others + facts, 2.0), pair=range(6), behaviour="shear", record="R")
+    pairs = pairs.assign(**dict.fromkeys(others + facts, 2.0), pair=range(6), behaviour="shear", motion="R")
     return rf.population_statistics(pairs, n_resamples=20)
 
 

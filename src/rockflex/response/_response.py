@@ -153,7 +153,15 @@ class Response(Value):
         return {name: getattr(self, name) for name in PEAKS}
 
     def save(self, path: str | Path) -> Path:
-        """Write the response, history included, to one ``.npz`` file; see `load`."""
+        """Write the response, history included, to one ``.npz`` file, and return its path; see `load`.
+
+        The suffix is added to a path that has none.
+
+        Raises
+        ------
+        InputError
+            If the path has another suffix, such as ``.parquet``.
+        """
         from rockflex.response._file import save
 
         return save(self, Path(path))

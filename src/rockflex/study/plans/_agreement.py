@@ -22,7 +22,7 @@ FEWEST = 3  # pairs, below which nothing is said
 STATUSES = ("no_uplift", "rocking", "overturned")
 SUMS = 6  # per comparison, from which slope and R² follow
 SHOWN = (
-    *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "record", "pga", "pgv"),
+    *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion", "pga", "pgv"),
     *("status_mdof", "status_2dof", "max_rotation_mdof", "max_rotation_2dof"),
     *("max_top_displacement_mdof", "max_top_displacement_2dof"),
 )
