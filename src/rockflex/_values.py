@@ -23,7 +23,7 @@ class Value:
     """
 
     def __post_init__(self) -> None:
-        _freeze(getattr(self, each.name) for each in fields(cast("Any", self)) if each.init)
+        _freeze(vars(self).values())
 
     def __eq__(self, other: object) -> bool:
         if self is other:

@@ -142,6 +142,9 @@ class Response(Value):
     sliding_time = _OfHistory[Callable[..., float | None]]()
     energy = _OfHistory[EnergyLedger]()
 
+    def __post_init__(self) -> None:
+        pass  # no arrays of its own to make read-only, and every run of a study makes one
+
     def __repr__(self) -> str:
         return (
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
