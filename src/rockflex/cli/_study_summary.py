@@ -185,7 +185,7 @@ def _population(_: "Study", pairs: "pd.DataFrame", _unfitted: list[str]) -> Iter
         ("Modal combination (Section 3.4), 90 % intervals", found.combination, ["quantity", "estimate"]),
     ):
         yield title, [_named(row) for row in frame[[*words, *columns]].to_dict("records")]
-    shown = ["pair", "n_stories", "behaviour", "aspect_ratio", "period", "record", "pgv"]
+    shown = ["pair", "n_stories", "behaviour", "aspect_ratio", "period", "motion", "pgv"]
     shown += ["max_rotation_mdof", "max_rotation_2dof", "share"]
     rows: Sequence[dict[Any, Any]] = found.outliers[shown].to_dict("records")
     yield "Largest disagreements in rotation", _words_first([_named(row) for row in rows])

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._checks import finite_vector, float_array, whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, same_length
 
 __all__ = ["BootstrapBand", "bootstrap_band"]
@@ -20,7 +21,7 @@ NEEDED = 20  # resamples that can be fitted, for quantiles of any meaning
 
 
 @dataclass(frozen=True, eq=False)
-class BootstrapBand:
+class BootstrapBand(Value):
     """A percentile band of a curve over resamples. The arrays are read-only.
 
     Attributes
@@ -51,10 +52,6 @@ class BootstrapBand:
     n_separated: int
     n_groups: int
     note: str
-
-    def __post_init__(self) -> None:
-        for array in (self.at, self.estimate, self.low, self.high):
-            array.setflags(write=False)
 
 
 def bootstrap_band(

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
 
@@ -15,7 +16,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class CloudFit:
+class CloudFit(Value):
     """The line log(y) = c1 + c2 log(IM), with natural logarithms, and the scatter about it.
 
     Given IM, the response is lognormal about the line with the same dispersion everywhere (Silva & Stojadinović 2024,
@@ -41,9 +42,6 @@ class CloudFit:
     r2: float
     n: int
     covariance: Float
-
-    def __post_init__(self) -> None:
-        self.covariance.setflags(write=False)
 
     def median(self, im: ArrayLike) -> Float:
         """Median response exp(c1) IM^c2, of the shape of `im`."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 
@@ -16,7 +17,7 @@ __all__ = ["CloudFits", "fit_clouds", "fit_each_cloud"]
 
 
 @dataclass(frozen=True, eq=False)
-class CloudFits:
+class CloudFits(Value):
     """What the cloud of one structure and one model says.
 
     Attributes

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rockflex._checks import instance, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted import lowest_uplifted
 
@@ -60,7 +61,7 @@ class AdequacyTolerance:
 
 
 @dataclass(frozen=True, eq=False)
-class Adequacy:
+class Adequacy(Value):
     """What the modes of a structure contribute, and how many are enough. The arrays are read-only.
 
     Row k - 1 of an array with N rows belongs to the first k of the N modes at hand.
@@ -106,8 +107,7 @@ class Adequacy:
     reason: str = field(init=False)
 
     def __post_init__(self) -> None:
-        for each in fields(self)[:6]:
-            getattr(self, each.name).setflags(write=False)
+        super().__post_init__()
         vars(self)["reason"] = f"{_for_rotation(self)} {_for_shear(self)}"
 
     @property

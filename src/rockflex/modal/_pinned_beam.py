@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockflex._checks import MOST_MODES, one_of, positive, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._values import Value
 
 __all__ = ["PinnedBeam", "pinned_beam"]
 
@@ -18,7 +19,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class PinnedBeam:
+class PinnedBeam(Value):
     """Frequencies of a pinned beam over those of the same beam clamped.
 
     Attributes

@@ -1,7 +1,7 @@
 """Vibration of a structure whose base has lifted."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import SupportsIndex
 
 import numpy as np
@@ -11,6 +11,7 @@ from rockflex._checks import float_array, instance
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal._rocking import RockingProperties
 
 __all__ = ["UpliftedModes", "frequency_equation", "lowest_uplifted", "uplifted_modes"]
@@ -22,7 +23,7 @@ _BESIDE = (1e-13, 1e-11, 1e-9)  # shifts beside a root, relative: the first at w
 
 
 @dataclass(frozen=True, eq=False)
-class UpliftedModes:
+class UpliftedModes(Value):
     """Modes of free motion about one pivot. The arrays are read-only.
 
     Attributes
@@ -48,12 +49,6 @@ class UpliftedModes:
     growth_rate: float
     sway_rate: float
     growth_shape: Float
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
 
 
 @computable("The uplifted modes of the given properties")

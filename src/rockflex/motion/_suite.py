@@ -9,13 +9,14 @@ from typing import overload
 from rockflex._checks import instance
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 
 __all__ = ["Suite"]
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class Suite(Sequence[GroundMotion]):
+class Suite(Value, Sequence[GroundMotion]):
     """An ordered set of motions with unique names: a sequence, and a mapping by name.
 
     ``suite[0]`` and ``suite["FF-12-a"]`` are motions, ``suite[:10]`` is a suite, ``"FF-12-a" in suite`` tells

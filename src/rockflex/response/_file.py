@@ -47,8 +47,15 @@ FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration")
 
 
 def save(response: Response, path: Path) -> Path:
-    """Write `response` to `path` (``.npz`` is added where it lacks); the file appears whole or not at all."""
-    path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
+    """Write `response` to `path`, to which ``.npz`` is added where it lacks; the file appears whole or not at all."""
+    if path.suffix[1:2].isalpha() and path.suffix.lower() != ".npz":  # "scale 1.5" has no suffix
+        message = (
+            f"A response is saved as .npz, but {path.name!r} was given. Name it {path.stem + '.npz'!r}; for a "
+            'table of the history write pandas.DataFrame({"time": response.time, "rotation": response.rotation})'
+            ".to_parquet(...)."
+        )
+        raise InputError(message)
+    path = path if path.suffix.lower() == ".npz" else path.with_name(path.name + ".npz")
     scalars = {"format": FORMAT, **response.peaks()}
     arrays: dict[str, Any] = {}
     if response.floors is not None:

@@ -76,7 +76,7 @@ class StudyFolder:
         versions
             Version of each library that the numbers depend on, by name.
         checksums
-            Checksum of each record, and of each matrix read from a file, that the study uses, by name.
+            Checksum of each record, matrix from a file and other file that the study depends on, by name.
         any_version
             Go on with other versions than the study was begun with. Every part names its own.
 

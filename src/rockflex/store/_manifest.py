@@ -35,7 +35,7 @@ class Manifest:
     versions
         Version of each library that the numbers depend on.
     checksums
-        Checksum of each record, and of each matrix read from a file, by name.
+        Checksum of each record, matrix from a file and other file that the study depends on, by name.
     created
         Date and time, UTC, ISO 8601.
     """
@@ -121,8 +121,8 @@ class Manifest:
         changed = differences(self.checksums, given.checksums)
         if changed:
             message = (
-                f"{folder} holds this study with other records or matrices. Checksums that differ:{listed(changed)}\n"
-                "Use the same files, or give another folder."
+                f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
+                f"{listed(changed)}\nUse the same files, or give another folder."
             )
             raise InputError(message)
         changed = differences(self.versions, given.versions)

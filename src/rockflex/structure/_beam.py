@@ -11,6 +11,7 @@ from rockflex._checks import MOST_MODES, damping_ratios, instance, one_of, posit
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._beam_fe import finite_element_modes
 from rockflex.structure._profile import Along, Profile, profile
@@ -25,7 +26,7 @@ _RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Beam:
+class Beam(Value):
     """A cantilever with distributed mass on a rigid base that can rock.
 
     What varies along the height is a number, a function of heights (n,) in m that returns values (n,), or a table
@@ -110,6 +111,9 @@ class Beam:
                 bool(self.rotary_in_modes),
             ),
         )
+        for name in ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia"):
+            along: Profile | None = getattr(self.sections, name)
+            vars(self)[name] = None if along is None else along.given
         self._check_method()
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:

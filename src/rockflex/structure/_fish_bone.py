@@ -11,6 +11,7 @@ from rockflex._checks import dimensions, finite_vector, float_array, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._lumped import LumpedStructure
 
@@ -20,7 +21,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class FishBone:
+class FishBone(Value):
     """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
 
     The column stands for all columns of a story and the half beams for all beams of a floor; members are

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
 from rockflex._computable import computable
+from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 
@@ -23,7 +24,7 @@ _LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 
 
 @dataclass(frozen=True, eq=False)
-class WallFrame:
+class WallFrame(Value):
     """A uniform wall in flexure beside a uniform frame in shear, tied all along the height.
 
     EI u'''' - GA u'' = m ω² u: the coupled beam of Miranda & Taghavi (2005, Journal of Structural Engineering 131(2),

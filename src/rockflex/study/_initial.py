@@ -1,9 +1,7 @@
 """Where a free motion starts from."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._checks import finite_vector, within
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.models import RockingModel
 
 __all__ = ["InitialState"]
@@ -21,7 +20,7 @@ LARGEST = 1e9  # m, m/s or rad/s: beyond any structure, and far from where numbe
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class InitialState:
+class InitialState(Value):
     """The state at t = 0, in place of rest.
 
     The base starts uplifted where `rotation` is not zero, on the side of its sign. With `rotation` zero and
@@ -61,10 +60,6 @@ class InitialState:
             modal_velocity=_modal("modal_velocity", modal_velocity, "m/s"),
             rotation_velocity=within("rotation_velocity", rotation_velocity, LARGEST, "rad/s"),
         )
-
-    def __reduce__(self) -> tuple[Callable[..., "InitialState"], tuple[Any, ...]]:
-        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
-        return InitialState, (self.rotation, self.modal_displacement, self.modal_velocity, self.rotation_velocity)
 
     def state(self, model: RockingModel) -> Array:
         """State [D.., D'.., θ, θ'] for a model.

@@ -12,6 +12,7 @@ from rockflex._checks import in_range
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
@@ -28,8 +29,8 @@ __all__ = ["OverturningScales", "overturning_scales", "overturning_spectrum"]
 SCAN = tuple(float(scale) for scale in np.arange(1.0, 30.01, 0.1))  # a_p/(g α)
 
 
-@dataclass(frozen=True)
-class OverturningScales:
+@dataclass(frozen=True, eq=False)
+class OverturningScales(Value):
     """Two boundaries of the scales that overturn; overturning is not monotone, and between them both may happen.
 
     Parameters

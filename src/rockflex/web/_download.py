@@ -99,7 +99,7 @@ def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
     rows = [response.peaks() for response in found]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["record", "scale", *rows[0]])
+    writer.writerow(["motion", "scale", *rows[0]])
     writer.writerows([motion.name, state.scale, *row.values()] for row in rows)
     return "peaks.csv", text.getvalue()
 

@@ -10,7 +10,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.study._arguments import described, positive_numbers
-from rockflex.study._frequency_ratios import on_base
 from rockflex.study.plans._bench import check_different
 
 __all__ = ["Design", "TendonLevel", "designs_of", "half_widths_of"]
@@ -114,9 +113,8 @@ def designs_of(
     for level in levels or (None,):
         for width in widths:
             name = f"B = {width:.6g} m" + (f", {level.name}" if level and len(levels) > 1 else "")
-            added = 2.0 * per_width * (width - properties.half_width)
             try:
-                based = on_base(properties, width, added)
+                based = _on_base(properties, width, per_width)
                 based = based if level is None else level.held(based)
             except InputError as error:
                 message = f"{name}: {error}"
@@ -124,6 +122,16 @@ def designs_of(
             own = "no tendon" if not properties.tendons else "its own tendons"
             found.append(Design(name, own if level is None else level.name, based))
     return found
+
+
+def _on_base(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
+    """The structure on another base, which gains `per_width` in kg for each metre of its width 2 B.
+
+    The mass of the base has no height, so it changes neither L_0^r nor the modes.
+    """
+    based = properties.with_half_width(half_width)
+    added = 2.0 * per_width * (half_width - properties.half_width)
+    return replace(based, m_tot=based.m_tot + added, i_theta=based.i_theta + added * half_width**2)
 
 
 def half_widths_of(given: Any) -> list[float]:
