@@ -93,9 +93,8 @@ def test_first_modes(method):
     structure = beam(method=method)
     assert structure.rocking(2).n_modes == 2
     np.testing.assert_array_equal(structure.modal(2).omega, structure.modal().omega[:2])
-    np.testing.assert_array_equal(
-        beam(method=method, n_modes=2).modal().omega.round(6), structure.modal(2).omega.round(6)
-    )
+    alone = beam(method=method, n_modes=2).modal()
+    np.testing.assert_allclose(alone.omega, structure.modal(2).omega, rtol=1e-9)  # another search for them
 
 
 def test_damping_of_each_mode():

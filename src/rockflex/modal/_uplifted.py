@@ -13,6 +13,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal._rocking import RockingProperties
+from rockflex.modal._uplifted_damping import uplifted_damping
 
 __all__ = ["UpliftedModes", "frequency_equation", "lowest_uplifted", "uplifted_modes"]
 
@@ -32,6 +33,10 @@ class UpliftedModes(Value):
         Circular frequencies ω*_n of vibration in rad/s, rising.
     ratio : ndarray, shape (n,)
         ω*_n/ω_n: against the same mode on a fixed base.
+    damping_ratio : ndarray, shape (n,)
+        ζ*_n = -Re λ/|λ| of the complex eigenvalues λ of Eq. 23 with its damping, in the order of |λ|. From 1 on the
+        motion does not vibrate, and of its two real eigenvalues ζ*_n is -(λ_a + λ_b)/(2 √(λ_a λ_b)). With one mode
+        it is ζ ω*/ω, but for the weight.
     shapes : ndarray, shape (n + 1, n)
         (θ, D_1 .. D_n) as columns, with Σ_n |D_n| = 1 m and the largest D_n positive.
     growth_rate : float
@@ -45,6 +50,7 @@ class UpliftedModes(Value):
 
     omega: Float
     ratio: Float
+    damping_ratio: Float
     shapes: Float
     growth_rate: float
     sway_rate: float
@@ -53,7 +59,9 @@ class UpliftedModes(Value):
 
 @computable("The uplifted modes of the given properties")
 def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None = None) -> UpliftedModes:
-    """Return the modes of Eq. 23 without damping, with the first `n_modes` modes of the structure or with all.
+    """Return the modes of Eq. 23, with the first `n_modes` modes of the structure or with all.
+
+    Frequencies and shapes are those without damping; `damping_ratio` says what the damping of the fixed base becomes.
 
     Its matrices, the rows of D_n times m*_n, are symmetric, and the mass matrix is positive definite since
     I_θ > Σ m*_n h*_n². The lowest root in ω² is that of the rotation, negative where gravity drives it (and tendons do
@@ -88,6 +96,7 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     return UpliftedModes(
         omega=omega,
         ratio=omega / p.omega,
+        damping_ratio=uplifted_damping(squares, _modal_damping(p, motions)),
         shapes=motions[:, 1:] / (np.sign(largest) * np.abs(modal).sum(axis=0)),
         growth_rate=math.sqrt(max(-squares[0], 0.0)),
         sway_rate=math.sqrt(max(squares[0], 0.0)),
@@ -121,6 +130,16 @@ def _lowest(p: RockingProperties, vibrations: int) -> tuple[Float, Float]:
     squares, motions = _polished(stiffness, mass, squares[kept], back @ vectors[:, kept])
     motions[1:] /= root[:, None]
     return squares, motions
+
+
+def _modal_damping(p: RockingProperties, motions: Float) -> Float:
+    """Return the damping of Eq. 23 over motions (θ, D) as columns, each scaled to unit modal mass."""
+    root = np.sqrt(p.effective_mass)
+    arm = root * p.effective_height
+    turn, modal = motions[0], root[:, None] * motions[1:]
+    mass = (p.i_theta - arm @ arm) * turn**2 + ((modal + arm[:, None] * turn) ** 2).sum(axis=0)
+    share = modal / np.sqrt(mass)
+    return share.T @ ((2.0 * p.zeta * p.omega)[:, None] * share)
 
 
 def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> tuple[Float, Float]:
