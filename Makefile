@@ -5,10 +5,10 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 WORKERS ?= 2
 
-.PHONY: demo figures test check lint types docs validate bench records clean help
+.PHONY: demo figures test test-portable check lint types docs validate bench records clean help
 
 help:  ## list the targets
-	@grep -hE '^[a-z]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 10
+	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
 
 $(READY): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -25,6 +25,9 @@ figures: $(READY)  ## every table and figure of the paper, with a report; in out
 test: lint types $(READY)  ## lint, types and every test, those of the web page in a real browser if one can be had
 	-sh scripts/install_browser.sh
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
+
+test-portable: $(READY)  ## the numerically sensitive tests once more, as on another processor
+	$(BIN)/python scripts/portable_tests.py -n $(WORKERS) --dist loadgroup
 
 check: lint types $(READY)  ## the quick subset, for the work between commits
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not web"

@@ -1,4 +1,5 @@
 from ._errors import InputError as InputError
+from ._errors import RecordWarning as RecordWarning
 from ._errors import SolverError as SolverError
 from .fragility import AnnualRate as AnnualRate
 from .fragility import BootstrapBand as BootstrapBand

@@ -2,23 +2,29 @@
 
 import math
 import operator
+from collections.abc import Collection
 from numbers import Real
-from typing import SupportsIndex
+from typing import Any, SupportsIndex, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = [
+    "MOST_MODES",
     "damping_ratios",
     "dimensions",
     "finite",
     "finite_matrix",
     "finite_rows",
     "finite_vector",
+    "float_array",
     "in_range",
+    "instance",
     "mode_count",
+    "one_of",
     "positive",
     "real_or_nan",
     "whole_number",
@@ -26,6 +32,10 @@ __all__ = [
 ]
 
 Float = NDArray[np.float64]
+
+T = TypeVar("T")
+
+MOST_MODES = 1000  # of a beam, which has as many as one asks for
 
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
 
@@ -37,7 +47,7 @@ def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite
     if not low_enough or math.isnan(number) or (math.isinf(number) and not infinite):
         kind = "zero or positive" if zero else "positive"
         kind += "" if infinite else ", finite"
-        message = f"{name} must be a {kind} number in {unit}, but {value!r} was given."
+        message = f"{name} must be a {kind} number in {unit}, but {shown(value)} was given."
         raise InputError(message)
     return number
 
@@ -46,18 +56,17 @@ def in_range(name: str, value: float, low: float, high: float, *, hint: str = ""
     """Return `value` as a float in [low, high)."""
     number = _number(name, value, "")
     if not low <= number < high:
-        message = f"{name} must lie in [{low:g}, {high:g}), but {value!r} was given."
+        message = f"{name} must lie in [{low:g}, {high:g}), but {shown(value)} was given."
         raise InputError(f"{message} {hint}".rstrip())
     return number
 
 
 def finite_vector(name: str, values: ArrayLike, unit: str) -> Float:
     """Return `values` as a read-only one-dimensional float64 array of finite numbers."""
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        message = f"{name} must be a sequence of numbers in {unit}, but {type(values).__name__} was given."
-        raise InputError(message) from error
+    array = float_array(values)
+    if array is None:
+        message = f"{name} must be a sequence of numbers in {unit}, but {_kind(values)} was given."
+        raise InputError(message)
     if array.ndim != 1:
         message = f"{name} must be one-dimensional, but an array of shape {array.shape} was given."
         raise InputError(message)
@@ -74,12 +83,9 @@ def finite_vector(name: str, values: ArrayLike, unit: str) -> Float:
 
 def finite(name: str, value: float, unit: str) -> float:
     """Return `value` as a finite float."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not math.isfinite(number):
-        message = f"{name} must be a finite number{unit and f' in {unit}'}, but {value!r} was given."
+    number = _float_or_none(value)
+    if number is None or not math.isfinite(number):
+        message = f"{name} must be a finite number{unit and f' in {unit}'}, but {shown(value)} was given."
         raise InputError(message)
     return number
 
@@ -98,7 +104,7 @@ def within(name: str, value: float, limit: float, unit: str) -> float:
     """Return `value` as a float of a magnitude below `limit`; booleans, strings and arrays are refused."""
     number = real_or_nan(value)
     if not abs(number) < limit:
-        message = f"{name} must be a number between {-limit:g} and {limit:g} {unit}, but {value!r} was given."
+        message = f"{name} must be a number between {-limit:g} and {limit:g} {unit}, but {shown(value)} was given."
         raise InputError(message)
     return number
 
@@ -106,7 +112,7 @@ def within(name: str, value: float, limit: float, unit: str) -> float:
 def whole_number(name: str, value: SupportsIndex, low: int, high: int | None = None) -> int:
     """Return `value` as an int of at least `low` and at most `high`; booleans and floats are refused."""
     span = f"of at least {low}" if high is None else f"from {low} to {high}"
-    message = f"{name} must be a whole number {span}, but {value!r} was given."
+    message = f"{name} must be a whole number {span}, but {shown(value)} was given."
     if isinstance(value, bool | np.bool_):
         raise InputError(message)
     try:
@@ -151,11 +157,10 @@ def dimensions(values: ArrayLike) -> int:
 
 def finite_matrix(name: str, values: ArrayLike, unit: str, shape: tuple[int, int]) -> Float:
     """Return a float64 copy of `values` that has the given shape and finite entries only."""
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        message = f"{name} must be a matrix of numbers in {unit}, but {type(values).__name__} was given."
-        raise InputError(message) from error
+    array = float_array(values)
+    if array is None:
+        message = f"{name} must be a matrix of numbers in {unit}, but {_kind(values)} was given."
+        raise InputError(message)
     if array.shape != shape:
         message = f"{name} must have the shape {shape}, but an array of shape {array.shape} was given."
         raise InputError(message)
@@ -174,10 +179,65 @@ def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Float:
     return array
 
 
+def float_array(values: ArrayLike) -> Float | None:
+    """Return a float64 copy of real numbers; None for ragged rows, complex numbers, dates, and what is too large."""
+    try:
+        given = np.asarray(values)
+        return None if given.dtype.kind in "cmM" else np.array(given, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError, RecursionError):
+        return None
+
+
+def instance(name: str, value: Any, kind: type[T]) -> T:
+    """Return `value` if it is a `kind`."""
+    if not isinstance(value, kind):
+        given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
+        message = f"{name} must be of type {kind.__name__}, but {given} was given."
+        raise InputError(message)
+    return value
+
+
+def one_of(value: object, words: Collection[str]) -> bool:
+    """Tell whether `value` is one of some words; an array of words is none."""
+    return isinstance(value, str) and value in words
+
+
+def _kind(values: object) -> str:
+    name = type(values).__name__
+    try:
+        given = np.asarray(values)
+        if given.dtype.kind == "c":
+            return f"{name} of complex numbers"
+        np.array(given, dtype=np.float64)
+    except OverflowError:
+        return f"{name} with a number too large for double precision"
+    except (TypeError, ValueError):
+        return f"{name} whose rows differ in length" if _ragged(values) else name
+    return name
+
+
+def _ragged(values: object) -> bool:
+    try:
+        np.asarray(values)
+    except ValueError:
+        return True
+    return False
+
+
 def _number(name: str, value: float, unit: str) -> float:
+    number = _float_or_none(value)
+    if number is None:
+        of_unit = f" in {unit}" if unit else ""
+        message = f"{name} must be a number{of_unit}, but {shown(value)} was given."
+        raise InputError(message)
+    return number
+
+
+def _float_or_none(value: Any) -> float | None:
+    """Return a number as a float; None for all else, complex numbers and those too large for a float included."""
+    if isinstance(value, complex | np.complexfloating) or (isinstance(value, np.ndarray) and value.ndim):
+        return None
     try:
         return float(value)
-    except (TypeError, ValueError) as error:
-        of_unit = f" in {unit}" if unit else ""
-        message = f"{name} must be a number{of_unit}, but {value!r} was given."
-        raise InputError(message) from error
+    except (TypeError, ValueError, OverflowError):
+        return None

@@ -1,10 +1,39 @@
-"""Files that appear whole or not at all, and that outlast a loss of power once they have appeared."""
+"""Paths as they are given, and files that appear whole or not at all and outlast a loss of power afterwards."""
 
 import os
 from pathlib import Path
 from uuid import uuid4
 
-__all__ = ["sweep", "write_whole"]
+from rockflex._errors import InputError
+from rockflex._shown import shown
+
+__all__ = ["path_of", "sweep", "write_whole"]
+
+
+def path_of(name: str, given: object) -> Path:
+    """Return what was given as a path, of which the system can at least say whether there is a file.
+
+    Raises
+    ------
+    InputError
+        If it is no path, or none that a file can have.
+    """
+    if not isinstance(given, str | Path):
+        message = f"{name} must be a path, but {type(given).__name__} was given."
+        raise InputError(message)
+    path = Path(given)
+    try:
+        os.fsencode(path)
+        path.exists()
+        reason = "a path holds no null character" if "\0" in str(path) else ""
+    except UnicodeEncodeError:
+        reason = "it holds a character that no path has"
+    except OSError as error:
+        reason = error.strerror
+    if reason:
+        message = f"{name} must be that of a file, but {shown(str(path))} was given: {reason}."
+        raise InputError(message)
+    return path
 
 
 def write_whole(path: Path, content: bytes) -> Path:

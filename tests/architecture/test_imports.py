@@ -35,6 +35,8 @@ FOUNDATION = {
     "_files",
     "_kernel",
     "_matrices",
+    "_shown",
+    "_values",
 }  # every layer may import these; they only each other
 FACES = {"cli", "web", "papers", "__main__"}  # may import anything, and nothing below them or the front
 

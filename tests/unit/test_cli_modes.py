@@ -46,6 +46,25 @@ def test_printed_table():
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
+@pytest.mark.parametrize("n_modes", [1, 5])
+def test_uplifted_modes_and_their_damping(n_modes):
+    found = json.loads(invoke(STRUCTURE, "--modes", n_modes, "--json").stdout)["uplifted"]
+    expected = rf.uplifted_modes(rf.read_structure(STRUCTURE).rocking(n_modes))
+    assert [row["mode"] for row in found] == list(range(1, n_modes + 1))
+    assert [row["omega"] for row in found] == expected.omega.tolist()
+    assert [row["ratio"] for row in found] == expected.ratio.tolist()
+    assert [row["zeta"] for row in found] == expected.damping_ratio.tolist()
+    assert [row["period"] * row["omega"] for row in found] == pytest.approx([2.0 * math.pi] * n_modes, rel=1e-14)
+
+
+def test_damping_while_uplifted_is_printed():
+    rows = [line.split() for line in invoke(STRUCTURE, "--modes", 1).stdout.splitlines()]
+    assert ["1", "0.1635", "38.43", "6.116", "0.1250"] in rows
+    rows = [line.split() for line in invoke(STRUCTURE).stdout.splitlines()]
+    assert ["1", "0.3592", "17.49", "2.784", "0.02331"] in rows
+    assert ["5", "0.1087", "57.80", "1.364", "0.1655"] in rows
+
+
 @pytest.mark.parametrize(
     ("name", "kind"),
     [

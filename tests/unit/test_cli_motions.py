@@ -5,7 +5,7 @@ import hashlib
 import numpy as np
 import pytest
 
-from rockflex import InputError, load_suite
+from rockflex import InputError, RecordWarning, load_suite
 from rockflex.cli._motions import embedded_suites, find_motions
 
 ACCELERATION = 0.1 * np.sin(np.arange(50))
@@ -85,7 +85,7 @@ def test_structure_among_motions():
 
 
 def test_units_without_a_file():
-    with pytest.raises(InputError, match="--units and --dt say what a file does not, but no file was given"):
+    with pytest.raises(InputError, match="--units, --dt and --on-error are for record files, but none was given"):
         find_motions(["el-centro-1940"], units="g")
 
 
@@ -100,3 +100,33 @@ def test_other_faults_of_a_file_are_told_as_they_are(tmp_path):
     path.touch()
     with pytest.raises(InputError, match=r"empty\.csv is empty\.$"):
         find_motions([str(path)])
+
+
+def at2(folder, name, component):
+    """A record file of four samples."""
+    file = folder / name
+    file.write_text(f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= 4, DT= .1\n0 .3 -.2 0\n")
+    return str(file)
+
+
+def test_vertical_components_of_a_list_of_files_are_left_out(tmp_path):
+    files = [at2(tmp_path, name, name[2:-4]) for name in ("a-000.at2", "a-090.at2", "a-UP.at2")]
+    for given in (files, [str(tmp_path)]):
+        with pytest.warns(RecordWarning, match=r"^Left out: 1 vertical component, a-UP\.at2\.$"):
+            assert names(find_motions(given)) == ["a-000", "a-090"]
+    with pytest.raises(InputError, match=r"No horizontal component was given, only 1 vertical component: a-UP\.at2\."):
+        find_motions(files[2:])
+
+
+def test_all_files_that_cannot_be_read_are_told(tmp_path):
+    bad = [tmp_path / name for name in ("b.at2", "c.at2")]
+    for file in bad:
+        file.write_text("no record")
+    files = [at2(tmp_path, "a.at2", "90"), *map(str, bad)]
+    with pytest.raises(InputError, match=r"2 of 3 files .*b\.at2: no .*c\.at2: no .*--on-error skip goes on") as caught:
+        find_motions(files)
+    assert "on_error" not in str(caught.value)
+    with pytest.warns(RecordWarning, match=r"^Left out: 2 of 3 files cannot be read\."):
+        assert names(find_motions(files, on_error="skip")) == ["a"]
+    with pytest.raises(InputError, match="--units, --dt and --on-error are for record files"):
+        find_motions(["el-centro-1940"], on_error="skip")

@@ -108,9 +108,97 @@ def test_rows_with_errors_are_told_and_strict_says_so(study):
     done = invoke("cloud", file, "--strict")
     assert done.exit_code == 1
     assert "2DOF-S" in done.stdout
-    assert "No run of S with 7DOF-S was solved (12 rows): it has no fit" in done.stderr
+    assert "No fit: S with 7DOF-S: No run of 'S' with 7DOF-S was solved. See the column error" in done.stderr
     assert "12 rows have an error, the first: Model 7DOF-S needs 6 modes, but the structure has 2." in done.stderr
     assert invoke("cloud", file).exit_code == 0
+
+
+ONE = '[records]\nsuites = ["el-centro-1940"]\n'
+
+
+@pytest.mark.parametrize(
+    ("kind", "head", "reasons"),
+    [
+        ("cloud", 'models = ["2DOF-S", "fixed"]\n', ["S with 2DOF-S: im must hold at least two different values"]),
+        ("incremental", HEADS["incremental"], ["S with 2DOF-S, PGA: im must hold at least two different capacities"]),
+        ("stripes", 'measure = "pgv"\nlevels = [1e-3, 2e-3]\n', ["S with MDOF-S, uplift: No run exceeds the limit"]),
+        (
+            "design",
+            'measure = "pgv"\nlevel = 0.6\nhalf_widths = [1.0, 1.5]\nlimits = ["overturning"]\n',
+            ["overturning: no probability of 2 of 2 designs. im must hold at least two different values"],
+        ),
+        ("population", "pairs = 2\nseed = 1\n", []),
+    ],
+)
+def test_a_study_is_kept_and_told_where_nothing_can_be_fitted(tmp_path, kind, head, reasons):
+    structures = "" if kind == "population" else f'[[structures]]\nname = "S"\n{FRAME}'
+    file, folder = tmp_path / f"{kind}.toml", tmp_path / "kept"
+    file.write_text(f'study = "{kind}"\n{head}{ONE}{structures}')
+    command = COMMANDS.get(kind, kind)
+    done = invoke(command, file, "--out", folder)
+    assert done.exit_code == 0, done.stderr
+    assert f"Kept in {folder}" in done.stderr
+    assert f"{len(rf.StudyFolder.load(folder).frame())} rows in" in done.stdout
+    for reason in reasons:
+        assert f"No fit: {reason}" in done.stderr
+    assert invoke(command, file, "--out", folder, "--strict").exit_code == bool(reasons)
+    document = json.loads(invoke(command, file, "--out", folder, "--json").stdout)
+    assert [text[: len(reason)] for text, reason in zip(document["unfitted"], reasons, strict=False)] == reasons
+    assert bool(document["unfitted"]) == bool(reasons)
+
+
+def test_one_model_that_cannot_be_fitted_does_not_take_the_others_away(study, tmp_path):
+    file = study("cloud", 'models = ["2DOF-S", "7DOF-S"]\nscales = [1.0, 2.0]\n')
+    done = invoke("cloud", file, "--out", tmp_path / "kept")
+    (fits,) = rf.fit_clouds(rf.run_study(file).query("model == '2DOF-S'"))
+    assert f"{fits.outcomes.rotation.c2:.3f}" in done.stdout
+    drawn = invoke("figures", tmp_path / "kept")
+    assert drawn.exit_code == 0, drawn.stderr
+    assert "No fit, and not drawn: S with 7DOF-S: No run of 'S' with 7DOF-S was solved." in drawn.stderr
+    assert (tmp_path / "kept" / "figures" / "rotation.png").exists()
+
+
+def test_figures_where_nothing_can_be_fitted(tmp_path):
+    file = tmp_path / "cloud.toml"
+    file.write_text(f'study = "cloud"\n{ONE}[[structures]]\nname = "S"\n{FRAME}')
+    assert invoke("cloud", file, "--out", tmp_path / "kept").exit_code == 0
+    drawn = invoke("figures", tmp_path / "kept")
+    assert drawn.exit_code == 2
+    assert "There is nothing to draw, since no fit could be made. S with MDOF-S: im must hold" in drawn.stderr
+
+
+RECORD = "Some Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .1\n0 .3 -.2 0\n"
+
+
+def test_files_of_a_folder_that_are_left_out_are_told_once(tmp_path):
+    folder = tmp_path / "records"
+    folder.mkdir()
+    for component in ("000", "090", "-UP"):
+        (folder / f"RSN1_X_ABC{component}.AT2").write_text(RECORD.format(component.strip("-")))
+    (folder / "_SearchResults.csv").write_text("Result ID, Spectral Ordinate\n")
+    file = tmp_path / "cloud.toml"
+    text = f'study = "cloud"\n[records]\nfolder = "records"\n[[structures]]\nname = "S"\n{FRAME}'
+    file.write_text(text)
+    refused = invoke("cloud", file)
+    assert refused.exit_code == 2
+    assert "1 of 4 files cannot be read." in refused.stderr
+    assert 'on_error="skip" goes on with the other files.' in refused.stderr
+    file.write_text(text.replace("[records]\n", '[records]\non_error = "skip"\n'))
+    for options in ((), ("--dry-run",)):
+        done = invoke("cloud", file, *options)
+        assert done.exit_code == 0, done.stderr
+        assert done.stderr.count("Left out: 1 vertical component, RSN1_X_ABC-UP.AT2.") == 1
+        assert done.stderr.count("Left out: 1 of 4 files cannot be read.") == 1
+        assert "UserWarning" not in done.stderr
+    assert "2 rows in" in invoke("cloud", file).stdout
+
+
+def test_on_error_without_a_folder(study):
+    file = study("cloud")
+    file.write_text(file.read_text().replace("[records]\n", '[records]\non_error = "skip"\n'))
+    refused = invoke("cloud", file)
+    assert refused.exit_code == 2
+    assert "[records]: on_error is for the files of a folder, but none is named. Leave it out." in refused.stderr
 
 
 def test_a_cluster_that_does_not_answer(study, monkeypatch):

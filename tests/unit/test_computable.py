@@ -8,7 +8,7 @@ import pytest
 import rockflex as rf
 from rockflex import InputError
 from rockflex._computable import computable
-from rockflex.structure import _beam_fe
+from rockflex.structure import _lowest_modes
 
 CANTILEVER = {
     "height": 12.0,
@@ -47,12 +47,29 @@ def test_a_beam_has_the_same_modes_in_any_units(length, mass, rate):
     np.testing.assert_allclose(other.i_theta, one.i_theta * mass * length**2, rtol=1e-12)
 
 
-def test_a_tip_far_heavier_than_its_column():
+@pytest.mark.parametrize("height", [3.0, 12.0, 70.0])
+@pytest.mark.parametrize("column", [1e-10, 1e-20, 1e-30, 1e-34])
+def test_a_tip_far_heavier_than_its_column(column, height):
     """The tip stands still in all modes but the first: a column clamped at one end and pinned at the other."""
-    modes = cantilever(mass_per_length=1e-30).modal()
-    assert modes.omega[0] == pytest.approx(math.sqrt(3.0 * 2e9 / 12.0**3 / 50e3), rel=1e-8)
+    modes = cantilever(mass_per_length=column, height=height).modal()
+    assert modes.omega[0] == pytest.approx(math.sqrt(3.0 * 2e9 / height**3 / 50e3), rel=1e-8)
     pinned = rf.pinned_beam("flexure", n_modes=3).roots[1:]
-    np.testing.assert_allclose(modes.omega[1:4], pinned**2 * math.sqrt(2e9 / 1e-30) / 144.0, rtol=1e-9)
+    np.testing.assert_allclose(modes.omega[1:4], pinned**2 * math.sqrt(2e9 / column) / height**2, rtol=1e-9)
+
+
+@pytest.mark.parametrize("rotary", [0.0, 5e5])
+def test_several_bodies_far_heavier_than_their_beam(rotary):
+    """Those above their number are modes of the beam between bodies that stand still, and go by its mass alone."""
+
+    def omega(share):
+        bodies = rf.LumpedMasses([5.0, 12.0, 20.0], [8e3, 5e3, 9e3], [rotary, 2.0 * rotary, rotary])
+        beam = {"height": 20.0, "bending_stiffness": 1e9, "half_width": 1.5, "damping_ratio": 0.02}
+        return rf.Beam(mass=500.0 * share, lumped_masses=bodies, n_elements=200, n_modes=8, **beam).modal().omega
+
+    heavy = 3 if rotary == 0.0 else 6
+    light, lighter = omega(1e-14), omega(1e-32)
+    np.testing.assert_allclose(lighter[:heavy], light[:heavy], rtol=1e-9)
+    np.testing.assert_allclose(lighter[heavy:], 1e9 * light[heavy:], rtol=1e-9)
 
 
 BEAM = r"^The modes of a beam with height = {} m, and mass = {} kg/m and EI = {} N m² at its base cannot be computed: "
@@ -65,6 +82,9 @@ BEAM = r"^The modes of a beam with height = {} m, and mass = {} kg/m and EI = {}
         (lambda: cantilever(height=1e200).modal(), BEAM.format(r"1e\+200", "500", r"2e\+09")),
         (lambda: cantilever(bending_stiffness=5e-324).modal(), BEAM.format("12", "500", "4.94066e-324")),
         (lambda: cantilever(mass_per_length=1e-310).modal(), BEAM.format("12", "1e-310", r"2e\+09")),
+        (lambda: cantilever(mass_per_length=1e-45).modal(), r"cannot hold \(a body on it has 4e\+48 times its mass, "
+         r"more than 1e\+40 times\)"),
+        (lambda: cantilever(mass_per_length=1.0, tip_inertia=1e50).modal(), r"a body on it has 6e\+46 times its mass"),
         (lambda: cantilever(height=1e-120, mass_per_length=0.0), "The stiffness of a column with height = 1e-120 m "),
         (lambda: cantilever(height=1e120, mass_per_length=0.0), "and EI = 2e[+]09 N m² cannot be computed: numbers "),
         (lambda: rf.Beam(height=1e200, mass=5, bending_stiffness=1e9, half_width=1, damping_ratio=0, method="ritz")
@@ -100,23 +120,48 @@ def test_what_cannot_be_computed_is_an_input_error(build, words):
 
 
 def test_a_mode_that_is_none_is_refused(monkeypatch):
-    solve = _beam_fe.eigsh
+    solve = _lowest_modes.eigsh
 
     def disturbed(*arguments, **options):
         values, vectors = solve(*arguments, **options)
         return values, vectors + 0.01 * vectors[:, ::-1]
 
-    monkeypatch.setattr(_beam_fe, "eigsh", disturbed)
+    monkeypatch.setattr(_lowest_modes, "eigsh", disturbed)
     with pytest.raises(InputError, match=r"cannot hold \(a mode misses its equation by \d"):
         cantilever().modal()
 
 
 def test_a_solver_that_gives_up_is_told(monkeypatch):
     def gives_up(*_, **__):
-        raise _beam_fe.ArpackError(-9999)
+        raise _lowest_modes.ArpackError(-9999)
 
-    monkeypatch.setattr(_beam_fe, "eigsh", gives_up)
+    monkeypatch.setattr(_lowest_modes, "eigsh", gives_up)
     with pytest.raises(InputError, match=r"cannot hold \(ARPACK error -9999"):
+        cantilever().modal()
+
+
+def test_what_the_solver_found_before_it_gave_up_is_kept(monkeypatch):
+    solve, calls = _lowest_modes.eigsh, []
+    expected = cantilever().modal().omega
+
+    def gives_up(*arguments, **options):
+        calls.append(options["k"])
+        found = solve(*arguments, **options)
+        if len(calls) == 1:
+            raise _lowest_modes.ArpackNoConvergence("three are missing", found[0][:2], found[1][:, :2])
+        return found
+
+    monkeypatch.setattr(_lowest_modes, "eigsh", gives_up)
+    np.testing.assert_allclose(cantilever().modal().omega, expected, rtol=1e-9)
+    assert calls == [5, 3]
+
+
+def test_a_solver_that_finds_nothing_is_told(monkeypatch):
+    def finds_nothing(*_, **__):
+        raise _lowest_modes.ArpackNoConvergence("none", np.empty(0), np.empty((2000, 0)))
+
+    monkeypatch.setattr(_lowest_modes, "eigsh", finds_nothing)
+    with pytest.raises(InputError, match=r"cannot hold \(no mode was found\)"):
         cantilever().modal()
 
 

@@ -25,6 +25,9 @@ PAGES = sorted([*DOCS.glob("*.md"), *DOCS.glob("howto/*.md"), *DOCS.glob("theory
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"# ([\w-]+\.(?:toml|py|csv|txt))\b.*\n")
 LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
+INDENTED = re.compile(r"(?:^    \S.*\n)+", re.MULTILINE)
+PRIVATE = re.compile(r"\brockflex(?:\.\w+)*\._\w|\brf\._\w|\bimport _\w")
+NOT_RUN = ("reproduce", "serve")  # some minutes, and for ever
 GENERATED = ("gallery/", "../gallery/")
 
 
@@ -76,7 +79,7 @@ def run_page(page: Path, folder: Path) -> list[tuple[Block, str]]:
         elif block.language == "console":
             for line in block.source.splitlines():
                 command = shlex.split(line.removeprefix("$ "), comments=True)
-                if line.startswith("$ rockflex") and "--dask" not in command:
+                if line.startswith("$ rockflex") and "--dask" not in command and command[1] not in NOT_RUN:
                     result = CliRunner().invoke(app, command[1:])
                     assert result.exit_code == 0, f"{page.name}: {line}\n{result.output}"
     return printed
@@ -89,6 +92,38 @@ def test_code_of_a_page_runs_and_prints_what_it_says(page, tmp_path, monkeypatch
         if block.output is not None:
             lines = [line.rstrip() for line in printed.splitlines()]
             assert lines == block.output.splitlines(), f"{page.name}, line {block.line}"
+
+
+def test_code_of_the_readme_runs_and_prints_what_it_says(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+
+    def console(found: re.Match[str]) -> str:
+        commands = [command.strip() for line in found[0].splitlines() for command in line.split("&&")]
+        return "".join(["```console\n", *(f"$ {command}\n" for command in commands), "```\n"])
+
+    page = tmp_path / "README.md"
+    parts = re.split(r"(^```\w+\n.*?^```$)", (ROOT / "README.md").read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
+    parts[::2] = [INDENTED.sub(console, prose) for prose in parts[::2]]
+    page.write_text("".join(parts), "utf-8")
+    commands = [block.source for block in blocks_of(page.read_text("utf-8")) if block.language == "console"]
+    assert sum(text.count("$ rockflex run") for text in commands) == 4
+    told = [(block, printed) for block, printed in run_page(page, tmp_path) if block.output is not None]
+    assert len(told) == 1
+    for block, printed in told:
+        assert [line.rstrip() for line in printed.splitlines()] == block.output.splitlines()
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=lambda page: str(page.relative_to(ROOT)))
+def test_pages_name_nothing_private(page):
+    assert PRIVATE.findall(page.read_text("utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    "text", ["`rockflex._x`", "from rockflex.cli._y import z", "rf._z(1)", "from rockflex import _a"]
+)
+def test_private_names_are_seen(text):
+    assert PRIVATE.search(text)
 
 
 @pytest.mark.parametrize(

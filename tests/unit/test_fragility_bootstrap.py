@@ -89,7 +89,7 @@ def test_a_few_blocks_are_told():
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"n": 5}, "n must be a whole number of at least 20, but 5"),
+        ({"n": 5}, "n must be a whole number from 20 to 1000000, but 5"),
         ({"level": 1.0}, r"level must lie in \[0, 1\)"),
         ({"at": [0.0, 1.0]}, "im must be positive and finite, but 0"),
         ({"groups": [1, 2]}, "im has 144, outcome_or_response has 144, groups has 2"),

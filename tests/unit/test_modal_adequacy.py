@@ -146,7 +146,7 @@ def test_mass_that_the_base_shear_is_compared_with():
     structure = frame(5, FLEXURE, 5.0)
     p = structure.rocking()
     known, complete, few = rf.adequacy(p, base_mass=40e3), rf.adequacy(p), rf.adequacy(p.truncated(3))
-    assert known.mass == complete.mass == pytest.approx(200e3)
+    assert [known.mass, complete.mass] == pytest.approx([200e3, 200e3], rel=1e-12)  # sums of mass, in any order
     assert known.base_known
     assert complete.base_known
     assert few.mass == 240e3

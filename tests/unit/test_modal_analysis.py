@@ -153,7 +153,10 @@ GOOD = {"mass": [1.0, 2.0], "stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": 
         ({"mass": [[1.0, 2.0], [2.0, 1.0]]}, r"mass must be positive definite.*smallest eigenvalue is -1 kg"),
         ({"mass": [[1.0, 0.5], [0.0, 1.0]]}, r"mass must be symmetric, but mass\[0, 1\] = 0.5"),
         ({"mass": np.eye(3)}, r"mass must have the shape \(2, 2\), but an array of shape \(3, 3\)"),
-        ({"mass": [[1.0, 2.0], [3.0]]}, r"mass must be a sequence of numbers in kg, but list"),
+        (
+            {"mass": [[1.0, 2.0], [3.0]]},
+            r"mass must be a sequence of numbers in kg, but list whose rows differ",
+        ),
         ({"stiffness": [1.0, 2.0]}, r"stiffness must have the shape \(2, 2\), but an array of shape \(2,\)"),
         ({"stiffness": "soft"}, r"stiffness must be a matrix of numbers in N/m, but str was given"),
         (

@@ -83,13 +83,9 @@ def test_arrays_are_read_only_copies():
             getattr(props, name)[0] = 0.0
 
 
-def test_frozen_hashable_and_equal_to_itself_alone():
-    props, twin = RockingProperties(**CHIMNEY_LIKE), RockingProperties(**CHIMNEY_LIKE)
+def test_frozen():
     with pytest.raises(AttributeError):
-        props.i_theta = 1.0
-    assert props == props
-    assert props != twin
-    assert len({props, twin}) == 2
+        RockingProperties(**CHIMNEY_LIKE).i_theta = 1.0
 
 
 @pytest.mark.parametrize("clone", [copy.deepcopy, lambda props: pickle.loads(pickle.dumps(props))])

@@ -11,7 +11,7 @@ import pytest
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, Suite, load_suite, read_suite, suite_names
+from rockflex.motion import GroundMotion, Suite, load_suite, suite_names
 from rockflex.motion._embedded import DATA, decode, encode, read_embedded
 
 MOTIONS = [GroundMotion([0, k, 0], 0.1, name=f"m{k}") for k in range(1, 5)]
@@ -105,34 +105,6 @@ def test_encoding_is_exact():
     assert decode(encode(samples, 7)).tobytes() == samples.tobytes()
     with pytest.raises(ValueError, match="not decimals of 7 significant digits"):
         encode(np.array([1 / 3]), 7)
-
-
-def test_read_suite_reads_a_directory(tmp_path):
-    (tmp_path / "b.csv").write_text("t,acc (g)\n0,0\n1,1\n2,0\n")
-    (tmp_path / "a.AT2").write_text("NPTS= 3, DT= .1\n0 2 0\n")
-    (tmp_path / "c.txt").write_text("0\n3\n0\n")
-    (tmp_path / "readme.md").write_text("no record")
-    suite = read_suite([tmp_path / "b.csv", tmp_path / "a.AT2"])
-    assert suite.names == ("a", "b")
-    assert [motion.pga for motion in suite] == [2 * GRAVITY, GRAVITY]
-    with pytest.raises(InputError, match=r"c\.txt does not say the unit"):
-        read_suite(tmp_path)
-    (tmp_path / "c.txt").unlink()
-    whole = read_suite(str(tmp_path))
-    assert (whole.names, whole.name) == (("a", "b"), tmp_path.name)
-    assert read_suite(iter([tmp_path / "b.csv"])).names == ("b",)
-
-
-def test_read_suite_refuses(tmp_path):
-    with pytest.raises(InputError, match=r"holds no record: no file ends in .at2"):
-        read_suite(tmp_path)
-    with pytest.raises(InputError, match=r"is not a directory. Give a directory, or a list of files"):
-        read_suite(tmp_path / "none")
-    for folder in ("x", "y"):
-        (tmp_path / folder).mkdir()
-        (tmp_path / folder / "a.at2").write_text("NPTS= 3, DT= .1\n0 2 0\n")
-    with pytest.raises(InputError, match="need different names, but 'a' occurs"):
-        read_suite([tmp_path / "x" / "a.at2", tmp_path / "y" / "a.at2"])
 
 
 def test_conversion_reproduces_the_data(tmp_path):

@@ -58,9 +58,9 @@ def test_rows_are_single_runs_in_order(table):
         for model in ("MDOF-S", "2DOF-S")
         for scale in (1.0, 2.0)
     ]
-    assert list(table[["structure", "record", "model", "scale"]].itertuples(index=False, name=None)) == expected
+    assert list(table[["structure", "motion", "model", "scale"]].itertuples(index=False, name=None)) == expected
     for row in table.itertuples():
-        run = rf.simulate(frames[row.structure], SUITE[row.record].scaled(row.scale), row.model, "peaks")
+        run = rf.simulate(frames[row.structure], SUITE[row.motion].scaled(row.scale), row.model, "peaks")
         assert row.status == run.status
         for name in ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear", "n_impacts"):
             assert getattr(row, name) == getattr(run, name)
@@ -73,7 +73,7 @@ def test_rows_are_single_runs_in_order(table):
 def test_measures_are_those_of_the_scaled_motion(table):
     structures = {"stiff": rf.Frame(**FRAME).rocking(), "S2": rf.Frame(**STRUCTURES[1]["frame"]).rocking()}
     for row in table.itertuples():
-        p, motion = structures[row.structure], SUITE[row.record].scaled(row.scale)
+        p, motion = structures[row.structure], SUITE[row.motion].scaled(row.scale)
         period = 2 * math.pi / p.omega[0]
         for name in ("pga", "pgv", "pgd", "arias", "cav"):
             assert getattr(row, name) == pytest.approx(getattr(motion, name), rel=1e-12)
@@ -96,10 +96,10 @@ def test_rigid_structure_lifts_at_a_relative_pga_of_one():
 
 
 def test_facts_of_the_records(table):
-    assert table["group"].tolist() == [f"RSN{SUITE[name].metadata.rsn}" for name in table["record"]]
+    assert table["group"].tolist() == [f"RSN{SUITE[name].metadata.rsn}" for name in table["motion"]]
     assert table["group"].nunique() == 2
-    assert (table["magnitude"] == [SUITE[name].metadata.magnitude for name in table["record"]]).all()
-    assert (table["distance_km"] == [SUITE[name].metadata.distance_km for name in table["record"]]).all()
+    assert (table["magnitude"] == [SUITE[name].metadata.magnitude for name in table["motion"]]).all()
+    assert (table["distance_km"] == [SUITE[name].metadata.distance_km for name in table["motion"]]).all()
 
 
 def test_group_of_a_record():

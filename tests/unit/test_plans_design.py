@@ -32,7 +32,7 @@ def test_rows_are_those_of_structures_built_that_way():
     structures = {f"B = {b:g} m, no tendon": built(b) for b in WIDTHS}
     structures |= {f"B = {b:g} m, held": built(b, 0.3 * weight, 0.6 * l0r * 9.81 / b**2) for b in WIDTHS}
     cloud = rf.run_cloud(structures, motions, ["MDOF-S", "2DOF-S"], [1.0, 2.5], free_vibration="settle")
-    for name in ("structure", "record", "model", "scale", "group", "status", "n_impacts", "error"):
+    for name in ("structure", "motion", "model", "scale", "group", "status", "n_impacts", "error"):
         assert table[name].astype(str).tolist() == cloud[name].astype(str).tolist()
     for name in ("max_rotation", "max_top_displacement", "max_base_moment", "nominal_limit", "pgv", "max_tendon_force"):
         np.testing.assert_allclose(table[name], cloud[name], rtol=1e-8)

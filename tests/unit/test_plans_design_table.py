@@ -165,12 +165,12 @@ def test_what_a_row_says_of_itself(runs):
     assert quiet["note"].str.contains("rocking: none of 88 runs").all()
     alone = rf.design_table(altered(runs, group="one"), 0.02, at=0.6)
     assert alone["note"].str.contains("No band: all runs belong to one recording.").all()
-    few = runs[(runs["half_width"] == 1.6) & runs["record"].isin(["FF-1-a", "FF-2-a", "FF-3-a"])]
+    few = runs[(runs["half_width"] == 1.6) & runs["motion"].isin(["FF-1-a", "FF-2-a", "FF-3-a"])]
     few = few.assign(status="no_uplift", max_rotation=[0.0, 0.0, 0.0, 0.01, 0.0, 0.02] * 2)
     unknown = rf.design_table(few, 0.02, at=0.6)
     assert unknown["probability"].isna().all()
     assert unknown["note"].str.contains("There is no probability: a part that counts could not be fitted.").all()
-    some = rf.design_table(runs[runs["record"].str.startswith("FF-1")], 0.02, at=0.6)
+    some = rf.design_table(runs[runs["motion"].str.startswith("FF-1")], 0.02, at=0.6)
     assert some["note"].str.contains("recordings is too narrow|could be fitted").all()
 
 

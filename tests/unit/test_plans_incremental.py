@@ -147,7 +147,7 @@ def test_nominal_limit():
     assert (runs["overturned"] == (runs["max_rotation"] > runs["nominal_limit"])).all()
     assert (runs["nominal_overturning"] & (runs["status"] != "overturned")).any()
     whole = run_plan(study(models=["2DOF-S"]).plan())
-    firsts = [table.groupby("record", observed=True)["first_overturning_scale"].first() for table in (runs, whole)]
+    firsts = [table.groupby("motion", observed=True)["first_overturning_scale"].first() for table in (runs, whole)]
     assert (firsts[0] <= firsts[1] * 1.05).all()
 
 
@@ -160,11 +160,11 @@ def test_capacities():
     assert (capacities["failed"] == 0).all()
     suite = rf.load_suite("fema-p695-far-field")
     for row in capacities.itertuples():
-        assert row.capacity == pytest.approx(suite[row.record].pgv * row.first_overturning_scale, rel=1e-12)
+        assert row.capacity == pytest.approx(suite[row.motion].pgv * row.first_overturning_scale, rel=1e-12)
     low = incremental_capacities(run_plan(study(largest_scale=1.1).plan()), "pga")
     assert low["censored"].all()
     for row in low.itertuples():
-        assert row.capacity == pytest.approx(suite[row.record].pga * 1.1, rel=1e-12)
+        assert row.capacity == pytest.approx(suite[row.motion].pga * 1.1, rel=1e-12)
         assert row.last_survival_scale == 1.1
     failed = incremental_capacities(run_incremental(BLOCK, PULSE, "2DOF-S", 1.0, 2.0, 2.0))
     assert (failed["failed"].tolist(), failed["capacity"].isna().tolist()) == ([2], [True])
@@ -216,7 +216,7 @@ def test_stripes_are_single_runs_and_counted():
     assert (plan.n_runs, plan.n_chunks) == (9, 5)
     suite = rf.load_suite("fema-p695-far-field")
     for row in runs.itertuples():
-        motion = suite[row.record]
+        motion = suite[row.motion]
         assert row.scale == pytest.approx(row.level / motion.pgv)
         run = rf.simulate(rf.Frame(**FRAME), motion.scaled(row.scale), "2DOF-S", "peaks", free_vibration="settle")
         assert (row.status, row.max_rotation) == (run.status, run.max_rotation)
@@ -247,3 +247,10 @@ def test_stripe_messages():
     bench = bench_of(rf.Frame(**FRAME), rf.quiet_motion(1.0), "2DOF-S", 0.0, None, None)
     with pytest.raises(rf.InputError, match=r"has no pgv for 'S1', so no scale takes it to a level\."):
         StripePlan(bench, "pgv", [1.0], 10)
+
+
+def test_a_ladder_beyond_double_precision():
+    with pytest.raises(
+        rf.InputError, match=r"largest_scale must be at most 1e\+12 times smallest_scale, 1e-300, but 1e"
+    ):
+        rf.run_incremental(rf.rigid_block(0.2, 2.0), rf.ricker_pulse(1.0, 1.0), "rigid", 1e-300, 1e300)

@@ -73,7 +73,7 @@ def test_rows_are_pairs_of_single_runs(plan, pairs):
     for row in pairs.itertuples():
         drawn = draw_prototype(7, row.pair, 4)
         motion, frame = plan.motions[drawn.record], drawn.frame()
-        assert row.record == motion.name
+        assert row.motion == motion.name
         assert (row.n_stories, row.period, row.stiffness_ratio) == (
             drawn.n_stories,
             drawn.period,
@@ -132,7 +132,7 @@ def test_free_vibration_reaches_the_runs(plan):
     longer = longer[(longer["status_mdof"] != "overturned") & (longer["status_2dof"] != "overturned")]
     assert len(longer) >= 2
     for row in longer.itertuples():
-        assert row.end_time_mdof == pytest.approx(plan.motions[row.record].duration + 3.0)
+        assert row.end_time_mdof == pytest.approx(plan.motions[row.motion].duration + 3.0)
         assert row.end_time_2dof == row.end_time_mdof
 
 
@@ -156,7 +156,7 @@ def made_up(n=400, noise=0.05, seed=0, slopes=(0.9, 1.1)):
     return pd.DataFrame(
         numbers
         | {"behaviour": np.where(shear, "shear", "flexure"), "status_mdof": "rocking", "status_2dof": "rocking"}
-        | {name: np.arange(n) for name in ("pair", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "record")}
+        | {name: np.arange(n) for name in ("pair", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion")}
         | {"pga": 1.0, "pgv": 1.0, "nominal_overturning_mdof": False, "nominal_overturning_2dof": False}
     )
 
@@ -265,7 +265,7 @@ def test_messages(arguments, message):
 
 
 def test_messages_of_the_python_twin(plan):
-    with pytest.raises(rf.InputError, match="pairs must be a whole number of at least 1, but 0 was given"):
+    with pytest.raises(rf.InputError, match="pairs must be a whole number from 1 to 4294967295, but 0 was given"):
         run_population(plan.motions, 0)
     with pytest.raises(rf.InputError, match="seed must be a whole number of at least 0, but -1 was given"):
         run_population(plan.motions, 1, -1)

@@ -105,7 +105,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
     lines = ["time (s), acc (m/s2)", *(f"{0.01 * k:.2f}, {math.sin(k):.6f}" for k in range(100))]
     (folder / "records" / "quake.csv").write_text("\n".join(lines))
     table = run_plan(load_study("deep/study.toml").plan())
-    assert table["record"].tolist() == ["quake"]
+    assert table["motion"].tolist() == ["quake"]
     assert table["error"].isna().all()
 
 
@@ -150,7 +150,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         (CLOUD.replace("[records]", '[records]\nfolder = "none"'), ""),
         (
             CLOUD.replace("suites", "suite"),
-            "[records] suite is not known; there are suites, folder, include. Did",
+            "[records] suite is not known; there are suites, folder, on_error, include. Did",
         ),
         (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),

@@ -13,7 +13,7 @@ def test_ida_curves_break_where_runs_overturn(ladders):
     left, right = figure.axes
     assert (left.get_title(), right.get_xlabel()) == ("#1, 2DOF-S", "PGV [m/s]")
     curves, again, first = lines(left, "_record"), [], []
-    by_record = list(ladders.groupby("record", observed=True, sort=False))
+    by_record = list(ladders.groupby("motion", observed=True, sort=False))
     for curve, (_, rows) in zip(curves, by_record, strict=True):
         fell = rows["overturned"].to_numpy(bool)
         np.testing.assert_array_equal(curve.get_xdata()[1:], rows["pgv"])
@@ -62,14 +62,14 @@ def test_ida_of_records_that_never_overturn(ladders):
 
 def test_censored_records_count_as_long_as_they_stood(ladders):
     """Kaplan-Meier by hand: each step is the fraction still standing times 1 over those at risk."""
-    names = list(dict.fromkeys(ladders["record"]))
+    names = list(dict.fromkeys(ladders["motion"]))
     rows = ladders.copy()
-    stopped = rows["record"].isin(names[:2]) & rows["overturned"]
-    rows = rows[~stopped & ~(rows["record"].isin(names[:2]) & (rows["scale"] > rows["first_overturning_scale"]))]
+    stopped = rows["motion"].isin(names[:2]) & rows["overturned"]
+    rows = rows[~stopped & ~(rows["motion"].isin(names[:2]) & (rows["scale"] > rows["first_overturning_scale"]))]
     right = drawn(rf.plot_ida(rows)).axes[1]
     ends = []
     for name in names:
-        mine = rows[rows["record"] == name]
+        mine = rows[rows["motion"] == name]
         falls = mine[mine["overturned"]]
         ends.append((falls["pga"].iloc[0], True) if len(falls) else (mine["pga"].iloc[-1], False))
     standing, fraction, steps = len(ends), 1.0, []

@@ -77,6 +77,20 @@ def test_a_file_is_replaced_whole(tmp_path):
 def test_names_with_dots_keep_them(tmp_path):
     run = simulate(FRAME, MOTION, output="peaks")
     assert run.save(tmp_path / "scale 1.5").name == "scale 1.5.npz"
+    assert run.save(tmp_path / "run.NPZ").name == "run.NPZ"
+
+
+@pytest.mark.parametrize("name", ["run.parquet", "run.csv", "run.npz.gz", "scale 1.5.PARQUET"])
+def test_another_form_of_file_is_refused(tmp_path, name):
+    run = simulate(FRAME, MOTION, output="peaks")
+    with pytest.raises(InputError) as caught:
+        run.save(tmp_path / name)
+    assert str(caught.value) == (
+        f"A response is saved as .npz, but {name!r} was given. Name it {name.rpartition('.')[0] + '.npz'!r}; for a "
+        'table of the history write pandas.DataFrame({"time": response.time, "rotation": response.rotation})'
+        ".to_parquet(...)."
+    )
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_missing_file(tmp_path):

@@ -51,4 +51,8 @@ def noise():
 
 def test_steep_noise():
     """Slopes of 10 000 m/s³ against rotations of a milliradian."""
-    assert errors(noise(), **NOISE) < 1e-10
+    motion = noise()
+    # A slope a' displaces the speed that is carried by about a'/g: each sample rounds θ' by ε a'/g.
+    slopes = np.diff(motion.acceleration) / motion.dt / 9.81
+    rounding = np.finfo(float).eps * np.linalg.norm(slopes) * motion.duration
+    assert errors(motion, **NOISE) < rounding / 1.026e-3  # θ_max in rad

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+import rockflex as rf
 from rockflex import Frame, GroundMotion, InputError, simulate
 from rockflex.models import Model
 from rockflex.response import floor_observables, global_observables
@@ -210,3 +211,11 @@ def test_a_step_in_which_rotations_overflow_is_refused():
     longest = float(text.rpartition("at most ")[2].removesuffix(" s."))
     assert longest == pytest.approx(300.0 / fall, rel=0.05)
     simulate(frame, motion.resampled(125.0))
+
+
+@pytest.mark.parametrize("omega", [1e200, 1e-200])
+@pytest.mark.parametrize("model", ["2DOF-S", "fixed", "2DOF-C"])
+def test_frequencies_whose_square_is_no_number(omega, model):
+    properties = rf.RockingProperties([omega], [1e4], [3.0], [1.0], 2e5, 4e4, 2e4, 1.0, 0.02, 1e5)
+    with pytest.raises(rf.InputError, match=r"The motion of .* with omega from 1e.200 to .* cannot be computed:"):
+        rf.simulate(properties, rf.quiet_motion(1.0), model)

@@ -165,3 +165,43 @@ def test_of_many_that_find_a_dead_lock_one_gets_it(tmp_path: Path) -> None:
     for process in crowd:
         process.communicate("end\n")
     assert sorted(answers) == ["mine\n"] + ["refused\n"] * 5
+
+
+@pytest.mark.parametrize(
+    "changes", [{"pid": "x"}, {"pid": [1]}, {"pid": None}, {"pid": True}, {"pid": -1}, {"pid": 10**30}, {"host": 1}]
+)
+def test_a_damaged_lock_is_given_a_moment(
+    tmp_path: Path, changes: dict[str, object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_lock, "UNREADABLE_FOR", 0.1)
+    (tmp_path / "lock").write_text(holder(**changes))
+    Lock.acquire(tmp_path / "lock").release()
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"[" * 100_000])
+def test_a_lock_from_the_future_is_not_waited_for(
+    tmp_path: Path, content: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_lock, "UNREADABLE_FOR", 0.2)
+    path = tmp_path / "lock"
+    path.write_bytes(content)
+    os.utime(path, (time.time() + 1e6,) * 2)
+    begin = time.monotonic()
+    Lock.acquire(path).release()
+    assert 0.1 < time.monotonic() - begin < 2.0
+
+
+def test_what_is_no_lock_is_not_taken_away(tmp_path: Path) -> None:
+    (tmp_path / "lock").mkdir()
+    with pytest.raises(InputError, match=r"lock is no file, but the study's lock belongs there\. Move it away"):
+        Lock.acquire(tmp_path / "lock")
+    path = tmp_path / "other"
+    path.write_text(holder(host="h" * 10**5))
+    with pytest.raises(InputError, match=r"on hhh.* \.\.\. h.* since noon\. Wait .* delete .*other and try again"):
+        Lock.acquire(path)
+
+
+def test_a_link_to_nothing_is_taken_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_lock, "UNREADABLE_FOR", 0.1)
+    (tmp_path / "lock").symlink_to(tmp_path / "nothing")
+    Lock.acquire(tmp_path / "lock").release()

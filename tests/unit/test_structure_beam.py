@@ -93,9 +93,8 @@ def test_first_modes(method):
     structure = beam(method=method)
     assert structure.rocking(2).n_modes == 2
     np.testing.assert_array_equal(structure.modal(2).omega, structure.modal().omega[:2])
-    np.testing.assert_array_equal(
-        beam(method=method, n_modes=2).modal().omega.round(6), structure.modal(2).omega.round(6)
-    )
+    alone = beam(method=method, n_modes=2).modal()
+    np.testing.assert_allclose(alone.omega, structure.modal(2).omega, rtol=1e-9)  # another search for them
 
 
 def test_damping_of_each_mode():
@@ -144,8 +143,8 @@ REFUSED = [
     ({"method": "ritz", "shear_stiffness": 1e8}, 'shear_stiffness does not go with method="ritz"'),
     ({"shapes": rf.cosine_shapes(20.0, 5)}, 'shapes does not go with method="fe". Leave it out, or take method="ritz"'),
     ({"method": "ritz", "shapes": rf.cosine_shapes(20.0, 2)}, "shapes must hold at least n_modes = 5 shapes, but it"),
-    ({"n_elements": 3}, "n_elements must be a whole number of at least 5, but 3 was given"),
-    ({"n_modes": 0}, "n_modes must be a whole number of at least 1, but 0 was given"),
+    ({"n_elements": 3}, "n_elements must be a whole number from 5 to 100000, but 3 was given"),
+    ({"n_modes": 0}, "n_modes must be a whole number from 1 to 1000, but 0 was given"),
     ({"half_width": 0.0}, "half_width must be a positive, finite number in m"),
     ({"damping_ratio": 2.0}, r"damping_ratio must lie in \[0, 1\)"),
 ]  # fmt: skip

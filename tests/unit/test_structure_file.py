@@ -352,3 +352,13 @@ def test_every_key_is_described(model):
     for name, field in model.model_fields.items():
         assert field.description, name
         assert not field.description.endswith(".")
+
+
+@pytest.mark.parametrize("text", ["x = " + "[" * 5000 + "]" * 5000, "x = " + "{a = " * 5000 + "1" + "}" * 5000])
+def test_a_file_nested_too_deep(tmp_path, text):
+    file = tmp_path / "deep.toml"
+    file.write_text(text)
+    with pytest.raises(
+        rf.InputError, match=r"deep\.toml is nested too deep to be read: .* more than any structure has\.$"
+    ):
+        rf.read_structure(file)

@@ -285,3 +285,18 @@ def test_one_shape_may_be_a_vector():
     one = rf.from_modes([2.0], [1.0, 2.0], [1.0, 1.0], [1.0, 2.0], **SCALARS).rocking()
     assert one.effective_mass[0] == pytest.approx(9.0 / 5.0)
     assert one.effective_height[0] == pytest.approx(5.0 / 3.0)
+
+
+def test_sparse_matrices_too_large_to_be_dense(tmp_path):
+    (tmp_path / "k.mtx").write_text("%%MatrixMarket matrix coordinate real general\n900000 900000 1\n1 1 2.0\n")
+    with pytest.raises(
+        InputError, match=r"stiffness: .*k\.mtx holds a sparse matrix of the shape \(900000, 900000\), but"
+    ):
+        rf.from_matrices([1.0], tmp_path / "k.mtx", [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
+
+
+def test_ragged_shapes_are_told():
+    with pytest.raises(
+        InputError, match=r"shapes must be a sequence of numbers in any unit, but list whose rows differ"
+    ):
+        rf.from_modes([1.0], [[1.0], [1.0, 2.0]], [1.0], [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)

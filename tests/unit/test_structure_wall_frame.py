@@ -76,7 +76,7 @@ def test_many_modes_carry_the_whole_mass(alpha):
 def test_modes_are_orthogonal_and_free_of_overflow(alpha):
     floors = wall_frame(stiffness_parameter=alpha, n_modes=8).rocking().floors
     assert np.isfinite(floors.displacement).all()
-    np.testing.assert_array_equal(floors.displacement[0].round(12), 0.0)
+    np.testing.assert_allclose(floors.displacement[0], 0.0, atol=1e-12)
 
 
 def test_scaled_to_period_and_width():
@@ -102,7 +102,7 @@ def test_scaled_to_period_and_width():
         ({"mass": 0.0}, "mass must be a positive, finite number in kg, but 0.0 was given"),
         ({"period": -1.0}, "period must be a positive, finite number in s"),
         ({"aspect_ratio": 0.0}, "aspect_ratio must be a positive, finite number"),
-        ({"n_modes": 0}, "n_modes must be a whole number of at least 1"),
+        ({"n_modes": 0}, "n_modes must be a whole number from 1 to 1000"),
     ],
 )
 def test_refused(changes, words):

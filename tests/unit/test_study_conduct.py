@@ -45,7 +45,7 @@ def test_in_memory_and_in_a_folder_alike(tmp_path):
     assert table["error"].notna().sum() == 8
     pd.testing.assert_frame_equal(rf.run_study(STUDY, tmp_path / "kept", workers=1), table)
     single = rf.simulate(rf.Frame(**FRAME), rf.load_suite("fema-p695-far-field")["FF-1-b"].scaled(1.5), "2DOF-C")
-    row = table[(table["record"] == "FF-1-b") & (table["model"] == "2DOF-C") & (table["scale"] == 1.5)].iloc[0]
+    row = table[(table["motion"] == "FF-1-b") & (table["model"] == "2DOF-C") & (table["scale"] == 1.5)].iloc[0]
     assert row["max_rotation"] == single.max_rotation
 
 
@@ -170,7 +170,7 @@ def test_a_changed_matrix_is_another_study(tmp_path):
     with pytest.raises(InputError) as caught:
         rf.run_study(of_files(tmp_path, k=0.9e7), folder)
     first, second, last = str(caught.value).splitlines()
-    assert first == f"{folder} holds this study with other records or matrices. Checksums that differ:"
+    assert first == f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
     assert second.startswith('  structures[1].matrices.stiffness: "')
     assert last == "Use the same files, or give another folder."
 

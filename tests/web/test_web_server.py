@@ -10,9 +10,11 @@ import tomllib
 import numpy as np
 import pandas as pd
 import pytest
+from typer.testing import CliRunner
 
 import rockflex as rf
 from rockflex._errors import InputError
+from rockflex.cli import app
 from rockflex.web import make_app, serve
 from rockflex.web._limits import pace
 from rockflex.web._presets import PRESETS
@@ -113,6 +115,12 @@ def test_an_upload_is_simulated(client) -> None:
     assert shown["max_rotation"] == pytest.approx(expected.max_rotation, rel=1e-9)
     gone = state | {"record": {"source": "upload", "upload": "0" * 64}}
     assert "Choose the file again" in client.refused("/api/response", gone)["record.upload"]
+
+
+def test_an_upload_of_a_vertical_component_is_refused(client) -> None:
+    status, answer = upload(client, name="RSN1_X_ABC-UP.csv")
+    message = "RSN1_X_ABC-UP.csv is a vertical component by its header or its name. Choose a horizontal one."
+    assert (status, answer["errors"]["record.upload"]) == (422, message)
 
 
 def test_a_bad_upload_is_refused(client) -> None:
@@ -283,6 +291,26 @@ def test_the_study_repeats_the_numbers(client, tmp_path) -> None:
     table = rf.run_study(tmp_path / name)
     shown = client.ask("/api/response", state)["models"]
     assert table["max_rotation"].tolist() == [each["peaks"]["max_rotation"] for each in shown]
+    done = CliRunner().invoke(app, ["cloud", str(tmp_path / name), "--out", str(tmp_path / "kept")])
+    assert done.exit_code == 0, done.stderr
+    assert rf.StudyFolder.load(tmp_path / "kept").frame()["max_rotation"].tolist() == table["max_rotation"].tolist()
+
+
+@pytest.mark.parametrize("source", ["pulse", "upload"])
+def test_the_study_of_a_record_beside_it_is_run_by_the_command(client, tmp_path, source) -> None:
+    record = {"source": source} | ({"upload": upload(client)[1]["upload"]} if source == "upload" else {})
+    state = client.state(record=record, models=["2DOF-S", "fixed"])
+    name, content = client.download("/api/download/study", state)
+    (tmp_path / name).write_bytes(content)
+    (tmp_path / "records").mkdir()
+    name, content = client.download("/api/download/record", state)
+    assert name.startswith("Ricker" if source == "pulse" else "mine")
+    (tmp_path / "records" / name).write_bytes(content)
+    done = CliRunner().invoke(app, ["cloud", str(tmp_path / "study.toml"), "--out", str(tmp_path / "kept")])
+    assert done.exit_code == 0, done.stderr
+    found = rf.StudyFolder.load(tmp_path / "kept").frame()["max_rotation"]
+    shown = client.ask("/api/response", state)["models"]
+    assert found.to_numpy() == pytest.approx([each["peaks"]["max_rotation"] for each in shown], rel=1e-9)
 
 
 def test_every_download_is_what_it_says(client) -> None:

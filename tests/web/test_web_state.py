@@ -40,6 +40,8 @@ def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
     view = structure_view(state.structure)
     json.dumps(view, allow_nan=False)
     assert view["modes"][0]["period"] == pytest.approx(2 * np.pi / build(state.structure).properties.omega[0])
+    lifted = rf.uplifted_modes(build(state.structure).properties)
+    assert [mode["uplifted_damping"] for mode in view["modes"]] == pytest.approx(lifted.damping_ratio.tolist())
     assert view["adequacy"]["reason"]
 
 

@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
 from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study
-from rockflex.cli._console import complain
+from rockflex.cli._console import complain, remarks
 
 __all__ = ["app", "main"]
 
@@ -29,7 +29,8 @@ rockflex reproduce --out out/paper
 
 [bold]Exit codes[/bold]
 
-0: done; 1: a run could not be solved; 2: something given cannot be used."""
+0: done; 1: a run could not be solved (in a study with --strict only, and then a fit that could not be made counts
+too); 2: something given cannot be used."""
 
 
 class Commands(TyperGroup):
@@ -38,7 +39,8 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command that the line names."""
         try:
-            return super().invoke(ctx)
+            with remarks():
+                return super().invoke(ctx)
         except (InputError, SolverError) as error:
             complain(str(error))
             raise typer.Exit(2 if isinstance(error, InputError) else 1) from error

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, parse_model
 from rockflex.study import InitialState
@@ -161,7 +162,7 @@ def parse_free_vibration(given: str, models: Sequence[str]) -> float | Literal["
     except ValueError:
         seconds = math.nan
     if not (seconds >= 0.0 and math.isfinite(seconds)):
-        message = f"--free-vibration must be zero or more seconds, or settle, but {given!r} was given."
+        message = f"--free-vibration must be zero or more seconds, or settle, but {shown(given)} was given."
         raise InputError(message)
     return seconds
 
@@ -197,7 +198,7 @@ def parse_coefficient(mu: float | None) -> float | None:
 
 def _law(impact: str | None = None, restitution: float | None = None) -> ImpactLaw | None:
     if impact is not None and impact not in LAWS:
-        message = f"--impact must be one of {', '.join(LAWS)}, but {impact!r} was given."
+        message = f"--impact must be one of {', '.join(LAWS)}, but {shown(impact)} was given."
         raise InputError(message)
     if impact == "restitution" and restitution is None:
         message = "--impact restitution needs its coefficient. Give --restitution E, from 0 to 1."

@@ -1,9 +1,12 @@
 """What is printed: tables on stdout, everything else on stderr."""
 
 import math
+import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
+
+from rockflex._errors import RecordWarning
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -19,6 +22,7 @@ __all__ = [
     "number",
     "output",
     "progress",
+    "remarks",
     "show",
     "study_progress",
 ]
@@ -38,6 +42,20 @@ def note(message: str) -> None:
     from rich.console import Console
 
     Console(stderr=True).print(message, markup=False, highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def remarks() -> Generator[None]:
+    """Print each warning of records that are left out once, as a remark."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", RecordWarning)
+        elsewhere = warnings.showwarning
+
+        def tell(message: Warning | str, category: type[Warning], *where: Any) -> None:
+            note(str(message)) if issubclass(category, RecordWarning) else elsewhere(message, category, *where)
+
+        warnings.showwarning = tell
+        yield
 
 
 def output() -> "Console":

@@ -1,12 +1,13 @@
 """``rockflex figures``: the figures of a study that is kept in a folder."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rockflex._errors import InputError
+from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.cli import _options as options
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def figures(
 ) -> None:
     """Draw what a study found: fragility curves, clouds, capacities, designs, or the agreement of models."""
     if kind not in FORMATS:
-        message = f"--format must be one of {', '.join(FORMATS)}, but {kind!r} was given."
+        message = f"--format must be one of {', '.join(FORMATS)}, but {shown(kind)} was given."
         raise InputError(message)
     from rockflex.cli._console import note
     from rockflex.cli._output import check_folder, staged, versions
@@ -69,34 +70,63 @@ def figures(
     }
     from rockflex.plot import save_figure
 
+    undrawn: list[str] = []
     with staged(target, document, force=force) as stage:
-        for stem, figure in _figures(name, study.spec, table, measure or "pgv"):
-            save_figure(figure, stage / f"{stem}.{kind}")
+        for stem, draw in _figures(name, study.spec, table, measure or "pgv"):
+            try:
+                save_figure(draw(), stage / f"{stem}.{kind}")
+            except (InputError, SolverError) as error:
+                undrawn.append(f"{stem}: {error}")
+        if not any(stage.iterdir()):
+            message = f"{folder} gives no figure. {' '.join(undrawn)}"
+            raise InputError(message)
+    for reason in undrawn:
+        note(f"No figure {reason}")
     note(f"Written to {target}")
 
 
-def _figures(study: str, spec: dict[str, Any], table: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, Any]]":
-    """Figures of a study with the stems of their files."""
+def _figures(
+    study: str, spec: dict[str, Any], table: "pd.DataFrame", measure: str
+) -> "Iterator[tuple[str, Callable[[], Any]]]":
+    """What draws each figure of a study, with the stem of its file."""
     from rockflex import plot
 
     if study == "cloud":
-        yield "fragility", plot.plot_fragility(table, measure)
-        yield "rotation", plot.plot_clouds(table, "max_rotation", measure)
-        yield "top_displacement", plot.plot_clouds(table, "max_top_displacement", measure)
+        table = _fitted(table, measure)
+        yield "fragility", lambda: plot.plot_fragility(table, measure)
+        yield "rotation", lambda: plot.plot_clouds(table, "max_rotation", measure)
+        yield "top_displacement", lambda: plot.plot_clouds(table, "max_top_displacement", measure)
     elif study == "incremental":
-        yield "capacities", plot.plot_ida(table, measure)
+        yield "capacities", lambda: plot.plot_ida(table, measure)
     elif study == "stripes":
-        yield "stripes", plot.plot_stripes(table, measure=spec["measure"])
+        yield "stripes", lambda: plot.plot_stripes(table, measure=spec["measure"])
     elif study == "population":
-        yield "population", plot.plot_population(table)
-        yield "agreement", plot.plot_agreement(table)
-        yield "modal_combination", plot.plot_modal_combination(table)
+        yield "population", lambda: plot.plot_population(table)
+        yield "agreement", lambda: plot.plot_agreement(table)
+        yield "modal_combination", lambda: plot.plot_modal_combination(table)
     elif study == "design":
         from rockflex.study.plans import design_tables
 
         for limit, designs in design_tables(table, spec):
             word = limit if isinstance(limit, str) else f"{limit:g} rad"
-            yield f"design_{'_'.join(word.split())}", plot.plot_design(designs, spec.get("target"))
+            target = spec.get("target")
+            yield f"design_{'_'.join(word.split())}", lambda each=designs, target=target: plot.plot_design(each, target)
     else:
-        message = f"There are no figures of a study of the kind {study!r}."
+        message = f"There are no figures of a study of the kind {shown(study)}."
         raise InputError(message)
+
+
+def _fitted(runs: "pd.DataFrame", measure: str) -> "pd.DataFrame":
+    """Runs of a cloud without those of the structures and models that cannot be fitted, which are told."""
+    from rockflex.cli._console import note
+    from rockflex.fragility import fit_each_cloud
+
+    fits, reasons = fit_each_cloud(runs, measure)
+    told = [f"{structure} with {model}: {reason}" for (structure, model), reason in reasons.items()]
+    if not fits:
+        message = f"There is nothing to draw, since no fit could be made. {' '.join(told)}"
+        raise InputError(message)
+    for reason in told:
+        note(f"No fit, and not drawn: {reason}")
+    left_out = [pair in reasons for pair in zip(runs["structure"].astype(str), runs["model"].astype(str), strict=True)]
+    return runs[[not out for out in left_out]]

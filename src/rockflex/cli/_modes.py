@@ -81,11 +81,13 @@ def modes(
     if n_modes is not None:
         properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))
     rows = _rows(loaded, properties)
+    lifted = _uplifted_rows(properties)
     rocking = describe_properties(properties)
     document: dict[str, Any] = {
         "versions": versions(),
         "structure": loaded.describe(),
         "modes": rows,
+        "uplifted": lifted,
         "rocking": {name: value for name, value in rocking.items() if isinstance(value, float)},
         "units": UNITS,
     }
@@ -97,7 +99,7 @@ def modes(
     if json:
         typer.echo(to_json(document))
     else:
-        _print(loaded, rows, properties)
+        _print(loaded, rows, lifted, properties)
         if need is not None:
             _print_adequacy(need)
 
@@ -116,6 +118,25 @@ def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[di
             "effective_height": properties.effective_height[k],
             "top_ordinate": properties.top_ordinate[k],
             "zeta": properties.zeta[k],
+        }
+        for k in range(properties.n_modes)
+    ]
+
+
+def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
+    """One row a vibration about one pivot, in SI units, with the same modes of the structure."""
+    import math
+
+    from rockflex.modal import uplifted_modes
+
+    found = uplifted_modes(properties)
+    return [
+        {
+            "mode": k + 1,
+            "period": 2.0 * math.pi / found.omega[k],
+            "omega": found.omega[k],
+            "ratio": found.ratio[k],
+            "zeta": found.damping_ratio[k],
         }
         for k in range(properties.n_modes)
     ]
@@ -174,7 +195,9 @@ def _print_adequacy(need: "Adequacy") -> None:
     console.print(need.reason, markup=False)
 
 
-def _print(loaded: "LoadedStructure", rows: list[dict[str, Any]], p: "RockingProperties") -> None:
+def _print(
+    loaded: "LoadedStructure", rows: list[dict[str, Any]], lifted: list[dict[str, Any]], p: "RockingProperties"
+) -> None:
     from rockflex.cli._console import grid, moment_unit, number, output, show
 
     console = output()
@@ -183,7 +206,10 @@ def _print(loaded: "LoadedStructure", rows: list[dict[str, Any]], p: "RockingPro
     headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
     keys = ("period", "omega", "mass_share", "effective_height", "top_ordinate", "zeta")
     if rows:
-        show(console, grid(headings, [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]))
+        show(console, grid(headings, _numbers(rows, keys)))
+        console.print("\nWhile uplifted, with these modes; fewer have other ζ*_n (--modes)", markup=False)
+        headings, keys = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n"), ("period", "omega", "ratio", "zeta")
+        show(console, grid(headings, _numbers(lifted, keys)))
         console.print()
     total = sum(float(row["mass_share"]) for row in rows)
     unit, size = moment_unit(p.resisting_moment)
@@ -206,6 +232,12 @@ def _print(loaded: "LoadedStructure", rows: list[dict[str, Any]], p: "RockingPro
         (f"Nominal limit, 0.7 atan({slope})", number(p.nominal_overturning_rotation), "rad"),
     )
     show(console, grid(("Rocking", "", ""), values))
+
+
+def _numbers(rows: list[dict[str, Any]], keys: tuple[str, ...]) -> list[list[str]]:
+    from rockflex.cli._console import number
+
+    return [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]
 
 
 def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", n_modes: int, *, force: bool) -> None:

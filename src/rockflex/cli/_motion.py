@@ -63,6 +63,7 @@ def motion(
     force: options.Force = False,
     units: options.Units = None,
     dt: options.Dt = None,
+    on_error: options.OnError = "raise",
 ) -> None:
     """Print what is known of ground motions and measured from them; without a name, list the embedded suites."""
     from rockflex.cli._motions import embedded_suites, find_motions
@@ -70,14 +71,15 @@ def motion(
 
     check_folder(out, force=force)
     # A folder or a unit asks for motions, so an empty list of names is an error then.
-    if not names and out is None and units is None and dt is None and period is None:
+    about_files = units is not None or dt is not None or on_error != "raise"
+    if not names and out is None and period is None and not about_files:
         suites = embedded_suites()
         if json:
             typer.echo(to_json({"versions": versions(), "suites": suites}))
         else:
             _print_suites(suites)
         return
-    found = find_motions(names or [], units, dt)
+    found = find_motions(names or [], units, dt, on_error)
     periods = list(dict.fromkeys(period or [1.0]))
     rows = [{**item.describe(), **_measures(item, periods, damping)} for item in found]
     document: dict[str, Any] = {

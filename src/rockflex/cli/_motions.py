@@ -1,14 +1,15 @@
 """Ground motions by the name of a suite, of a record in it, or by path."""
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, load_suite, quiet_motion, read_motion, read_suite, suite_names
+from rockflex._shown import shown
+from rockflex.motion import GroundMotion, OnError, folder_files, load_suite, quiet_motion, read_files, suite_names
 
 __all__ = ["FoundMotion", "embedded_suites", "find_motions", "quiet_ground"]
 
@@ -51,21 +52,23 @@ def embedded_suites() -> list[dict[str, Any]]:
     ]
 
 
-def find_motions(names: Sequence[str], units: str | None = None, dt: float | None = None) -> list[FoundMotion]:
+def find_motions(
+    names: Sequence[str], units: str | None = None, dt: float | None = None, on_error: OnError = "raise"
+) -> list[FoundMotion]:
     """Find motions, in the order of their names; one that is named twice is taken once.
 
     Parameters
     ----------
     names
         Each is an embedded suite, ``suite/record``, a file, or a directory of files.
-    units, dt
-        As in `read_motion`, for the files.
+    units, dt, on_error
+        As in `read_suite`, for the files.
 
     Raises
     ------
     InputError
-        If there is no name, one is unknown, a file cannot be read, two different motions have the same name, or units
-        or dt are given without a file.
+        If there is no name, one is unknown, a file cannot be read and `on_error` is "raise", no file holds a horizontal
+        component, two different motions have the same name, or units, dt or `on_error` are given without a file.
     """
     if not names:
         message = (
@@ -73,26 +76,26 @@ def find_motions(names: Sequence[str], units: str | None = None, dt: float | Non
             "fema-p695-far-field/FF-12-a, or a file."
         )
         raise InputError(message)
+    files = {name: _files(name) for name in names if name.partition("/")[0] not in suite_names()}
+    read = _read([file for each in files.values() for file in each], units, dt, on_error)
     found: dict[str, FoundMotion] = {}
-    used_files = False
     for name in names:
         suite, _, record = name.partition("/")
-        if suite in suite_names():
-            motions = load_suite(suite) if name == suite else (load_suite(suite)[record],)
-            members: Iterator[FoundMotion] = (FoundMotion(motion, suite) for motion in motions)
+        if name in files:
+            motions = [read[file] for file in files[name] if file in read]
         else:
-            used_files = True
-            members = _from_path(name, units, dt)
-        for member in members:
-            first = found.setdefault(member.motion.name, member)
-            if first.sha256 != member.sha256 or first.motion.dt != member.motion.dt:
+            motions = list(load_suite(suite)) if name == suite else [load_suite(suite)[record]]
+        for motion in motions:
+            member = FoundMotion(motion, name if name in files else suite)
+            first = found.setdefault(motion.name, member)
+            if first.sha256 != member.sha256 or first.motion.dt != motion.dt:
                 message = (
-                    f"{member.origin} and {first.origin} hold different motions, both named {member.motion.name!r}. "
+                    f"{member.origin} and {first.origin} hold different motions, both named {shown(motion.name)}. "
                     "Rename one of the files."
                 )
                 raise InputError(message)
-    if not used_files and (units is not None or dt is not None):
-        message = "--units and --dt say what a file does not, but no file was given. Leave them out."
+    if not files and (units is not None or dt is not None or on_error != "raise"):
+        message = "--units, --dt and --on-error are for record files, but none was given. Leave them out."
         raise InputError(message)
     return list(found.values())
 
@@ -116,7 +119,8 @@ def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], fl
     return [FoundMotion(quiet_motion(free), "at rest")], 0.0
 
 
-def _from_path(name: str, units: str | None, dt: float | None) -> Iterator[FoundMotion]:
+def _files(name: str) -> list[Path]:
+    """The file of a name, or those of a directory."""
     path = Path(name)
     if path.suffix.lower() == ".toml":
         message = f"{name} is a structure file, and one structure is simulated at a time. Give one such file, first."
@@ -125,16 +129,18 @@ def _from_path(name: str, units: str | None, dt: float | None) -> Iterator[Found
         near = get_close_matches(name.partition("/")[0], suite_names(), n=1)
         hint = f" Did you mean {near[0]}?" if near else ""
         message = (
-            f"{name!r} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
+            f"{shown(name)} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
             f"fema-p695-far-field/FF-12-a, nor a file or directory (working directory: {Path.cwd()}).{hint}"
         )
         raise InputError(message)
+    return folder_files(path) if path.is_dir() else [path]
+
+
+def _read(files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError) -> dict[Path, GroundMotion]:
     try:
-        motions = read_suite(path, units=units, dt=dt) if path.is_dir() else [read_motion(path, units=units, dt=dt)]
+        return read_files(files, units, dt, on_error)
     except InputError as error:
-        if "units=" not in str(error) and "dt=" not in str(error):
-            raise
-        message = f"{error} On the command line these are --units and --dt."
-        raise InputError(message) from error
-    for motion in motions:
-        yield FoundMotion(motion, name)
+        text = str(error).replace('on_error="skip"', "--on-error skip")
+        if "units=" in text or "dt=" in text:
+            text += " On the command line these are --units and --dt."
+        raise InputError(text) from error

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -20,6 +20,7 @@ __all__ = [
     "Impact",
     "InitialRotation",
     "Json",
+    "OnError",
     "Out",
     "Period",
     "PostYieldRatio",
@@ -36,7 +37,7 @@ __all__ = [
 
 FRAME = "Structure by flags (all eight), in place of a file"
 ASSUMPTIONS = "Impact, hysteresis, start and sliding"
-RECORD_FILES = "Records from files that do not say it themselves"
+RECORD_FILES = "Record files"
 
 StructureFile = Annotated[
     Path | None,
@@ -149,11 +150,25 @@ Friction = Annotated[
 ]
 Units = Annotated[
     str | None,
-    typer.Option("--units", metavar="g|m/s2|cm/s2", help="Unit of the acceleration.", rich_help_panel=RECORD_FILES),
+    typer.Option(
+        "--units",
+        metavar="g|m/s2|cm/s2",
+        help="Unit of the acceleration, if a file has none.",
+        rich_help_panel=RECORD_FILES,
+    ),
 ]
 Dt = Annotated[
     float | None,
-    typer.Option("--dt", metavar="S", help="Sampling step in s.", rich_help_panel=RECORD_FILES),
+    typer.Option("--dt", metavar="S", help="Sampling step in s, if a file has none.", rich_help_panel=RECORD_FILES),
+]
+OnError = Annotated[
+    Literal["raise", "skip"],
+    typer.Option(
+        "--on-error",
+        metavar="raise|skip",
+        help="With files that cannot be read: stop and name them all, or go on with the others.",
+        rich_help_panel=RECORD_FILES,
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, in SI units, and nothing else.")]
 Out = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables and figures to a folder.")]

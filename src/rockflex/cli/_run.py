@@ -89,6 +89,7 @@ def run(
     damping_ratio: options.DampingRatio = None,
     units: options.Units = None,
     dt: options.Dt = None,
+    on_error: options.OnError = "raise",
 ) -> None:
     """Simulate a structure under ground motions and print the peaks of each run.
 
@@ -131,7 +132,7 @@ def run(
     free = parse_free_vibration(free_vibration, models)
     names += motion or []
     if names or initial_rotation is None:
-        found = find_motions(names, units, dt)
+        found = find_motions(names, units, dt, on_error)
     else:
         found, free = quiet_ground(free)
     scales = parse_scales(scale)

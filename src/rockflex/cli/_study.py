@@ -53,7 +53,7 @@ Workers = Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. 
 AnyVersion = Annotated[
     bool, typer.Option("--any-version", help="Go on with a study begun with other versions of the libraries.")
 ]
-Strict = Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")]
+Strict = Annotated[bool, typer.Option("--strict", help="Exit with 1 if a run could not be solved or a fit not made.")]
 
 
 def _command(name: str, kind: str, summary: str) -> Callable[..., None]:
@@ -123,12 +123,12 @@ def _study(
     table, seconds = _run(study, file, out, dask, workers, any_version=any_version)
     from rockflex.cli._study_summary import summarise
 
-    failed = summarise(study, table, seconds, json=json)
     if out is not None:
         from rockflex.cli._console import note
 
         note(f"Kept in {out}; rockflex figures {out} draws it")
-    if failed and strict:
+    failed, unfitted = summarise(study, table, seconds, json=json)
+    if strict and (failed or unfitted):
         raise typer.Exit(1)
 
 

@@ -21,30 +21,39 @@ __all__ = ["summarise"]
 
 Rows = list[dict[str, Any]]
 PEAK_VELOCITY, PEAK_ACCELERATION = "pgv", "pga"
+ROCKING = 1e-4  # rad; up to it a run counts as one without rocking
 
 
-def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bool) -> int:
-    """Print what a study found; return how many runs could not be solved."""
-    findings: dict[str, Callable[[Any, pd.DataFrame], Iterator[tuple[str, Rows]]]] = {
+def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bool) -> tuple[int, int]:
+    """Print what a study found; return how many runs could not be solved, and how many fits could not be made."""
+    findings: dict[str, Callable[[Any, pd.DataFrame, list[str]], Iterator[tuple[str, Rows]]]] = {
         "cloud": _cloud,
         "incremental": _incremental,
         "stripes": _stripes,
         "population": _population,
         "design": _design,
     }
-    tables = dict(findings[study.study](study, table))
+    tables: dict[str, Rows] = {}
+    unfitted: list[str] = []
+    try:
+        for title, rows in findings[study.study](study, table, unfitted):
+            tables[title] = rows
+    except (InputError, SolverError) as error:  # the runs are there, whatever can be made of them
+        unfitted.append(str(error))
     failed = int(table["error"].notna().sum())
     document = {"versions": versions(), "study": study.document(), "rows": len(table), "failed": failed}
-    document |= {"elapsed": seconds, **tables}
+    document |= {"elapsed": seconds, "unfitted": unfitted, **tables}
     if json:
         typer.echo(to_json(document))
     else:
         _print(tables)
         typer.echo(f"\n{len(table)} rows in {duration(seconds)}")
+    for reason in dict.fromkeys(unfitted):
+        note(f"No fit: {reason}")
     if failed:
         first = table.loc[table["error"].notna(), "error"].iloc[0]
         note(f"{failed} rows have an error, the first: {first}")
-    return failed
+    return failed, len(unfitted)
 
 
 def _print(tables: dict[str, Rows]) -> None:
@@ -65,31 +74,36 @@ def _cell(value: Any) -> str:
     return str(int(value)) if isinstance(value, int | np.integer) else number(float(value))
 
 
-def _cloud(_: "Study", runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
-    from rockflex.fragility import LogisticFit, fit_clouds
+def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
+    from rockflex.fragility import LogisticFit, fit_each_cloud
 
+    found, reasons = fit_each_cloud(runs, PEAK_VELOCITY, threshold=ROCKING)
+    unfitted += [f"{structure} with {model}: {reason}" for (structure, model), reason in reasons.items()]
+    fits_of = {(fits.structure, fits.model): fits for fits in found}
     outcomes: Rows = []
     lines: Rows = []
-    solved = runs.groupby(["structure", "model"], observed=True)["status"].transform("count") > 0
-    for (structure, model), lost in runs[~solved].groupby(["structure", "model"], observed=True, sort=False):
-        note(f"No run of {structure} with {model} was solved ({len(lost)} rows): it has no fit")
-    for fits in fit_clouds(runs[solved], PEAK_VELOCITY) if solved.any() else ():
-        name = {"structure": fits.structure, "model": fits.model}
-        o, curve = fits.outcomes, fits.outcomes.initiation
+    for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
+        name = {"structure": str(structure), "model": str(model)}
+        solved = group["status"].notna()
+        fallen = group["status"] == "overturned"
+        rocked = solved & ~fallen & (group["max_rotation"] > ROCKING)
+        fits = fits_of.get((str(structure), str(model)))
+        curve = fits and fits.outcomes.initiation
         fitted = isinstance(curve, LogisticFit)
         outcomes.append(
             {
                 **name,
-                "no rocking": o.n_no_rocking,
-                "rocking": o.n_rocking,
-                "overturned": o.n_overturned,
-                "failed": fits.n_failed,
+                "no rocking": int((solved & ~fallen & ~rocked).sum()),
+                "rocking": int(rocked.sum()),
+                "overturned": int(fallen.sum()),
+                "failed": int((~solved).sum()),
                 "PGV of P(rocking)=½ [m/s]": curve.median if fitted else None,
                 "spread [-]": curve.dispersion if fitted else None,
-                "fit": curve.method if fitted else "all alike",
+                "fit": curve.method if fitted else "all alike" if curve else "none",
             }
         )
-        lines.append({**name, **_line("θ_max", o.rotation), **_line("u_top", fits.top_displacement)})
+        rotation, top = (fits.outcomes.rotation, fits.top_displacement) if fits else (None, None)
+        lines.append({**name, **_line("θ_max", rotation), **_line("u_top", top)})
     yield "Outcomes, and P(θ_max > 1e-4 rad) by logistic regression on log PGV", _words_first(outcomes)
     yield "log y = c1 + c2 log PGV of runs that rocked and stand (rad, m, m/s)", lines
 
@@ -103,7 +117,7 @@ def _words_first(rows: Rows) -> Rows:
     return [dict(sorted(row.items(), key=lambda item: not isinstance(item[1], str))) for row in rows]
 
 
-def _incremental(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+def _incremental(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
     from rockflex.fragility import fit_capacities
     from rockflex.study.plans import incremental_capacities
 
@@ -111,7 +125,8 @@ def _incremental(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]
     for measure in (PEAK_ACCELERATION, PEAK_VELOCITY):
         capacities = incremental_capacities(runs, measure).dropna(subset=["capacity"])
         for (structure, model), each in capacities.groupby(["structure", "model"], observed=True, sort=False):
-            fit = _fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]))
+            what = f"{structure} with {model}, {measure.upper()}"
+            fit = _fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]), what, unfitted)
             rows.append(
                 {
                     "structure": str(structure),
@@ -128,7 +143,7 @@ def _incremental(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]
     yield f"Capacities to {limit}, lognormal", rows
 
 
-def _stripes(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+def _stripes(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
     from rockflex.fragility import fit_stripes
     from rockflex.study.plans import stripe_counts
 
@@ -137,7 +152,10 @@ def _stripes(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
     for limit, title in (("uplift", "uplift"), ("nominal", "0.7 atan(B/h*_1)"), ("overturning", "overturning")):
         counted = stripe_counts(runs, limit)  # pyright: ignore[reportArgumentType]
         for (structure, model), each in counted.groupby(["structure", "model"], observed=True, sort=False):
-            fit = _fitted(lambda each=each: fit_stripes(each["level"], each["n_exceeding"], each["n_total"]))
+            what = f"{structure} with {model}, {title}"
+            fit = _fitted(
+                lambda each=each: fit_stripes(each["level"], each["n_exceeding"], each["n_total"]), what, unfitted
+            )
             name = {"limit": title, "structure": str(structure), "model": str(model)}
             fits.append({**name, "median": fit and fit.median, "β": fit and fit.beta})
             levels = zip(each["level"], each["n_exceeding"], each["n_total"], strict=True)
@@ -146,16 +164,16 @@ def _stripes(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
     yield f"Fragility by maximum likelihood, lognormal in {study.measure}", fits
 
 
-def _fitted(fit: "Callable[[], LognormalFragility]") -> "LognormalFragility | None":
-    """The fit, or None with a note where the data give none."""
+def _fitted(fit: "Callable[[], LognormalFragility]", what: str, unfitted: list[str]) -> "LognormalFragility | None":
+    """The fit, or None where the data give none."""
     try:
         return fit()
     except (InputError, SolverError) as error:
-        note(f"No fit: {error}")
+        unfitted.append(f"{what}: {error}")
         return None
 
 
-def _population(_: "Study", pairs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+def _population(_: "Study", pairs: "pd.DataFrame", _unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
     from rockflex.study.plans import population_statistics
 
     found = population_statistics(pairs)
@@ -167,13 +185,13 @@ def _population(_: "Study", pairs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]
         ("Modal combination (Section 3.4), 90 % intervals", found.combination, ["quantity", "estimate"]),
     ):
         yield title, [_named(row) for row in frame[[*words, *columns]].to_dict("records")]
-    shown = ["pair", "n_stories", "behaviour", "aspect_ratio", "period", "record", "pgv"]
+    shown = ["pair", "n_stories", "behaviour", "aspect_ratio", "period", "motion", "pgv"]
     shown += ["max_rotation_mdof", "max_rotation_2dof", "share"]
     rows: Sequence[dict[Any, Any]] = found.outliers[shown].to_dict("records")
     yield "Largest disagreements in rotation", _words_first([_named(row) for row in rows])
 
 
-def _design(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
+def _design(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
     from rockflex.study.plans import design_tables, smallest_width
 
     asked = "annual rate" if study.hazard else f"P at {study.measure} = {study.level:g}"
@@ -182,6 +200,8 @@ def _design(study: Any, runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
     widths: Rows = []
     for limit, table in design_tables(runs, study.document()):
         word = limit if isinstance(limit, str) else f"{limit:g} rad"
+        for reason, lost in table[table[value].isna()].groupby("note"):
+            unfitted.append(f"{word}: no {value} of {len(lost)} of {len(table)} designs. {reason}")
         for each in table.to_dict("records"):
             words = {"tendon": each["tendon"], "model": each["model"]}
             row = designs.setdefault(

@@ -4,7 +4,7 @@ from rockflex.fragility._annual_rate import AnnualRate, annual_rate, risk_target
 from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band
 from rockflex.fragility._capacities import fit_capacities
 from rockflex.fragility._cloud import CloudFit, fit_cloud
-from rockflex.fragility._clouds import CloudFits, fit_clouds
+from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._lognormal import LognormalFragility
@@ -30,6 +30,7 @@ __all__ = [
     "fit_capacities",
     "fit_cloud",
     "fit_clouds",
+    "fit_each_cloud",
     "fit_logistic",
     "fit_outcomes",
     "fit_stripes",

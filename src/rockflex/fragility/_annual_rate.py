@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import in_range, positive
+from rockflex._checks import float_array, in_range, instance, positive
 from rockflex._errors import InputError
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._lognormal import LognormalFragility
@@ -75,6 +75,7 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate
     InputError
         If the probabilities are not finite numbers from 0 to 1.
     """
+    instance("hazard", hazard, HazardCurve)
     probability = _probability(fragility)
     return AnnualRate(_covered(hazard, probability), _below(hazard, probability), float(hazard.rate[-1]))
 
@@ -107,6 +108,7 @@ def risk_targeted_median(
     """
     from scipy.optimize import brentq
 
+    instance("hazard", hazard, HazardCurve)
     beta = positive("dispersion", dispersion, "natural logarithms")
     target = positive("target_rate", target_rate, "1/year")
     share = in_range("allowed_beyond", allowed_beyond, 0.0, math.inf)
@@ -144,7 +146,11 @@ def _probability(fragility: Fragility | Curve) -> Curve:
         raise InputError(message)
 
     def checked(im: Float) -> Float:
-        p = np.asarray(function(im), dtype=np.float64)
+        given: Any = function(im)
+        p = float_array(given)
+        if p is None:
+            message = "fragility must give an array of probabilities, but it gave something else."
+            raise InputError(message)
         if not ((p >= 0.0) & (p <= 1.0)).all():
             message = (
                 f"fragility must give probabilities from 0 to 1, but gave {p[~((p >= 0.0) & (p <= 1.0))].flat[0]:g}. "

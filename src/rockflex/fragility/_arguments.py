@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import finite_vector, in_range
+from rockflex._checks import finite_vector, float_array, in_range
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = ["confidence", "flags", "fractions", "log_at", "log_column", "log_measures", "same_length"]
 
@@ -39,11 +40,10 @@ def log_measures(im: ArrayLike, name: str = "im") -> Float:
 
 def flags(name: str, values: ArrayLike) -> Bool:
     """Boolean array of a column of true and false, or of 1 and 0."""
-    try:
-        numbers = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    numbers = float_array(values)
+    if numbers is None:
         message = f"{name} must hold True or False for every run. Leave out the runs in which it is missing."
-        raise InputError(message) from error
+        raise InputError(message)
     if numbers.ndim != 1:
         message = f"{name} must be one-dimensional, but an array of shape {numbers.shape} was given."
         raise InputError(message)
@@ -68,11 +68,10 @@ def same_length(**columns: NDArray[np.generic]) -> None:
 
 def log_at(im: ArrayLike, name: str = "im") -> Float:
     """Natural logarithm of the positive numbers, of any shape, at which a fit is evaluated."""
-    try:
-        array = np.asarray(im, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    array = float_array(im)
+    if array is None:
         message = f"{name} must be a number or an array of numbers, but {type(im).__name__} was given."
-        raise InputError(message) from error
+        raise InputError(message)
     if not (np.isfinite(array) & (array > 0.0)).all():
         message = (
             f"{name} must be positive and finite, but {array[~(np.isfinite(array) & (array > 0.0))].flat[0]:g} is "
@@ -84,9 +83,9 @@ def log_at(im: ArrayLike, name: str = "im") -> Float:
 
 def fractions(name: str, values: ArrayLike) -> Float:
     """Numbers strictly between 0 and 1, of any shape."""
-    array = np.asarray(values, dtype=np.float64)
-    if not ((array > 0.0) & (array < 1.0)).all():
-        message = f"{name} must lie between 0 and 1, but {values!r} was given. The 84 % quantile is {name}=0.84."
+    array = float_array(values)
+    if array is None or not ((array > 0.0) & (array < 1.0)).all():
+        message = f"{name} must lie between 0 and 1, but {shown(values)} was given. The 84 % quantile is {name}=0.84."
         raise InputError(message)
     return array
 

@@ -7,18 +7,21 @@ from typing import Any, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import finite_vector, whole_number
+from rockflex._checks import finite_vector, float_array, whole_number
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, same_length
 
 __all__ = ["BootstrapBand", "bootstrap_band"]
 
 Float = NDArray[np.float64]
+MOST = 1_000_000  # resamples
 NEEDED = 20  # resamples that can be fitted, for quantiles of any meaning
 
 
 @dataclass(frozen=True, eq=False)
-class BootstrapBand:
+class BootstrapBand(Value):
     """A percentile band of a curve over resamples. The arrays are read-only.
 
     Attributes
@@ -49,10 +52,6 @@ class BootstrapBand:
     n_separated: int
     n_groups: int
     note: str
-
-    def __post_init__(self) -> None:
-        for array in (self.at, self.estimate, self.low, self.high):
-            array.setflags(write=False)
 
 
 def bootstrap_band(
@@ -101,15 +100,22 @@ def bootstrap_band(
         20 resamples can.
     """
     measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
-    values = np.asarray(outcome_or_response)
-    labels = np.arange(measures.size) if groups is None else np.asarray(groups)
+    values = _column("outcome_or_response", outcome_or_response)
+    labels = np.arange(measures.size) if groups is None else _column("groups", groups)
     same_length(im=measures, outcome_or_response=values, groups=labels)
-    wanted, times = confidence(level), whole_number("n", n, NEEDED)
-    evaluate = curve or _curve
-    estimate = np.array(evaluate(fit_function(measures, values), grid), dtype=np.float64)
+    wanted, times = confidence(level), whole_number("n", n, NEEDED, MOST)
+    evaluate = _curve if curve is None else curve
+    for name, function in (("fit_function", fit_function), ("curve", evaluate)):
+        if not callable(function):
+            message = f"{name} must be a function, but {type(function).__name__} was given."
+            raise InputError(message)
+    estimate = float_array(evaluate(fit_function(measures, values), grid))
+    if estimate is None:
+        message = "curve must return numbers, one for each of `at`, but it returned something else."
+        raise InputError(message)
 
     blocks = _blocks(labels)
-    generator = np.random.default_rng(seed)
+    generator = np.random.default_rng(whole_number("seed", seed, 0))
     curves: list[Float] = []
     failures: list[str] = []
     separated = 0
@@ -141,11 +147,26 @@ def _curve(fit: Any, grid: Float) -> Any:
     return fit.probability(grid) if hasattr(fit, "probability") else fit.median(grid)
 
 
+def _column(name: str, values: ArrayLike) -> NDArray[Any]:
+    try:
+        column = np.asarray(values)
+    except ValueError:
+        column = np.zeros(())
+    if column.ndim == 0 or (name == "groups" and column.ndim != 1):
+        message = f"{name} must hold a value for every run, but {shown(values)} was given."
+        raise InputError(message)
+    return column
+
+
 def _blocks(labels: NDArray[Any]) -> list[NDArray[np.int64]]:
     """Rows of every group, in the order in which the groups first appear."""
     import pandas as pd
 
-    codes, names = pd.factorize(labels, use_na_sentinel=True)
+    try:
+        codes, names = pd.factorize(labels, use_na_sentinel=True)
+    except TypeError as error:
+        message = f"groups must hold names or numbers, but {shown(labels)} was given."
+        raise InputError(message) from error
     if (codes < 0).any():
         message = f"groups must name the record of every run, but {int((codes < 0).sum())} names are missing."
         raise InputError(message)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
 
@@ -15,7 +16,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class CloudFit:
+class CloudFit(Value):
     """The line log(y) = c1 + c2 log(IM), with natural logarithms, and the scatter about it.
 
     Given IM, the response is lognormal about the line with the same dispersion everywhere (Silva & Stojadinović 2024,
@@ -42,12 +43,10 @@ class CloudFit:
     n: int
     covariance: Float
 
-    def __post_init__(self) -> None:
-        self.covariance.setflags(write=False)
-
     def median(self, im: ArrayLike) -> Float:
         """Median response exp(c1) IM^c2, of the shape of `im`."""
-        return np.exp(self.c1 + self.c2 * log_at(im))
+        with np.errstate(over="ignore"):
+            return np.exp(self.c1 + self.c2 * log_at(im))
 
     def quantile(self, im: ArrayLike, p: ArrayLike) -> Float:
         """Response that a fraction `p` of the runs at `im` stay below; `im` and `p` broadcast."""
@@ -62,7 +61,8 @@ class CloudFit:
         x = log_at(im)
         half = stdtrit(self.n - 2, 0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
         centre = self.c1 + self.c2 * x
-        return np.exp(centre - half), np.exp(centre + half)
+        with np.errstate(over="ignore"):
+            return np.exp(centre - half), np.exp(centre + half)
 
     def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Float:
         """Probability that the response exceeds `limit` at `im`; the two broadcast."""

@@ -1,20 +1,23 @@
 """The fits of a whole cloud study: one set for each structure and model."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockflex._errors import InputError
+from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["CloudFits", "fit_clouds"]
+__all__ = ["CloudFits", "fit_clouds", "fit_each_cloud"]
 
 
 @dataclass(frozen=True, eq=False)
-class CloudFits:
+class CloudFits(Value):
     """What the cloud of one structure and one model says.
 
     Attributes
@@ -60,27 +63,65 @@ def fit_clouds(
     InputError
         If `runs` lacks a column, a structure has no solved run with a model, or its measures are not positive.
     """
+    return [
+        _fits(structure, model, group, measure, threshold, nominal=nominal)
+        for structure, model, group in _groups(runs, measure)
+    ]
+
+
+def fit_each_cloud(
+    runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = 1e-4, nominal: bool = False
+) -> tuple[list[CloudFits], dict[tuple[str, str], str]]:
+    """Fit the clouds of a study as `fit_clouds` does, and beside them say why others cannot be fitted.
+
+    Returns
+    -------
+    fits : list of CloudFits
+        Of each structure and model whose runs can be fitted.
+    reasons : dict
+        By structure and model, why there is no fit.
+
+    Raises
+    ------
+    InputError
+        If `runs` lacks a column.
+    """
+    fits: list[CloudFits] = []
+    reasons: dict[tuple[str, str], str] = {}
+    for structure, model, group in _groups(runs, measure):
+        try:
+            fits.append(_fits(structure, model, group, measure, threshold, nominal=nominal))
+        except (InputError, SolverError) as error:
+            reasons[structure, model] = str(error)
+    return fits, reasons
+
+
+def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":
+    """Runs of each structure with each model."""
     needed = ["structure", "model", "status", "max_rotation", "max_top_displacement", "nominal_overturning", measure]
     lacking = [name for name in needed if name not in runs]
     if lacking:
         message = f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}."
         raise InputError(message)
-    found: list[CloudFits] = []
     for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
-        solved = group[group["status"].notna()]
-        if not len(solved):
-            message = f"No run of {structure!r} with {model} was solved. See the column error of the table."
-            raise InputError(message)
-        fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
-        im, rotation, top = (
-            solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation", "max_top_displacement")
-        )
-        rocked = ~fallen & (rotation > threshold)
-        outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)
-        try:
-            displacement = fit_cloud(im[rocked], top[rocked])
-        except InputError:
-            displacement = None
-        failed = len(group) - len(solved)
-        found.append(CloudFits(str(structure), str(model), measure, outcomes, displacement, failed))
-    return found
+        yield str(structure), str(model), group
+
+
+def _fits(
+    structure: str, model: str, group: "pd.DataFrame", measure: str, threshold: float, *, nominal: bool
+) -> CloudFits:
+    solved = group[group["status"].notna()]
+    if not len(solved):
+        message = f"No run of {shown(structure)} with {model} was solved. See the column error of the table."
+        raise InputError(message)
+    fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
+    im, rotation, top = (
+        solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation", "max_top_displacement")
+    )
+    rocked = ~fallen & (rotation > threshold)
+    outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)
+    try:
+        displacement = fit_cloud(im[rocked], top[rocked])
+    except InputError:
+        displacement = None
+    return CloudFits(structure, model, measure, outcomes, displacement, len(group) - len(solved))

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
 
 __all__ = ["HazardCurve"]
@@ -15,7 +16,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class HazardCurve:
+class HazardCurve(Value):
     """Mean annual rate at which an intensity measure is exceeded; a power law between two points.
 
     Parameters

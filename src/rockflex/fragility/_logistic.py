@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError, SolverError
+from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, flags, log_at, log_measures, same_length
 from rockflex.fragility._predictor import Standardised, standard_error
 from rockflex.fragility._unanimous import UnanimousOutcome
@@ -21,7 +22,7 @@ Method = Literal["maximum likelihood", "Firth"]
 
 
 @dataclass(frozen=True, eq=False)
-class LogisticFit:
+class LogisticFit(Value):
     """The curve P = 1/(1 + exp(-(b0 + b1 log IM))), with the natural logarithm.
 
     Attributes
@@ -49,9 +50,6 @@ class LogisticFit:
     method: Method
     separated: bool
     note: str
-
-    def __post_init__(self) -> None:
-        self.covariance.setflags(write=False)
 
     @property
     def median(self) -> float:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_matrix, positive
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, fractions, log_at
 
 __all__ = ["LognormalFragility"]
@@ -16,7 +17,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class LognormalFragility:
+class LognormalFragility(Value):
     """The curve P = Φ(ln(IM/median)/beta).
 
     Attributes
@@ -84,4 +85,5 @@ class LognormalFragility:
         return ndtr(z - half), ndtr(z + half)
 
     def _score(self, im: ArrayLike) -> Float:
-        return (log_at(im) - math.log(self.median)) / self.beta
+        with np.errstate(over="ignore"):  # a dispersion of all but zero makes a step
+            return (log_at(im) - math.log(self.median)) / self.beta

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.fragility._arguments import log_column, log_measures, same_length
 from rockflex.fragility._cloud import fit_line
 
@@ -63,7 +64,7 @@ def compare_measures(
 
     rows: dict[str, dict[str, float]] = {}
     for name in measures.columns:
-        x = log_measures(measures[name].to_numpy(), f"measures[{name!r}]")
+        x = log_measures(measures[name].to_numpy(), f"measures[{shown(name)}]")
         same_length(measures=x, response=y)
         fit, residuals = fit_line(x, y)
         row = {
@@ -104,7 +105,7 @@ def _numbers(name: str, column: "pd.Series[Any]") -> Float:
     try:
         return column.to_numpy(dtype=np.float64, na_value=np.nan)
     except (TypeError, ValueError) as error:
-        message = f"covariates[{name!r}] must hold numbers, but {column.dtype} was given. Leave the column out."
+        message = f"covariates[{shown(name)}] must hold numbers, but {column.dtype} was given. Leave the column out."
         raise InputError(message) from error
 
 

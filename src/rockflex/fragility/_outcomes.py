@@ -1,14 +1,17 @@
 """The three outcomes of a run: no rocking, rocking, overturning."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.fragility._arguments import flags, log_at, log_measures, same_length
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
@@ -21,16 +24,27 @@ Bool = NDArray[np.bool_]
 FEW = 10  # runs below which a note is left
 
 
-class OutcomeProbabilities(NamedTuple):
-    """Probabilities of the three outcomes, which sum to 1."""
+@dataclass(frozen=True, eq=False)
+class OutcomeProbabilities(Value, Sequence[Float]):
+    """Probabilities of the three outcomes, which sum to 1; a sequence in this order."""
 
     no_rocking: Float
     rocking: Float
     overturning: Float
 
+    def __len__(self) -> int:
+        return 3
+
+    @overload
+    def __getitem__(self, index: int) -> Float: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Float, ...]: ...
+    def __getitem__(self, index: int | slice) -> Float | tuple[Float, ...]:
+        return (self.no_rocking, self.rocking, self.overturning)[index]
+
 
 @dataclass(frozen=True, eq=False)
-class OutcomeFragility:
+class OutcomeFragility(Value):
     """Fits of the three outcomes of Silva & Stojadinović 2024, Section 3.2.
 
     Attributes
@@ -87,7 +101,7 @@ class OutcomeFragility:
         limits = np.exp(log_at(limit, "limit"))
         if (limits < self.threshold * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
             message = (
-                f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {limit!r} was given. "
+                f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was given. "
                 "Below, a run counts as one without rocking; above, overturned runs need not exceed it."
             )
             raise InputError(message)

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import instance, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted import lowest_uplifted
 
@@ -64,7 +65,7 @@ class AdequacyTolerance:
 
 
 @dataclass(frozen=True, eq=False)
-class Adequacy:
+class Adequacy(Value):
     """What the modes of a structure contribute, and how many are enough. The arrays are read-only.
 
     Row k - 1 of an array with N rows belongs to the first k of the N modes at hand.
@@ -110,8 +111,7 @@ class Adequacy:
     reason: str = field(init=False)
 
     def __post_init__(self) -> None:
-        for each in fields(self)[:6]:
-            getattr(self, each.name).setflags(write=False)
+        super().__post_init__()
         vars(self)["reason"] = f"{_for_rotation(self)} {_for_shear(self)}"
 
     @property
@@ -174,11 +174,11 @@ def adequacy(
     ----------
     Silva & Stojadinović 2024, Sections 3.4 and 4.1.1.
     """
-    p = properties
+    p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
         message = "properties must have at least one mode, but a rigid structure was given: it needs none."
         raise InputError(message)
-    limits = AdequacyTolerance() if tolerance is None else tolerance
+    limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= _SLACK * p.translational_inertia
     base = p.base_mass if base_mass is None else base_mass

@@ -1,6 +1,6 @@
 """Vibration modes of a structure on a fixed base."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import SupportsIndex
 
 import numpy as np
@@ -10,6 +10,7 @@ from rockflex._checks import mode_count
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
+from rockflex._values import Value
 
 __all__ = ["NO_PARTICIPATION", "ModalProperties", "modal_properties", "normalising_ordinates"]
 
@@ -21,7 +22,7 @@ _NO_TOP_ORDINATE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class ModalProperties:
+class ModalProperties(Value):
     """Vibration modes of a structure on a fixed base, in the order of rising frequency.
 
     The quantities are those of Silva & Stojadinović 2024, Section 2.1 (after Eq. 12), with
@@ -51,10 +52,6 @@ class ModalProperties:
     participation: Float
     shapes: Float
     heights: Float
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            getattr(self, field.name).setflags(write=False)
 
     @property
     def n_modes(self) -> int:

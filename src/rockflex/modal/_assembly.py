@@ -5,7 +5,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._checks import damping_ratios, positive
+from rockflex._checks import damping_ratios, instance, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, mass_times
@@ -68,7 +68,7 @@ def rocking_properties(
     Silva & Stojadinović 2024, Table 2 and Eqs. 13 and 14.
     """
     h = checked_heights(heights)
-    if not np.array_equal(h, modal.heights):
+    if not np.array_equal(h, instance("modal", modal, ModalProperties).heights):
         message = (
             f"heights must be those of the modal analysis, {modal.heights}, but {h} was given. "
             "Run modal_properties anew for other heights."

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import dimensions, finite_matrix, finite_vector, mode_count
+from rockflex._values import Value
 
 __all__ = ["FloorModes"]
 
@@ -14,7 +15,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class FloorModes:
+class FloorModes(Value):
     """Displacement and elastic force at every floor for a unit of each modal coordinate D_n.
 
     With q_n = Γ_n D_n (Silva & Stojadinović 2024, Section 2.1) the displacement of floor i relative to the

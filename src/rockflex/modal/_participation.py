@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rockflex._checks import mode_count
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.modal._analysis import NO_PARTICIPATION, ModalProperties, normalising_ordinates
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._rocking import RockingProperties
@@ -19,7 +20,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class MassNormalisedModes:
+class MassNormalisedModes(Value):
     """Modes with φ_n^T M φ_n = 1, and what the structure carries when it moves as a rigid body.
 
     With ι the displacement of a unit translation of the base and r that of a unit rotation (heights for

@@ -8,8 +8,10 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import MOST_MODES, one_of, positive, whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 
 __all__ = ["PinnedBeam", "pinned_beam"]
 
@@ -17,7 +19,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class PinnedBeam:
+class PinnedBeam(Value):
     """Frequencies of a pinned beam over those of the same beam clamped.
 
     Attributes
@@ -62,11 +64,11 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     ----------
     The limit k_r → 0 is that of Wiebe & Christopoulos, cited in Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
     """
-    if behaviour not in ("flexure", "shear"):  # pyright: ignore[reportUnnecessaryContains]
-        message = f'behaviour must be "flexure" or "shear", but {behaviour!r} was given.'
+    if not one_of(behaviour, ("flexure", "shear")):
+        message = f'behaviour must be "flexure" or "shear", but {shown(behaviour)} was given.'
         raise InputError(message)
     k = positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
-    n = whole_number("n_modes", n_modes, 1)
+    n = whole_number("n_modes", n_modes, 1, MOST_MODES)
     flexure = behaviour == "flexure"
     clamp, pin = (_clamped_flexure, _pinned_flexure) if flexure else (math.cos, _pinned_shear)
     pinned, clamped = [0.0], [_bisected(clamp, 0.0, math.pi)]

@@ -8,10 +8,11 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import damping_ratios, finite_vector, positive, whole_number
+from rockflex._checks import damping_ratios, finite_vector, instance, positive, whole_number
 from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._tendons import Tendon, tendon_set
 
@@ -21,16 +22,17 @@ Float = NDArray[np.float64]
 
 # Room for the rounding of sums that are equal when all modes are kept.
 _SLACK = 1e-9
+_PRINTED = 1e-5  # of I_θ: room for values that were printed to six digits
 _OVERTURNING_SHARE = 0.7
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class RockingProperties:
+class RockingProperties(Value):
     """The parameters of a rocking structure with n modes (Silva & Stojadinović 2024, Table 2).
 
     They hold for any structure, and can be filled by hand from the output of any finite element program. With no modes
     at all they are those of a rigid block.
-    Sequences become read-only arrays. Two of them compare equal only if they are the same object.
+    Sequences become read-only arrays.
 
     Attributes
     ----------
@@ -43,7 +45,8 @@ class RockingProperties:
     top_ordinate : ndarray, shape (n,)
         Γ_n φ_top,n: displacement of the top for a unit of D_n, no unit; u_top = Σ_n Γ_n φ_top,n D_n.
     i_theta : float
-        I_θ in kg m²: moment of inertia about a pivot, base mass included; above Σ_n m*_n h*_n².
+        I_θ in kg m²: moment of inertia about a pivot, base mass included; above Σ_n m*_n h*_n², and at least
+        `translational_inertia` + m_tot B².
     l0r : float
         L_0^r = Σ_i m_i h_i in kg m.
     m_tot : float
@@ -53,8 +56,8 @@ class RockingProperties:
     zeta : ndarray, shape (n,)
         Modal damping ratios in [0, 1); one number stands for all modes.
     translational_inertia : float
-        Σ_i m_i h_i² in kg m², as Eqs. 19 and 29 need it; from Σ_n m*_n h*_n² to below I_θ. Default:
-        I_θ - m_tot B², which is exact for lumped masses without rotary inertia.
+        Σ_i m_i h_i² in kg m², as Eqs. 19 and 29 need it; from Σ_n m*_n h*_n² to I_θ - m_tot B², which is the default
+        and exact for lumped masses without rotary inertia.
     floors : FloorModes or None
         Floor displacements and forces of the same n modes, for quantities above the base.
     top_height : float or None
@@ -119,7 +122,7 @@ class RockingProperties:
         _check_modes(modes)
         n_modes = modes["omega"].size
         inertia = _translational_inertia(modes, scalars, translational_inertia)
-        if floors is not None and floors.n_modes != n_modes:
+        if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
             message = f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}."
             raise InputError(message)
         damping = damping_ratios("zeta", zeta, n_modes)
@@ -194,6 +197,24 @@ class RockingProperties:
         """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3); of a rigid block with L_0^r/m_tot."""
         height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
         return _OVERTURNING_SHARE * math.atan2(self.half_width, height)
+
+    @computable("The inertia of the structure on this base")
+    def with_half_width(self, half_width: float) -> "RockingProperties":
+        """Return the same structure on a base of another half width B in m, of the same mass.
+
+        I_θ changes by m_tot B² and M_r with B; the modes, L_0^r and what rotary inertia the bodies have stay as they
+        are, and so do the tendons.
+
+        Raises
+        ------
+        InputError
+            If the half width is not positive, or a tendon does not stand within the base.
+        """
+        b = positive("half_width", half_width, "m")
+        rotary = self.i_theta - self.translational_inertia - self.m_tot * self.half_width**2
+        # The rest is rounding where it is negative, and would weigh more about a closer pivot.
+        about_pivot = self.translational_inertia + max(rotary, 0.0) + self.m_tot * b**2
+        return self if b == self.half_width else replace(self, half_width=b, i_theta=about_pivot)
 
     def truncated(self, n_modes: SupportsIndex) -> "RockingProperties":
         """Return the same structure with its first `n_modes` modes alone, as a surrogate model has it; 0: rigid.
@@ -307,6 +328,14 @@ def _translational_inertia(modes: dict[str, Float], scalars: dict[str, float], g
             "translational_inertia must be at least the sum of effective_mass * effective_height**2, "
             f"{modal_inertia:.9g} kg m², and below i_theta, {i_theta:.9g} kg m², but {source} is "
             f"{inertia:.9g} kg m². Give the sum of m_i h_i² over the masses above the base."
+        )
+        raise InputError(message)
+    least = inertia + m_tot * scalars["half_width"] ** 2
+    if i_theta < least * (1.0 - _PRINTED):
+        message = (
+            "i_theta must be at least translational_inertia + m_tot * half_width**2, "
+            f"{least:.9g} kg m², but {i_theta:.9g} kg m² was given. It is taken about a pivot, so it changes with the "
+            "base: properties.with_half_width(B) is the same structure on another one."
         )
         raise InputError(message)
     return max(inertia, modal_inertia)

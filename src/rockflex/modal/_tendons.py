@@ -7,6 +7,7 @@ from typing import Any
 
 from rockflex._checks import finite, positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = ["Tendon", "tendon_set"]
 
@@ -69,7 +70,9 @@ def tendon_set(given: Any) -> tuple[Tendon, ...]:
     items = (given,) if isinstance(given, Tendon) else tuple(given) if isinstance(given, Iterable) else (given,)
     for item in items:
         if not isinstance(item, Tendon):
-            message = f"tendons must be Tendon objects, but {item!r} was given. Write Tendon(initial_force, stiffness)."
+            message = (
+                f"tendons must be Tendon objects, but {shown(item)} was given. Write Tendon(initial_force, stiffness)."
+            )
             raise InputError(message)
     left = sorted((-t.position, t.initial_force, t.stiffness) for t in items if t.position < 0.0)
     right = sorted((t.position, t.initial_force, t.stiffness) for t in items if t.position > 0.0)

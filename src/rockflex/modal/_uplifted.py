@@ -1,24 +1,30 @@
 """Vibration of a structure whose base has lifted."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._checks import float_array, instance
 from rockflex._computable import computable
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal._rocking import RockingProperties
+from rockflex.modal._uplifted_damping import uplifted_damping
 
 __all__ = ["UpliftedModes", "frequency_equation", "lowest_uplifted", "uplifted_modes"]
 
 Float = NDArray[np.float64]
+HIGHEST = 1e60  # rad/s, whose fourth power is still a number
 
 _BESIDE = (1e-13, 1e-11, 1e-9)  # shifts beside a root, relative: the first at which no pivot is zero
 
 
 @dataclass(frozen=True, eq=False)
-class UpliftedModes:
+class UpliftedModes(Value):
     """Modes of free motion about one pivot. The arrays are read-only.
 
     Attributes
@@ -27,6 +33,10 @@ class UpliftedModes:
         Circular frequencies ω*_n of vibration in rad/s, rising.
     ratio : ndarray, shape (n,)
         ω*_n/ω_n: against the same mode on a fixed base.
+    damping_ratio : ndarray, shape (n,)
+        ζ*_n = -Re λ/|λ| of the complex eigenvalues λ of Eq. 23 with its damping, in the order of |λ|. From 1 on the
+        motion does not vibrate, and of its two real eigenvalues ζ*_n is -(λ_a + λ_b)/(2 √(λ_a λ_b)). With one mode
+        it is ζ ω*/ω, but for the weight.
     shapes : ndarray, shape (n + 1, n)
         (θ, D_1 .. D_n) as columns, with Σ_n |D_n| = 1 m and the largest D_n positive.
     growth_rate : float
@@ -40,21 +50,18 @@ class UpliftedModes:
 
     omega: Float
     ratio: Float
+    damping_ratio: Float
     shapes: Float
     growth_rate: float
     sway_rate: float
     growth_shape: Float
 
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
-
 
 @computable("The uplifted modes of the given properties")
 def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None = None) -> UpliftedModes:
-    """Return the modes of Eq. 23 without damping, with the first `n_modes` modes of the structure or with all.
+    """Return the modes of Eq. 23, with the first `n_modes` modes of the structure or with all.
+
+    Frequencies and shapes are those without damping; `damping_ratio` says what the damping of the fixed base becomes.
 
     Its matrices, the rows of D_n times m*_n, are symmetric, and the mass matrix is positive definite since
     I_θ > Σ m*_n h*_n². The lowest root in ω² is that of the rotation, negative where gravity drives it (and tendons do
@@ -79,7 +86,8 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     ----------
     Silva & Stojadinović 2024, Eq. 23 and Section 3.4 (Fig. 10).
     """
-    p = properties if n_modes is None else properties.truncated(n_modes)
+    p = instance("properties", properties, RockingProperties)
+    p = p if n_modes is None else p.truncated(n_modes)
     n = p.n_modes
     squares, motions = _lowest(p, n)
     omega = np.sqrt(squares[1:])
@@ -88,6 +96,7 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     return UpliftedModes(
         omega=omega,
         ratio=omega / p.omega,
+        damping_ratio=uplifted_damping(squares, _modal_damping(p, motions)),
         shapes=motions[:, 1:] / (np.sign(largest) * np.abs(modal).sum(axis=0)),
         growth_rate=math.sqrt(max(-squares[0], 0.0)),
         sway_rate=math.sqrt(max(squares[0], 0.0)),
@@ -123,6 +132,16 @@ def _lowest(p: RockingProperties, vibrations: int) -> tuple[Float, Float]:
     return squares, motions
 
 
+def _modal_damping(p: RockingProperties, motions: Float) -> Float:
+    """Return the damping of Eq. 23 over motions (θ, D) as columns, each scaled to unit modal mass."""
+    root = np.sqrt(p.effective_mass)
+    arm = root * p.effective_height
+    turn, modal = motions[0], root[:, None] * motions[1:]
+    mass = (p.i_theta - arm @ arm) * turn**2 + ((modal + arm[:, None] * turn) ** 2).sum(axis=0)
+    share = modal / np.sqrt(mass)
+    return share.T @ ((2.0 * p.zeta * p.omega)[:, None] * share)
+
+
 def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> tuple[Float, Float]:
     """Give small roots back the digits that rounding of the largest took: a step of inverse iteration each."""
     moved = motions
@@ -155,11 +174,21 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float
     ndarray
         In N m/rad, in the shape of `omega`; NaN at a frequency ω_n of the fixed base, where the sum has a pole.
 
+    Raises
+    ------
+    InputError
+        If a frequency is no number below 1e60 rad/s.
+
     References
     ----------
     Silva & Stojadinović 2024, Section 3.4 (Fig. 12).
     """
-    square = np.asarray(omega, dtype=np.float64)[..., None] ** 2
+    instance("properties", properties, RockingProperties)
+    frequencies = float_array(omega)
+    if frequencies is None or not (np.abs(frequencies) < HIGHEST).all():
+        message = f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given."
+        raise InputError(message)
+    square = frequencies[..., None] ** 2
     inertia = properties.effective_mass * properties.effective_height**2
     gap = properties.omega**2 - square
     terms = np.divide(square**2 * inertia, gap, out=np.full(gap.shape, np.nan), where=gap != 0.0)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite, positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 
 __all__ = ["ForgottenLaw", "ImpactLaw", "Restitution", "VVELComplete", "VVELSimplified", "housner"]
@@ -111,8 +112,8 @@ class Restitution:
         e = finite("e", self.e, "")
         if not 0.0 <= e <= 1.0:
             message = (
-                f"The restitution e must lie from 0 to 1, but {self.e!r} was given. It is the rotation velocity after "
-                "an impact over that before it; more than 1 would gain energy."
+                f"The restitution e must lie from 0 to 1, but {shown(self.e)} was given. It is the rotation velocity "
+                "after an impact over that before it; more than 1 would gain energy."
             )
             raise InputError(message)
         object.__setattr__(self, "e", e)

@@ -6,8 +6,9 @@ from typing import Literal
 
 import numpy as np
 
-from rockflex._checks import whole_number
+from rockflex._checks import one_of, whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
@@ -75,11 +76,11 @@ class Model:
         for name, meaning in meanings.items():
             value = getattr(self, name)
             if not isinstance(value, bool | np.bool_):
-                message = f"{name} must be {meaning}, but {value!r} was given."
+                message = f"{name} must be {meaning}, but {shown(value)} was given."
                 raise InputError(message)
             object.__setattr__(self, name, bool(value))
-        if self.closure not in (None, "SI", "E"):
-            message = f'closure must be "SI", "E" or None, but {self.closure!r} was given.'
+        if self.closure is not None and not one_of(self.closure, ("SI", "E")):
+            message = f'closure must be "SI", "E" or None, but {shown(self.closure)} was given.'
             raise InputError(message)
         self._check_combination()
 
@@ -211,7 +212,7 @@ def parse_model(model: str | Model) -> Model:
     if found is None:
         if isinstance(model, str) and model in named:  # pyright: ignore[reportUnnecessaryIsInstance]
             return named[model]
-        message = f"Unknown model {model!r}. Expected {_EXPECTED}, or a Model."
+        message = f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model."
         raise InputError(message)
     lifts, complete = found["kind"] != "fixed", found["kind"] == "C"
     closures: dict[str | None, Literal["SI", "E"] | None] = {"SI": "SI", "E": "E"}
@@ -219,7 +220,7 @@ def parse_model(model: str | Model) -> Model:
     n_modes = None if found["all"] else int(found["count"]) - lifts
     odd = (found["all"] and not lifts) or n_modes == 0 or (closure is not None and not complete)
     if odd:
-        message = f"Unknown model {model!r}. Expected {_EXPECTED}, or a Model."
+        message = f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model."
         raise InputError(message)
     return Model(
         n_modes, lifts, complete, closure, yields=found["yields"] is not None, missing_mass=found["missing"] is not None

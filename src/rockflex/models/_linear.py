@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
+from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 
@@ -17,7 +18,7 @@ NEUTRAL = 0.01  # of L_0^r g: nearer to balance the steady rotation, ∝ 1/`rock
 
 
 @dataclass(frozen=True, eq=False)
-class LinearModel:
+class LinearModel(Value):
     """N modes on a base that may uplift: Eqs. 15, 23, 24 and 25 as linear functionals.
 
     Every functional, or *row*, runs over ``[D_1..D_N, D'_1..D'_N, θ, θ', a, s]``: the state, the ground

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
+from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._field import Field
@@ -18,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class NonlinearModel:
+class NonlinearModel(Value):
     """N modes on a base that may uplift, with large rotations, a superstructure that yields, or both.
 
     Rows run over ``[D_1..D_N, D'_1..D'_N, θ, θ', z, a, s]``.

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._files import path_of
+from rockflex.motion._direction import direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number, read_lines
@@ -39,7 +41,8 @@ def read_at2(path: str | Path) -> GroundMotion:
     Returns
     -------
     GroundMotion
-        The record, with what its title line says (event, year, station, component) and, from a file name such
+        The record, with what its title line says (event, year, station, component and its
+        direction) and, from a file name such
         as RSN953_..., the record sequence number as metadata.
 
     Raises
@@ -49,7 +52,8 @@ def read_at2(path: str | Path) -> GroundMotion:
         NPTS, a value is not a finite number, the header speaks of another unit than g, or the peak
         exceeds 5 g.
     """
-    return parse_at2(Path(path), read_lines(path))
+    file = path_of("path", path)
+    return parse_at2(file, read_lines(file))
 
 
 def find_header(lines: list[str]) -> tuple[int, int, str] | None:
@@ -143,7 +147,8 @@ def _info(file: Path, header: list[str]) -> RecordInfo:
                 year=year if year > 99 else 1900 + year,
                 station=", ".join(rest[:-1]) or None,
                 component=component or None,
+                direction=direction_of(file, component),
                 source=line.strip(),
                 rsn=rsn,
             )
-    return RecordInfo(source=file.name, rsn=rsn)
+    return RecordInfo(source=file.name, rsn=rsn, direction=direction_of(file))

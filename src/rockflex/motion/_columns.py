@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.motion._direction import direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number
@@ -52,7 +54,8 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
         times = np.array([number(cells[time_column], file, line) for line, cells in rows])
         step = _step(file, times, [line for line, _ in rows], dt)
     remedy = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
-    return build_motion(file, values, stated, step, RecordInfo(source=file.name), remedy)
+    info = RecordInfo(source=file.name, direction=direction_of(file))
+    return build_motion(file, values, stated, step, info, remedy)
 
 
 def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -121,7 +124,7 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, 
         time = None if n_columns == 1 else 1 if times == [1] else 0
         column = 1 if time == 0 else 0
         if labels and re.match("vel|dis", labels[column], re.IGNORECASE):
-            message = f"{file}: an acceleration is expected, but the column is headed {labels[column]!r}."
+            message = f"{file}: an acceleration is expected, but the column is headed {shown(labels[column])}."
             raise InputError(message)
         return time, column
     message = (
@@ -139,12 +142,12 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
     stated = SPELLINGS.get(plain)
     if written and stated is None:
         message = (
-            f"{file}: the column header gives the unit {written!r}, which is not known. "
+            f"{file}: the column header gives the unit {shown(written)}, which is not known. "
             "Rewrite it as g, m/s2 or cm/s2, converting the values where needed."
         )
         raise InputError(message)
     if stated and units and stated != units:
-        message = f"{file}: the column header says {stated}, but units={units!r} was given. Leave units out."
+        message = f"{file}: the column header says {stated}, but units={shown(units)} was given. Leave units out."
         raise InputError(message)
     if stated or units:
         return stated or str(units)
@@ -158,7 +161,7 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
 def _check_seconds(file: Path, label: str) -> None:
     bracket = BRACKET.search(label, 0, _after_brackets(label))
     if bracket and bracket[1].strip().lower() not in SECONDS:
-        message = f"{file}: the times are in {bracket[1]!r}, but seconds are expected. Convert the column to s."
+        message = f"{file}: the times are in {shown(bracket[1])}, but seconds are expected. Convert the column to s."
         raise InputError(message)
 
 
@@ -180,7 +183,7 @@ def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float
         if np.any(away):
             k = int(np.argmax(away))
             message = (
-                f"{file}, line {lines[k]}: the time {times[k]:g} s does not fit dt={dt!r} s. "
+                f"{file}, line {lines[k]}: the time {times[k]:g} s does not fit dt={shown(dt)} s. "
                 "Leave dt out, or remove the column of times."
             )
             raise InputError(message)

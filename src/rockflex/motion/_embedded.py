@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._checks import one_of
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._suite import Suite
@@ -37,7 +39,6 @@ def suite_names() -> tuple[str, ...]:
     return NAMES
 
 
-@cache
 def load_suite(name: str) -> Suite:
     """Load one of the embedded suites.
 
@@ -73,11 +74,16 @@ def load_suite(name: str) -> Suite:
     ----------
     FEMA P-695 (2009), Quantification of Building Seismic Performance Factors, Appendix A.
     """
-    if name not in NAMES:
-        near = get_close_matches(str(name), NAMES, n=1)
+    if not one_of(name, NAMES):
+        near = get_close_matches(shown(name), NAMES, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
-        message = f"No embedded suite is named {name!r}; there are {', '.join(map(repr, NAMES))}.{hint}"
+        message = f"No embedded suite is named {shown(name)}; there are {', '.join(map(repr, NAMES))}.{hint}"
         raise InputError(message)
+    return _loaded(name)
+
+
+@cache
+def _loaded(name: str) -> Suite:
     return Suite((_motion(entry, samples) for entry, samples in read_embedded(name)), name)
 
 

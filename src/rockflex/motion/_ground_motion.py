@@ -1,15 +1,16 @@
 """Ground acceleration, linear between its samples."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite, finite_vector, positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.motion import _measures, _processing
 from rockflex.motion._record_info import RecordInfo
 
@@ -22,7 +23,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class GroundMotion:
+class GroundMotion(Value):
     """A ground acceleration sampled at equal steps and linear between samples.
 
     The ground is at rest before t = 0, where the first sample already acts; after the last sample the
@@ -60,7 +61,7 @@ class GroundMotion:
             )
             raise InputError(message)
         if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"name must be a string, but {name!r} was given."
+            message = f"name must be a string, but {shown(name)} was given."
             raise InputError(message)
         if not isinstance(metadata, RecordInfo | None):  # pyright: ignore[reportUnnecessaryIsInstance]
             message = (
@@ -72,10 +73,6 @@ class GroundMotion:
         object.__setattr__(self, "dt", positive("dt", dt, "s"))
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "metadata", metadata)
-
-    def __reduce__(self) -> tuple[Callable[..., "GroundMotion"], tuple[Any, ...]]:
-        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
-        return GroundMotion, (self.acceleration, self.dt, self.name, self.metadata)
 
     def __repr__(self) -> str:
         return (

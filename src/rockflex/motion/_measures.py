@@ -5,8 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = [
     "arias_intensity",
@@ -71,9 +73,9 @@ def cumulative_absolute_velocity(a: Float, dt: float) -> float:
 
 def significant_duration(a: Float, dt: float, low: float, high: float) -> float:
     """Time between the first instants at which the fractions `low` and `high` of ∫a² dt are reached."""
-    if not 0 <= low < high <= 1:
+    if not 0 <= real_or_nan(low) < real_or_nan(high) <= 1:
         message = (
-            f"low and high must be fractions with 0 <= low < high <= 1, but low={low!r} and high={high!r} "
+            f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and high={shown(high)} "
             "were given. Significant duration D5-95 is low=0.05, high=0.95."
         )
         raise InputError(message)

@@ -4,18 +4,20 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import positive, real_or_nan, whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._measures import velocity
 
 __all__ = ["band_pass", "baseline_correct", "refine", "refinement_of"]
 
 Float = NDArray[np.float64]
+FINEST = 10_000  # new steps in an old one
 
 
 def refine(a: Float, k: int) -> Float:
     """Split every interval into `k` collinear ones."""
-    k = whole_number("k", k, 1)
+    k = whole_number("k", k, 1, FINEST)
     inside = a[:-1, None] + np.diff(a)[:, None] * (np.arange(k) / k)
     return np.append(inside.ravel(), a[-1])
 
@@ -23,14 +25,14 @@ def refine(a: Float, k: int) -> Float:
 def refinement_of(old: float, new: float) -> int:
     """Return the whole number old/new, or raise an error that names the steps that can be had."""
     positive("dt", new, "s")
-    ratio = old / new
+    ratio = min(old / new, FINEST)
     k = round(ratio)
     if k >= 1 and abs(ratio - k) <= 1e-9:
         return k
     nearest = sorted({max(int(ratio), 1), max(int(ratio), 1) + (ratio > 1)})
     steps = " or ".join(f"{old / n:.12g} s" for n in nearest)
     message = (
-        f"A record with dt = {old:g} s cannot be resampled exactly to dt = {new!r} s: only a whole fraction "
+        f"A record with dt = {old:g} s cannot be resampled exactly to dt = {shown(new)} s: only a whole fraction "
         f"of its own step leaves it unchanged between samples. Ask for {steps}."
     )
     raise InputError(message)
@@ -57,14 +59,18 @@ def band_pass(a: Float, dt: float, low: float, high: float, order: int) -> Float
     from scipy.signal import butter, sosfiltfilt
 
     nyquist = 0.5 / dt
-    if not 0 < low < high < nyquist:
+    if not 0 < real_or_nan(low) < real_or_nan(high) < nyquist:
         message = (
             f"The corner frequencies must satisfy 0 < low < high < {nyquist:g} Hz, the Nyquist frequency "
-            f"of dt = {dt:g} s, but low={low!r} and high={high!r} were given."
+            f"of dt = {dt:g} s, but low={shown(low)} and high={shown(high)} were given."
         )
         raise InputError(message)
-    order = whole_number("order", order, 1)
-    sections = butter(order, (low, high), btype="bandpass", output="sos", fs=1 / dt)
+    order = whole_number("order", order, 1, 100)
+    try:
+        sections = butter(order, (low, high), btype="bandpass", output="sos", fs=1 / dt)
+    except ValueError as error:
+        message = f"No filter of order {order} has the corners low={low:g} Hz and high={high:g} Hz: {error}."
+        raise InputError(message) from error
     padding = 3 * (2 * len(sections) + 1)
     if a.size <= padding:
         message = (

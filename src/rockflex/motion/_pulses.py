@@ -11,8 +11,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import finite, positive
+from rockflex._checks import finite, one_of, positive, real_or_nan
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 
 __all__ = [
@@ -29,6 +30,8 @@ Float = NDArray[np.floating[Any]]
 
 # Peak of |x (x² - 3)| exp(-x²/2), at x² = 3 - √6: the published β = 1.3801, to all digits.
 _BETA = math.sqrt(6 * (3 - math.sqrt(6))) * math.exp(-(3 - math.sqrt(6)) / 2)
+
+LONGEST = 100_000_000  # samples
 
 
 def ricker_pulse(
@@ -73,8 +76,8 @@ def ricker_pulse(
     ----------
     Ricker (1943), Geophysics 8(4); Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618.
     """
-    if kind not in ("antisymmetric", "symmetric"):
-        message = f'kind must be "antisymmetric" or "symmetric", but {kind!r} was given.'
+    if not one_of(kind, ("antisymmetric", "symmetric")):
+        message = f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.'
         raise InputError(message)
     positive("period", period, "s")
     periods = 2.0 if kind == "antisymmetric" else 1.5
@@ -236,15 +239,16 @@ def mavroeidis_papageorgiou_pulse(
     Mavroeidis & Papageorgiou (2003), Bull. Seism. Soc. Am. 93(3), 1099-1131, Eqs. 3 and 4.
     """
     positive("period", period, "s")
-    if not 1 < gamma < math.inf:
-        message = f"gamma must be finite and above 1, but {gamma!r} was given. Usual values are 1 to 3."
+    if not 1 < real_or_nan(gamma) < math.inf:
+        message = f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3."
         raise InputError(message)
     finite("nu", nu, "rad")
     n, step = _intervals("period", gamma * period, dt)
     envelope = np.pi * np.linspace(-1, 1, n + 1)
     carrier = gamma * envelope + nu
     rate = np.sin(envelope) * np.cos(carrier) + gamma * (1 + np.cos(envelope)) * np.sin(carrier)
-    shape = -np.pi / (gamma * period) * rate
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused as a sample
+        shape = -np.pi / (gamma * period) * rate
     detail = f"T={period:g} s, gamma={gamma:g}, nu={nu:g}"
     return _pulse("Mavroeidis-Papageorgiou", amplitude, shape, step, detail, unit="m/s")
 
@@ -276,10 +280,10 @@ def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
 def _intervals(name: str, length: float, dt: float) -> tuple[int, float]:
     length, dt = positive(name, length, "s"), positive("dt", dt, "s")
     # Two intervals at least: a motion has three samples or more.
-    n = max(2, math.ceil(length / dt - 1e-9))
-    if n > 100_000_000:
-        message = f"{name} = {length:g} s with dt = {dt:g} s asks for {n:.3g} samples; use a larger dt."
+    if length / dt > LONGEST:
+        message = f"{name} = {length:g} s with dt = {dt:g} s asks for {length / dt:.3g} samples; use a larger dt."
         raise InputError(message)
+    n = max(2, math.ceil(length / dt - 1e-9))
     return n, dt if math.isclose(n * dt, length, rel_tol=1e-9) else length / n
 
 
@@ -291,4 +295,6 @@ def _sine(n: int, turns: float) -> Float:
 
 def _pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²") -> GroundMotion:
     amplitude = finite("amplitude", amplitude, unit)
-    return GroundMotion(amplitude * shape, dt, name=f"{kind} {amplitude:g} {unit}, {detail}")
+    with np.errstate(over="ignore"):  # what is not finite is refused as a sample
+        samples = amplitude * shape
+    return GroundMotion(samples, dt, name=f"{kind} {amplitude:g} {unit}, {detail}")

@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
-from rockflex._checks import positive
+from rockflex._checks import one_of, positive
 from rockflex._errors import InputError
+from rockflex._files import path_of
+from rockflex._shown import shown
 from rockflex.motion._at2 import find_header, parse_at2
 from rockflex.motion._columns import parse_columns
 from rockflex.motion._ground_motion import GroundMotion
@@ -42,20 +44,20 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
         valid; a value is not a finite number; rows differ in length; time steps are not equal and positive;
         or the peak exceeds 5 g, which only a wrong unit explains. Nothing is read in part.
     """
-    if units is not None and units not in UNITS:
-        message = f"units must be one of {', '.join(map(repr, UNITS))}, but {units!r} was given."
+    if units is not None and not one_of(units, UNITS):
+        message = f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given."
         raise InputError(message)
     if dt is not None:
         dt = positive("dt", dt, "s")
-    file = Path(path)
+    file = path_of("path", path)
     lines = read_lines(file)
     if find_header(lines) is None and file.suffix.lower() != ".at2":
         return parse_columns(file, lines, units, dt)
     motion = parse_at2(file, lines)
     if units not in (None, "g"):
-        message = f"{file} is an AT2 file, in g by definition, but units={units!r} was given. Leave units out."
+        message = f"{file} is an AT2 file, in g by definition, but units={shown(units)} was given. Leave units out."
         raise InputError(message)
     if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
-        message = f"{file} says DT = {motion.dt:g} s, but dt={dt!r} was given. Leave dt out."
+        message = f"{file} says DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out."
         raise InputError(message)
     return motion

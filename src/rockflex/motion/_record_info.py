@@ -1,6 +1,7 @@
 """What is known of a record besides its samples."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 __all__ = ["RecordInfo"]
 
@@ -25,6 +26,8 @@ class RecordInfo:
         Record sequence number of the PEER NGA database.
     component : str, optional
         Component as its source names it.
+    direction : {"horizontal", "vertical"}, optional
+        Which way the component points, where its source says it. Nothing is simulated under a vertical one.
     station : str, optional
         Recording station.
     source : str, optional
@@ -38,5 +41,6 @@ class RecordInfo:
     vs30: float | None = None
     rsn: int | None = None
     component: str | None = None
+    direction: Literal["horizontal", "vertical"] | None = None
     station: str | None = None
     source: str | None = None

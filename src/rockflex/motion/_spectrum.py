@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, in_range
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.motion._spectrum_kernel import oscillator_peaks
 
 __all__ = ["ResponseSpectrum", "response_spectrum"]
@@ -15,7 +16,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseSpectrum:
+class ResponseSpectrum(Value):
     """Peak response of damped linear oscillators to one ground motion.
 
     The response is exact for the piecewise linear acceleration (the recurrence of Nigam & Jennings 1969),
@@ -64,7 +65,6 @@ def response_spectrum(acceleration: Float, dt: float, periods: ArrayLike, dampin
         peaks[i] = oscillator_peaks(acceleration, dt, 2 * np.pi / float(period[i]), zeta)
     sd, sv = peaks.T.copy()
     pga = np.full(period.size, np.max(np.abs(acceleration)))
-    sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
-    for array in (sd, sv, sa):
-        array.setflags(write=False)
+    with np.errstate(over="ignore"):  # a period too long to be squared has no acceleration
+        sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
     return ResponseSpectrum(period, zeta, sd, sv, sa)

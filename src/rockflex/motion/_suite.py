@@ -4,20 +4,19 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from pathlib import Path
 from typing import overload
 
+from rockflex._checks import instance
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._readers import read_motion
 
-__all__ = ["Suite", "read_suite"]
-
-SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
+__all__ = ["Suite"]
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class Suite(Sequence[GroundMotion]):
+class Suite(Value, Sequence[GroundMotion]):
     """An ordered set of motions with unique names: a sequence, and a mapping by name.
 
     ``suite[0]`` and ``suite["FF-12-a"]`` are motions, ``suite[:10]`` is a suite, ``"FF-12-a" in suite`` tells
@@ -40,7 +39,11 @@ class Suite(Sequence[GroundMotion]):
     name: str = ""
 
     def __init__(self, motions: Iterable[GroundMotion], name: str = "") -> None:
+        if not isinstance(motions, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
+            raise InputError(message)
         members = tuple(motions)
+        instance("name", name, str)
         if not members:
             message = "A suite needs at least one motion, but none was given."
             raise InputError(message)
@@ -91,49 +94,7 @@ class Suite(Sequence[GroundMotion]):
                 return motion
         near = get_close_matches(index, self.names, n=3, cutoff=0.4) or self.names[:3]
         message = (
-            f"No motion of the suite {self.name!r} is named {index!r}. "
+            f"No motion of the suite {shown(self.name)} is named {shown(index)}. "
             f"The nearest names are {', '.join(map(repr, near))}; .names lists all {len(self)}."
         )
         raise InputError(message)
-
-
-def read_suite(paths: str | Path | Iterable[str | Path], units: str | None = None, dt: float | None = None) -> Suite:
-    """Read records into a suite, sorted by file name.
-
-    Parameters
-    ----------
-    paths : path or iterable of paths
-        A directory, of which every file ending in .at2, .csv, .dat, .tsv or .txt (upper case too) is read,
-        or the files themselves.
-    units, dt : optional
-        As in `read_motion`, for the files that do not say them.
-
-    Returns
-    -------
-    Suite
-        The motions, named after their files without the ending; the suite is named after the directory.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read (see `read_motion`; no partial suite is returned), a directory holds no
-        record, or two files have the same name.
-    """
-    name = ""
-    if isinstance(paths, str | Path):
-        folder = Path(paths)
-        if not folder.is_dir():
-            message = (
-                f"{folder} is not a directory. Give a directory, or a list of files; "
-                "one file alone is read by read_motion."
-            )
-            raise InputError(message)
-        name = folder.resolve().name
-        files = [file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES and file.is_file()]
-        if not files:
-            message = f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}."
-            raise InputError(message)
-    else:
-        files = [Path(path) for path in paths]
-    files.sort(key=lambda file: (file.name, str(file)))
-    return Suite((read_motion(file, units=units, dt=dt) for file in files), name)

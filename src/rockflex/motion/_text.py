@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 
@@ -23,7 +24,7 @@ def read_lines(path: str | Path) -> list[str]:
     """Return the lines of a text file, or raise an error that says why there are none."""
     file = Path(path)
     if file.is_dir():
-        message = f"{file} is a directory. Read all its records with read_suite({str(file)!r})."
+        message = f"{file} is a directory. Read all its records with read_suite({shown(str(file))})."
         raise InputError(message)
     try:
         data = file.read_bytes()

@@ -14,6 +14,7 @@ from uuid import uuid4
 
 from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -74,7 +75,9 @@ def map_dask(
     """
     again, limit = whole_number("retries", retries, 0), positive("patience", patience, "s", infinite=True)
     if not isinstance(address, str) or not address:  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = f'address must be that of a Dask scheduler, such as "tcp://10.0.0.1:8786", but {address!r} was given.'
+        message = (
+            f'address must be that of a Dask scheduler, such as "tcp://10.0.0.1:8786", but {shown(address)} was given.'
+        )
         raise InputError(message)
     asked = list(numbers)
     if not asked:
@@ -161,7 +164,7 @@ def _connected(address: str) -> Any:
         return Client(address, timeout=CONNECT, set_as_default=False, name="rockflex")
     except (OSError, ValueError, TypeError) as error:
         message = (
-            f"No Dask scheduler answers at {address!r} ({type(error).__name__}). Start one by `dask scheduler`, "
+            f"No Dask scheduler answers at {shown(address)} ({type(error).__name__}). Start one by `dask scheduler`, "
             'workers by `dask worker ADDRESS`, and give the address that it prints, such as "tcp://10.0.0.1:8786".'
         )
         raise InputError(message) from error

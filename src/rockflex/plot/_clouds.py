@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.fragility import CloudFits, fit_clouds
 from rockflex.plot._study_tables import (
     check_columns,
@@ -76,7 +77,7 @@ def plot_clouds(
         are too many structures or models.
     """
     if quantity not in _QUANTITIES:
-        message = f"quantity must be one of {', '.join(_QUANTITIES)}, but {quantity!r} was given."
+        message = f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given."
         raise InputError(message)
     check_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
     fits = fit_clouds(runs, measure, threshold=threshold, nominal=nominal)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal
 
 if TYPE_CHECKING:
@@ -124,8 +125,8 @@ def _history(index: int, response: "Response") -> "History":
         raise InputError(message)
     if response.history is None:
         message = (
-            f"responses[{index}] ({response.model} under {response.motion!r}) keeps peaks only, but a plot needs the "
-            'history. Simulate it with output="history".'
+            f"responses[{index}] ({response.model} under {shown(response.motion)}) keeps peaks only, but a plot needs "
+            'the history. Simulate it with output="history".'
         )
         raise InputError(message)
     return response.history
@@ -138,7 +139,7 @@ def _names(responses: "list[Response]", labels: Sequence[str] | None) -> list[st
             return [literal(model) for model in models]
         return [literal(f"{response.model}, {response.motion}") for response in responses]
     if isinstance(labels, str) or len(labels) != len(responses):
-        given = f"the string {labels!r}" if isinstance(labels, str) else f"{len(labels)}"
+        given = f"the string {shown(labels)}" if isinstance(labels, str) else f"{len(labels)}"
         message = f"labels must be a sequence of {len(responses)} strings, one a response, but {given} was given."
         raise InputError(message)
     return list(labels)

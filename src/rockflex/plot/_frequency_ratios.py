@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.plot._style import BLUE, GRAY, SMALL, Look, letter, literal, new_figure, styled
 from rockflex.plot._surrogates import surrogate_looks
 
@@ -135,19 +136,21 @@ def _check(named: "Mapping[str, pd.DataFrame]", bounds: "Mapping[str, PinnedBeam
     for name, table in named.items():
         lacking = [column for column in _NEEDED if column not in getattr(table, "columns", ())]
         if lacking:
-            message = f"The table {name!r} lacks {', '.join(lacking)}. Give what frequency_ratios returned."
+            message = f"The table {shown(name)} lacks {', '.join(lacking)}. Give what frequency_ratios returned."
             raise InputError(message)
         absent = [mode for mode in modes if not (table["mode"] == mode).any()]
         if absent:
-            message = f"The table {name!r} has no row of mode {absent[0]}. Show modes that a model in it keeps."
+            message = f"The table {shown(name)} has no row of mode {absent[0]}. Show modes that a model in it keeps."
             raise InputError(message)
     for name, beam in bounds.items():
         if name not in named:
-            message = f"limits has the name {name!r}, which no table has: those have {', '.join(map(repr, named))}."
+            message = (
+                f"limits has the name {shown(name)}, which no table has: those have {', '.join(map(repr, named))}."
+            )
             raise InputError(message)
         if beam.ratio.size < max(modes):
             message = (
-                f"The limit {name!r} has {beam.ratio.size} frequency ratios, but mode {max(modes)} is to be shown. "
-                f"Give pinned_beam(..., n_modes={max(modes)})."
+                f"The limit {shown(name)} has {beam.ratio.size} frequency ratios, but mode {max(modes)} is to be "
+                f"shown. Give pinned_beam(..., n_modes={max(modes)})."
             )
             raise InputError(message)

@@ -22,7 +22,7 @@ __all__ = ["plot_ida"]
 Array = NDArray[np.float64]
 
 _NEEDED = (
-    *("structure", "model", "record", "group", "scale", "status", "max_rotation", "overturned", "resurrections"),
+    *("structure", "model", "motion", "group", "scale", "status", "max_rotation", "overturned", "resurrections"),
     *("first_overturning_scale", "last_survival_scale"),
 )
 _MOST = 6  # rows of panels
@@ -119,7 +119,7 @@ def _limit(runs: "pd.DataFrame", capacities: "pd.DataFrame", measure: str) -> fl
 def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
     """A curve a record; return how many runs failed."""
     top = 0.0
-    for _, ladder in runs.groupby("record", observed=True, sort=False):
+    for _, ladder in runs.groupby("motion", observed=True, sort=False):
         solved = ladder[ladder["overturned"].notna()].sort_values("scale", kind="stable")
         if not len(solved):
             continue

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.plot._curves import Curve, rotation_limit
 from rockflex.plot._style import SMALL, letter
 from rockflex.plot._units import readable, short
@@ -52,7 +53,7 @@ def quantities_of(panels: Sequence[str]) -> list[Quantity]:
     """
     names = [panels] if isinstance(panels, str) else list(panels)
     if not names or len(set(names)) < len(names) or not set(names) <= set(ALL):
-        message = f"panels must be one or more of {', '.join(ALL)}, each once, but {panels!r} was given."
+        message = f"panels must be one or more of {', '.join(ALL)}, each once, but {shown(panels)} was given."
         raise InputError(message)
     return [next(quantity for quantity in _QUANTITIES if quantity.name == name) for name in names]
 

@@ -7,7 +7,8 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from rockflex._errors import InputError
-from rockflex._files import write_whole
+from rockflex._files import path_of, write_whole
+from rockflex._shown import shown
 from rockflex.plot._style import styled
 
 __all__ = ["save_figure"]
@@ -39,12 +40,12 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     InputError
         If the suffix is none of .png, .pdf and .svg.
     """
-    target = Path(path)
+    target = path_of("path", path)
     suffix = target.suffix.lower()
     if suffix not in _UNDATED:
         message = (
-            f"A figure can be saved as .png, .pdf or .svg, but the path {str(path)!r} ends in {target.suffix!r}. "
-            "Change the suffix."
+            f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
+            f"{shown(target.suffix)}. Change the suffix."
         )
         raise InputError(message)
     content = io.BytesIO()

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.models import LinearModel, NonlinearModel, RockingModel
 from rockflex.response._tendons import stretch_per_arm
 from rockflex.solve import ExactEngine, Observables
@@ -27,7 +28,7 @@ MOST_PIECES = 10_000  # of an interval: a minute of quadrature for a record of a
 
 
 @dataclass(frozen=True, eq=False)
-class EnergyLedger:
+class EnergyLedger(Value):
     """Energies in J at every node of a history, shape (n_nodes,) each, relative to the moving ground; read-only.
 
     ``kinetic + strain + gravity + tendons + damped + yielded + lost - input`` keeps its first value; `residual` is what
@@ -101,7 +102,7 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
         counted = np.diff(nodes[:, 6 + 2 * n : 9 + 2 * n], axis=0)
         # The counters rest while contact is carried in closed form, and jump to where they were when it ends.
         damped, work, yielded = np.where(integrated, counted.T, (damped, work, yielded))
-    ledger = EnergyLedger(
+    return EnergyLedger(
         kinetic=kinetic,
         strain=strain,
         gravity=gravity,
@@ -112,9 +113,6 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
         lost=np.cumsum(lost),
         impact_losses=losses,
     )
-    for values in vars(ledger).values():
-        values.setflags(write=False)
-    return ledger
 
 
 def is_impact(model: RockingModel, nodes: Array) -> NDArray[np.bool_]:

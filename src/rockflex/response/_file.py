@@ -12,6 +12,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import write_whole
+from rockflex._shown import shown
 from rockflex.modal import FloorModes, RockingProperties, Tendon
 from rockflex.models import (
     BoucWen,
@@ -55,8 +56,15 @@ FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_
 
 
 def save(response: Response, path: Path) -> Path:
-    """Write `response` to `path` (``.npz`` is added where it lacks); the file appears whole or not at all."""
-    path = path if path.suffix == ".npz" else path.with_name(path.name + ".npz")
+    """Write `response` to `path`, to which ``.npz`` is added where it lacks; the file appears whole or not at all."""
+    if path.suffix[1:2].isalpha() and path.suffix.lower() != ".npz":  # "scale 1.5" has no suffix
+        message = (
+            f"A response is saved as .npz, but {path.name!r} was given. Name it {path.stem + '.npz'!r}; for a "
+            'table of the history write pandas.DataFrame({"time": response.time, "rotation": response.rotation})'
+            ".to_parquet(...)."
+        )
+        raise InputError(message)
+    path = path if path.suffix.lower() == ".npz" else path.with_name(path.name + ".npz")
     scalars = {"format": FORMAT, **response.peaks()}
     arrays: dict[str, Any] = {}
     if response.floors is not None:
@@ -98,7 +106,7 @@ def load(path: Path) -> Response:
         message = f"{path} is not a saved response ({reason}). Give a file that Response.save wrote."
         raise InputError(message) from error
     if response is None:
-        message = f"{path} has the format {scalars['format']!r}, but {FORMAT!r} is expected."
+        message = f"{path} has the format {shown(scalars['format'])}, but {FORMAT!r} is expected."
         raise InputError(message)
     return response
 
@@ -122,7 +130,7 @@ def _response(scalars: dict[str, Any], arrays: dict[str, Any]) -> Response:
 
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
     if type(scalars[name]) is not kind:
-        message = f"{name} must be of type {kind.__name__}, but is {scalars[name]!r}."
+        message = f"{name} must be of type {kind.__name__}, but is {shown(scalars[name])}."
         raise InputError(message)
     return scalars[name]
 

@@ -1,14 +1,13 @@
 """The peaks above the base of one run."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError
+from rockflex._values import Value
 
 __all__ = ["FloorPeaks"]
 
@@ -16,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class FloorPeaks:
+class FloorPeaks(Value):
     """Largest magnitudes over the run, peaks between samples included; read-only arrays.
 
     Attributes
@@ -61,7 +60,3 @@ class FloorPeaks:
             )
             raise InputError(message)
         vars(self).update(peaks)
-
-    def __reduce__(self) -> tuple[Callable[..., "FloorPeaks"], tuple[Any, ...]]:
-        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
-        return FloorPeaks, (self.story_drift, self.story_shear, self.floor_acceleration, self.total_floor_displacement)

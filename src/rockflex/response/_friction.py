@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rockflex._checks import positive, real_or_nan
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.models import EXTRA, LinearModel, NonlinearModel, RockingModel
 from rockflex.response._accelerations import accelerations
 from rockflex.response._energy import is_impact
@@ -92,7 +93,7 @@ class Friction:
         """
         coefficient = real_or_nan(mu)
         if not 0.0 < coefficient < math.inf:
-            message = f"mu must be a friction coefficient above zero, such as 0.5, but {mu!r} was given."
+            message = f"mu must be a friction coefficient above zero, such as 0.5, but {shown(mu)} was given."
             raise InputError(message)
         limit = math.atan(coefficient)
         if not self._stretches.size:

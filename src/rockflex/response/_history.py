@@ -1,14 +1,13 @@
 """The time history of one run."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._checks import finite_rows
+from rockflex._values import Value
 from rockflex.models import EXTRA, NonlinearModel, RockingModel
 from rockflex.response._accelerations import accelerations
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
@@ -24,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class History:
+class History(Value):
     """States at the record's samples and at both sides of every event; all its arrays are read-only.
 
     Parameters
@@ -51,10 +50,6 @@ class History:
         if isinstance(self.model, NonlinearModel):
             columns += EXTRA
         object.__setattr__(self, "nodes", finite_rows("nodes", self.nodes, "SI units", columns))
-
-    def __reduce__(self) -> tuple[Callable[..., "History"], tuple[Any, ...]]:
-        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
-        return History, (self.model, self.nodes)
 
     def __repr__(self) -> str:
         duration = self.time[-1] - self.time[0]

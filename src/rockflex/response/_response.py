@@ -9,6 +9,8 @@ from typing import Any, Generic, Self, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._files import path_of
+from rockflex._values import Value
 from rockflex.models import LinearModel, RockingModel
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
@@ -46,7 +48,7 @@ class _OfHistory(Generic[Quantity]):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Response:
+class Response(Value):
     """The response of one structure to one motion.
 
     All peaks are the largest magnitudes of the continuous motion, between samples too. A response that keeps its
@@ -161,6 +163,9 @@ class Response:
     sliding_time = _OfHistory[Callable[..., float | None]]()
     energy = _OfHistory[EnergyLedger]()
 
+    def __post_init__(self) -> None:
+        pass  # no arrays of its own to make read-only, and every run of a study makes one
+
     def __repr__(self) -> str:
         return (
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
@@ -189,10 +194,18 @@ class Response:
         return {name: getattr(self, name) for name in PEAKS}
 
     def save(self, path: str | Path) -> Path:
-        """Write the response, history included, to one ``.npz`` file; see `load`."""
+        """Write the response, history included, to one ``.npz`` file, and return its path; see `load`.
+
+        The suffix is added to a path that has none.
+
+        Raises
+        ------
+        InputError
+            If the path has another suffix, such as ``.parquet``.
+        """
         from rockflex.response._file import save
 
-        return save(self, Path(path))
+        return save(self, path_of("path", path))
 
     @classmethod
     def load(cls, path: str | Path) -> "Response":
@@ -205,7 +218,7 @@ class Response:
         """
         from rockflex.response._file import load
 
-        return load(Path(path))
+        return load(path_of("path", path))
 
 
 PEAKS = tuple(f.name for f in fields(Response) if f.name not in ("floors", "history"))

@@ -2,12 +2,15 @@
 
 import math
 from abc import ABC, abstractmethod
+from contextlib import AbstractContextManager
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.models import LinearModel, NonlinearModel
 from rockflex.solve._solution import Solution
 from rockflex.solve.adaptive.cross import STALLED
@@ -16,10 +19,20 @@ from rockflex.solve.exact.layout import Array, Log
 from rockflex.solve.exact.run import SETTLED, UNSETTLED
 from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURNED, UPLIFTS
 
-__all__ = ["QUIET", "Engine"]
+__all__ = ["QUIET", "Engine", "preparing"]
 
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
 EVENTS = 512  # nodes of a history between samples; if there are more, the run is done once more
+
+
+def preparing(model: LinearModel | NonlinearModel) -> AbstractContextManager[None]:
+    """Tell failures of arithmetic, met while an engine is made ready, in terms of the model's parameters."""
+    p = model.properties
+    modes = f"omega from {p.omega.min():.3g} to {p.omega.max():.3g} rad/s, " if p.n_modes else ""
+    return computable(
+        f"The motion of {model.label} with {modes}i_theta = {p.i_theta:.3g} kg m², l0r = {p.l0r:.3g} kg m, "
+        f"m_tot = {p.m_tot:.3g} kg and half_width = {p.half_width:.3g} m"
+    )
 
 
 class Engine(ABC):
@@ -116,14 +129,14 @@ class Engine(ABC):
         """Raise if the run could not be solved."""
         if status == BROKEN:
             failure = self._failures.pop()
-            message = f"The impact law {self.model.law!r} failed: {failure}"
+            message = f"The impact law {shown(self.model.law)} failed: {failure}"
             raise InputError(message) from failure
         label = self.model.label
         if status == CHATTER:
             what = f"The impacts of {label} accumulate without end in the sample before {time:.6g} s."
             mend = "Check the model's parameters, and refine the record."
         elif status == GAINED:
-            what = f"The impact law {self.model.law!r} returns energy in the sample before {time:.6g} s."
+            what = f"The impact law {shown(self.model.law)} returns energy in the sample before {time:.6g} s."
             mend = "A law can only lose energy: mend its `after`, or lower its restitution."
         elif status == STALLED:
             what = (

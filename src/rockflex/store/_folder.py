@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
-from rockflex._files import sweep, write_whole
+from rockflex._files import path_of, sweep, write_whole
 from rockflex.store._lock import Lock
 from rockflex.store._manifest import MANIFEST, SPEC, Manifest
 from rockflex.store._parts import PartError, encode, read, schema_of, verify
@@ -76,7 +76,7 @@ class StudyFolder:
         versions
             Version of each library that the numbers depend on, by name.
         checksums
-            Checksum of each record, and of each matrix read from a file, that the study uses, by name.
+            Checksum of each record, matrix from a file and other file that the study depends on, by name.
         any_version
             Go on with other versions than the study was begun with. Every part names its own.
 
@@ -86,7 +86,7 @@ class StudyFolder:
             If the folder holds another study, other records or another program's files, was begun with other versions,
             is in use by another process, or cannot be written.
         """
-        folder = Path(path)
+        folder = path_of("path", path)
         given = Manifest.of(spec, n_chunks, versions, checksums or {})
         with reported(folder):
             if not (folder / MANIFEST).exists():
@@ -116,7 +116,7 @@ class StudyFolder:
         InputError
             If there is no study at `path`, or it is damaged.
         """
-        folder = Path(path)
+        folder = path_of("path", path)
         with reported(folder):
             if not (folder / MANIFEST).is_file():
                 message = (

@@ -12,6 +12,7 @@ from typing import Any, Self
 from uuid import uuid4
 
 from rockflex._errors import InputError
+from rockflex._shown import shortened
 
 __all__ = ["Lock"]
 
@@ -32,16 +33,17 @@ class Lock:
         Raises
         ------
         InputError
-            If a living process, or one on another host, holds it.
+            If a living process, or one on another host, holds it, or something else than a file stands there.
         """
         me = {"pid": os.getpid(), "start": _start(os.getpid()), "host": platform.node()}
         since = datetime.now(UTC).isoformat(timespec="seconds")
         content = json.dumps(me | {"since": since, "token": uuid4().hex})
+        begin = time.monotonic()
         while True:
             try:
                 descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
             except FileExistsError:
-                _take_away_if_stale(path)
+                _take_away_if_stale(path, time.monotonic() - begin)
                 continue
             with os.fdopen(descriptor, "w", encoding="utf-8") as file:
                 file.write(content)
@@ -68,20 +70,26 @@ def _release(path: Path, content: str) -> None:
         path.unlink(missing_ok=True)
 
 
-def _take_away_if_stale(path: Path) -> None:
+def _take_away_if_stale(path: Path, waited: float) -> None:
+    if path.exists() and not path.is_file():
+        message = f"{path} is no file, but the study's lock belongs there. Move it away and try again."
+        raise InputError(message)
     text = _text(path)
     holder = _parsed(text)
     if holder is None:
         try:
-            age = time.time() - path.stat().st_mtime
+            age = time.time() - path.lstat().st_mtime
         except FileNotFoundError:
             return
+        if age < 0.0:  # dated in the future, by another host's clock: our own patience counts
+            age = waited
         if age < UNREADABLE_FOR:
             time.sleep(0.05)
             return
     elif not _dead(holder):
         message = (
-            f"{path.parent} is in use by process {holder['pid']} on {holder['host']} since {holder['since']}. "
+            f"{path.parent} is in use by process {holder['pid']} on {shortened(holder['host'])} since "
+            f"{shortened(holder['since'])}. "
             f"Wait until it has finished, or end it. If it no longer runs, delete {path} and try again."
         )
         raise InputError(message)
@@ -99,16 +107,18 @@ def _take_away_if_stale(path: Path) -> None:
 
 def _text(path: Path) -> str | None:
     try:
-        return path.read_text("utf-8")
+        return path.read_text("utf-8", errors="surrogateescape")
     except FileNotFoundError:
         return None
 
 
 def _parsed(text: str | None) -> dict[str, Any] | None:
+    """What a lock says of its process; None of one that is empty or damaged."""
     try:
         holder = json.loads(text or "")
-        return holder if {"pid", "start", "host", "since"} <= holder.keys() else None
-    except (ValueError, AttributeError):
+        words = all(isinstance(holder[key], str) for key in ("start", "host", "since"))
+        return holder if words and type(holder["pid"]) is int and 0 < holder["pid"] < 2**31 else None
+    except (ValueError, TypeError, LookupError, RecursionError):
         return None
 
 

@@ -11,6 +11,7 @@ from typing import Any, Self, SupportsIndex
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._files import write_whole
+from rockflex._shown import shortened, shown
 from rockflex.store._spec import differences, listed, plain
 
 __all__ = ["MANIFEST", "SPEC", "Manifest"]
@@ -34,7 +35,7 @@ class Manifest:
     versions
         Version of each library that the numbers depend on.
     checksums
-        Checksum of each record, and of each matrix read from a file, by name.
+        Checksum of each record, matrix from a file and other file that the study depends on, by name.
     created
         Date and time, UTC, ISO 8601.
     """
@@ -90,8 +91,8 @@ class Manifest:
                 intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
                 if intact:
                     return manifest
-        except (ValueError, TypeError, KeyError, AttributeError, FileNotFoundError) as error:
-            reason = f"{type(error).__name__}: {error}"
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FileNotFoundError) as error:
+            reason = f"{type(error).__name__}: {shortened(str(error))}"
             message = (
                 f"{path} or the {SPEC} beside it is damaged ({reason}). Restore both from a copy, "
                 f"or give another folder; the results in {folder / 'parts'} can still be read as Parquet."
@@ -99,7 +100,7 @@ class Manifest:
             raise InputError(message) from error
         if known != FORMAT:
             message = (
-                f"{path} has the format {known!r}, but this version of rockflex reads {FORMAT!r}. "
+                f"{path} has the format {shown(known)}, but this version of rockflex reads {FORMAT!r}. "
                 "Use the version that wrote it."
             )
             raise InputError(message)
@@ -120,8 +121,8 @@ class Manifest:
         changed = differences(self.checksums, given.checksums)
         if changed:
             message = (
-                f"{folder} holds this study with other records or matrices. Checksums that differ:{listed(changed)}\n"
-                "Use the same files, or give another folder."
+                f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
+                f"{listed(changed)}\nUse the same files, or give another folder."
             )
             raise InputError(message)
         changed = differences(self.versions, given.versions)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.store._spec import listed
 
 if TYPE_CHECKING:
@@ -42,8 +43,8 @@ def refuse_foreign(folder: Path, own: set[str]) -> None:
     foreign = [name for name in names if name not in own and not name.startswith(".")]
     if foreign:
         message = (
-            f"{folder} is no study, and not empty ({foreign[0]!r} is in it). Give an empty or a new folder, or that of "
-            "a study."
+            f"{folder} is no study, and not empty ({shown(foreign[0])} is in it). Give an empty or a new folder, or "
+            "that of a study."
         )
         raise InputError(message)
 

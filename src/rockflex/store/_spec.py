@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 
 __all__ = ["differences", "listed", "plain"]
 
@@ -31,7 +32,7 @@ def plain(name: str, value: object) -> Any:
         items = cast("Mapping[object, object]", value)
         for key in items:
             if not isinstance(key, str):
-                message = f"The keys of {name} must be strings, but {key!r} was given."
+                message = f"The keys of {name} must be strings, but {shown(key)} was given."
                 raise InputError(message)
         return {str(key): plain(f"{name}.{key}", each) for key, each in items.items()}
     if isinstance(value, list | tuple):

@@ -7,9 +7,11 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._checks import damping_ratios, positive, whole_number
+from rockflex._checks import MOST_MODES, damping_ratios, instance, one_of, positive, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._beam_fe import finite_element_modes
 from rockflex.structure._profile import Along, Profile, profile
@@ -19,11 +21,12 @@ from rockflex.structure._sections import LumpedMasses, Sections, on_beam
 __all__ = ["Beam"]
 
 _N_ELEMENTS = 1000
+MOST_ELEMENTS = 100_000
 _RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Beam:
+class Beam(Value):
     """A cantilever with distributed mass on a rigid base that can rock.
 
     What varies along the height is a number, a function of heights (n,) in m that returns values (n,), or a table
@@ -88,7 +91,10 @@ class Beam:
 
     def __post_init__(self) -> None:
         height = positive("height", self.height, "m")
-        n_modes = whole_number("n_modes", self.n_modes, 1)
+        if not isinstance(self.rotary_in_modes, bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = f"rotary_in_modes must be True or False, but {shown(self.rotary_in_modes)} was given."
+            raise InputError(message)
+        n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
             height=height,
             half_width=positive("half_width", self.half_width, "m"),
@@ -105,6 +111,9 @@ class Beam:
                 bool(self.rotary_in_modes),
             ),
         )
+        for name in ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia"):
+            along: Profile | None = getattr(self.sections, name)
+            vars(self)[name] = None if along is None else along.given
         self._check_method()
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
@@ -148,8 +157,8 @@ class Beam:
         return max(_N_ELEMENTS, self.n_modes) if self.n_elements is None else self.n_elements
 
     def _check_method(self) -> None:
-        if self.method not in ("fe", "ritz"):  # pyright: ignore[reportUnnecessaryContains]
-            message = f'method must be "fe" or "ritz", but {self.method!r} was given.'
+        if not one_of(self.method, ("fe", "ritz")):
+            message = f'method must be "fe" or "ritz", but {shown(self.method)} was given.'
             raise InputError(message)
         lacking = {"fe": {"shapes": "ritz"}, "ritz": {"n_elements": "fe", "shear_stiffness": "fe"}}
         for name, other in lacking[self.method].items():
@@ -157,9 +166,9 @@ class Beam:
                 message = f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".'
                 raise InputError(message)
         if self.n_elements is not None:
-            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes))
+            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, MOST_ELEMENTS))
         if self.shapes is not None:
-            found = self.shapes.check(self.height)
+            found = instance("shapes", self.shapes, RitzShapes).check(self.height)
             if found < self.n_modes:
                 message = f"shapes must hold at least n_modes = {self.n_modes} shapes, but it holds {found}."
                 raise InputError(message)

@@ -1,14 +1,12 @@
 """Modes of a beam by finite elements."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, diags_array
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
 
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
+from rockflex.structure._lowest_modes import lowest_modes
 from rockflex.structure._sections import Sections
 
 __all__ = ["finite_element_modes"]
@@ -16,7 +14,7 @@ __all__ = ["finite_element_modes"]
 Float = NDArray[np.float64]
 
 _POINTS = 4  # exact for cubic shapes with mass and stiffness of the first degree
-_MISFIT = 1e-6
+_HEAVIEST = 1e40  # body, of the mass of the beam: further up rounding decides whether its modes are found
 
 
 def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassNormalisedModes:
@@ -29,11 +27,17 @@ def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassN
 
     The stiffness is kept as K = A^T A: a cantilever is statically determinate, so A is square, and K^-1 = A^-1 A^-T
     keeps the digits that a factor of K would lose as the fourth power of the number of elements.
+
+    Raises
+    ------
+    LinAlgError
+        If a body is too heavy for the beam that carries it, or the modes cannot be found.
     """
     stations = np.linspace(0.0, beam.height, N_STATIONS)
     lumped = beam.lumped
     nodes = mesh(beam.height, n_elements, stations, beam.kinks, lumped.heights)
     elements, masses, rotary = _elements(beam, nodes)
+    _check_bodies(beam, float(masses[:, ::2, ::2].sum()))
     root = _assembled_rows(elements, nodes.size)[:, 2:]
     at = np.abs(nodes[:, None] - lumped.heights).argmin(axis=0)
     point = np.zeros(2 * nodes.size)
@@ -41,7 +45,7 @@ def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassN
     if beam.rotary_in_modes:
         np.add.at(point, 2 * at + 1, lumped.rotary)
     mass = csc_array(_assembled(masses, nodes.size) + diags_array(point))
-    omega, vectors = _lowest(root, csc_array(mass[2:, 2:]), beam.height, n_modes)
+    omega, vectors = lowest_modes(root, csc_array(mass[2:, 2:]), beam.height, n_modes)
 
     full = np.vstack([np.zeros((2, n_modes)), vectors])
     moved = mass @ full
@@ -62,6 +66,16 @@ def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassN
         inertia=float(rotation @ turned),
         rotary=outside,
     )
+
+
+def _check_bodies(beam: Sections, mass: float) -> None:
+    lumped = beam.lumped
+    heaviest = float(lumped.masses.max(initial=0.0))
+    if beam.rotary_in_modes:
+        heaviest = max(heaviest, float(lumped.rotary.max(initial=0.0)) / beam.height**2)
+    if heaviest > _HEAVIEST * mass:
+        message = f"a body on it has {heaviest / mass:.1g} times its mass, more than {_HEAVIEST:g} times"
+        raise np.linalg.LinAlgError(message)
 
 
 def _elements(beam: Sections, nodes: Float) -> tuple[Float, Float, float]:
@@ -122,38 +136,3 @@ def _assembled(elements: Float, n_nodes: int) -> csc_array:
     rows = np.repeat(freedoms, 4, axis=1).ravel()
     columns = np.tile(freedoms, (1, 4)).ravel()
     return csc_array(coo_array((elements.ravel(), (rows, columns)), shape=(2 * n_nodes, 2 * n_nodes)))
-
-
-def _lowest(root: csc_array, mass: csc_array, height: float, n_modes: int) -> tuple[Float, Float]:
-    """Return the lowest modes of the freedoms above the base, from the stiffness A^T A and the mass."""
-    # In heights, masses and stiffnesses of the beam itself, whatever the units that they were given in.
-    unit = diags_array(np.tile([1.0, 1.0 / height], mass.shape[0] // 2))
-    root, mass = csc_array(root @ unit), csc_array(unit @ mass @ unit)
-    stiff, heavy = float(abs(root).max()), float(mass.diagonal().max())
-    root, mass = csc_array(root / stiff), csc_array(mass / heavy)
-    try:
-        upper, lower = splu(root), splu(csc_array(root.T))
-    except RuntimeError as error:
-        raise np.linalg.LinAlgError(str(error)) from error
-
-    def flexibility(force: Float) -> Float:
-        return upper.solve(lower.solve(np.ravel(force)))
-
-    inverse = LinearOperator(mass.shape, matvec=flexibility, dtype=np.float64)
-    stiffness = csc_array(root.T @ root)
-    start = np.ones(mass.shape[0])  # the same digits every time
-    try:
-        _, vectors = eigsh(stiffness, k=n_modes, M=mass, sigma=0.0, OPinv=inverse, v0=start)
-    except ArpackError as error:
-        raise np.linalg.LinAlgError(str(error)) from error
-    vectors = vectors / np.sqrt(np.einsum("in,in->n", vectors, mass @ vectors))
-    omega = np.linalg.norm(root @ vectors, axis=0)
-    order = np.argsort(omega)
-    omega, vectors = omega[order], vectors[:, order]
-    moved = mass @ vectors
-    bent = np.column_stack([flexibility(force) for force in moved.T])
-    misfits = omega**2 * np.einsum("in,in->n", moved, bent) - 1.0  # zero for modes, else positive
-    if not (misfits < _MISFIT).all():
-        message = f"a mode misses its equation by {misfits.max():.1g}"
-        raise np.linalg.LinAlgError(message)
-    return omega * (stiff / math.sqrt(heavy)), unit @ vectors / math.sqrt(heavy)

@@ -5,6 +5,7 @@ import math
 from rockflex._checks import positive, within
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 
 __all__ = ["rigid_block"]
@@ -33,7 +34,7 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
     """
     alpha = within("slenderness", slenderness, 0.5 * math.pi, "rad")
     if alpha <= 0.0:
-        message = f"slenderness must be positive, but {slenderness!r} was given. It is atan(b/h) in rad."
+        message = f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad."
         raise InputError(message)
     r, m = positive("half_diagonal", half_diagonal, "m"), positive("mass", mass, "kg")
     return RockingProperties(

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from rockflex._checks import mode_count, positive
 from rockflex._computable import computable
+from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._beam import Beam
 from rockflex.structure._from_matrices import ModalStructure, from_matrices
@@ -19,7 +20,7 @@ _N_MODES = 5
 
 
 @dataclass(frozen=True, eq=False)
-class CantileverWithTipMass:
+class CantileverWithTipMass(Value):
     """A uniform column that carries a body at its tip, clamped to a base that can rock.
 
     Attributes

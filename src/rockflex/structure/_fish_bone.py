@@ -7,9 +7,11 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import dimensions, finite_vector, positive
+from rockflex._checks import dimensions, finite_vector, float_array, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._lumped import LumpedStructure
 
@@ -19,7 +21,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class FishBone:
+class FishBone(Value):
     """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
 
     The column stands for all columns of a story and the half beams for all beams of a floor; members are
@@ -166,16 +168,14 @@ def _check_signs(name: str, array: Float, unit: str) -> None:
 
 
 def _beams(values: ArrayLike, n: int) -> Float:
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        array = np.full(n, np.nan)
+    given = float_array(values)
+    array = np.full(n, np.nan) if given is None else given
     if array.ndim == 0:
         array = np.full(n, float(array))
     if array.shape != (n,) or not (array >= 0.0).all():
         message = (
             f"beam_stiffness must be one number, or one for each of the {n} stories, from 0 (no beams) to float('inf') "
-            f"(rigid beams) in N m/rad, but {values!r} was given."
+            f"(rigid beams) in N m/rad, but {shown(values)} was given."
         )
         raise InputError(message)
     array.setflags(write=False)

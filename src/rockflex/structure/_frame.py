@@ -8,9 +8,10 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import in_range, positive, whole_number
+from rockflex._checks import in_range, positive, real_or_nan, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties
 from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
@@ -18,6 +19,9 @@ from rockflex.structure._lumped import LumpedStructure
 __all__ = ["Frame"]
 
 Float = NDArray[np.float64]
+
+
+MOST_STORIES = 2000  # of which every matrix takes 32 MB
 
 
 @dataclass(frozen=True)
@@ -72,7 +76,7 @@ class Frame:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            n_stories=whole_number("n_stories", self.n_stories, 1),
+            n_stories=whole_number("n_stories", self.n_stories, 1, MOST_STORIES),
             story_height=positive("story_height", self.story_height, "m"),
             story_mass=positive("story_mass", self.story_mass, "kg"),
             base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
@@ -107,10 +111,12 @@ class Frame:
         with computable(f"The stiffness of a frame with {given}"):
             column_stiffness = self.story_mass * (2.0 * math.pi / (self.period * float(unit_modes.omega[0]))) ** 2
             stiffness = column_stiffness * unit_stiffness
+        with computable(f"The heights of {self.n_stories} stories of {self.story_height:g} m"):
+            heights = self.story_height * np.arange(1.0, self.n_stories + 1.0)
         return LumpedStructure(
             np.full(self.n_stories, self.story_mass),
             stiffness,
-            self.story_height * np.arange(1.0, self.n_stories + 1.0),
+            heights,
             base_mass=self.base_mass,
             half_width=self.half_width,
             damping_ratio=self.damping_ratio,
@@ -148,14 +154,11 @@ def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Float, ModalPro
 
 
 def _checked_stiffness_ratio(value: float) -> float:
-    try:
-        ratio = float(value)
-    except (TypeError, ValueError):
-        ratio = math.nan
+    ratio = real_or_nan(value)
     if not ratio >= 0.0:
         message = (
             f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
-            f"but {value!r} was given."
+            f"but {shown(value)} was given."
         )
         raise InputError(message)
     return ratio

@@ -1,6 +1,6 @@
 """What a rigid motion of the base does to each freedom of a structure."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import SupportsIndex
 
@@ -61,6 +61,9 @@ class Freedoms:
                     "Where some do not translate horizontally, give a map {index: height} of those that do."
                 )
                 raise InputError(message)
+        if not isinstance(rotations, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+            message = f"rotations must be a sequence of indices of freedoms, but {type(rotations).__name__} was given."
+            raise InputError(message)
         turning = [whole_number("rotations, index", i, 0, size - 1) for i in rotations]
         twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
         if twice:

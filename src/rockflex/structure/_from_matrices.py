@@ -11,6 +11,7 @@ from rockflex._checks import damping_ratios, dimensions, finite_matrix, finite_v
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_mass, checked_stiffness
+from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties, modes_that_take_part
 from rockflex.structure._freedoms import Freedoms, Heights
 from rockflex.structure._matrix_files import Given, numbers
@@ -23,7 +24,7 @@ _ORTHOGONAL = 1e-5  # room for printed digits
 
 
 @dataclass(frozen=True, eq=False)
-class ModalStructure:
+class ModalStructure(Value):
     """A structure known by its modes; `from_matrices` and `from_modes` make it.
 
     Attributes
@@ -174,7 +175,7 @@ def from_modes(
         message = f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes."
         raise InputError(message)
     given = numbers("shapes", shapes)
-    columns = np.asarray(given)[:, None] if dimensions(given) == 1 else given
+    columns = finite_vector("shapes", given, "any unit")[:, None] if dimensions(given) == 1 else given
     size = np.shape(columns)[0] if dimensions(columns) == 2 else 1
     phi = finite_matrix("shapes", columns, "any unit", (size, w.size))
     m = _mass_matrix(numbers("mass", mass), size)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import damping_ratios, positive
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness
+from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
 
 __all__ = ["LumpedStructure"]
@@ -17,7 +18,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class LumpedStructure:
+class LumpedStructure(Value):
     """Any linear structure with N masses above a rigid base that can rock.
 
     The horizontal displacements of the masses relative to the base are its freedoms (Silva & Stojadinović

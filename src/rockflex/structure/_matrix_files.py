@@ -2,12 +2,13 @@
 
 import hashlib
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
+from rockflex._files import path_of
 
 __all__ = ["Given", "checksum", "numbers"]
 
@@ -15,6 +16,7 @@ Float = NDArray[np.float64]
 Given: TypeAlias = ArrayLike | str | Path
 """Numbers, or the path of a file that holds them."""
 
+MOST = 20_000  # freedoms of a sparse matrix, which takes 3 GB when dense
 _SUFFIXES = (".npz", ".mtx", ".csv")
 
 
@@ -31,7 +33,7 @@ def numbers(name: str, given: Given) -> ArrayLike:
     """
     if not isinstance(given, str | Path):
         return given
-    path = Path(given)
+    path = path_of(name, given)
     if path.suffix.lower() not in _SUFFIXES:
         message = f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix."
         raise InputError(message)
@@ -62,19 +64,29 @@ def _from_npz(name: str, path: Path) -> Float:
         if "format" in keys and "data" in keys:
             from scipy.sparse import load_npz
 
-            return np.asarray(load_npz(path).toarray(), dtype=np.float64)
+            return _dense(name, path, load_npz(path))
         if name not in keys and len(keys) != 1:
             message = f'{name}: {path} must hold an array "{name}", or one array alone, but it holds {keys}.'
             raise InputError(message)
         return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
 
 
-def _from_mtx(_: str, path: Path) -> Float:
+def _from_mtx(name: str, path: Path) -> Float:
     from scipy.io import mmread
     from scipy.sparse import issparse
 
     matrix = mmread(path)
-    return np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=np.float64)  # pyright: ignore[reportAttributeAccessIssue]
+    return _dense(name, path, matrix) if issparse(matrix) else np.asarray(matrix, dtype=np.float64)
+
+
+def _dense(name: str, path: Path, matrix: Any) -> Float:
+    if max(matrix.shape) > MOST:
+        message = (
+            f"{name}: {path} holds a sparse matrix of the shape {matrix.shape}, but matrices are taken as dense, with "
+            f"{MOST} freedoms at most. Condense it to the freedoms that carry mass, or give its modes to from_modes."
+        )
+        raise InputError(message)
+    return np.asarray(matrix.toarray(), dtype=np.float64)
 
 
 def _from_csv(_: str, path: Path) -> Float:

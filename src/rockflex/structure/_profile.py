@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError
+from rockflex._values import Value
 
 __all__ = ["Along", "Profile", "profile"]
 
@@ -21,8 +22,29 @@ _LOOKS = 65
 _ROOM = 1e-9  # of the height: printed digits of a table's last row
 
 
+@dataclass(frozen=True)
+class Constant:
+    """The same value at every height."""
+
+    value: float
+
+    def __call__(self, z: Float) -> Float:
+        return np.full(z.shape, self.value)
+
+
 @dataclass(frozen=True, eq=False)
-class Profile:
+class Interpolated(Value):
+    """A table of values (n,) at heights (n,) in m, linear between its rows."""
+
+    heights: Float
+    values: Float
+
+    def __call__(self, z: Float) -> Float:
+        return np.interp(z, self.heights, self.values)
+
+
+@dataclass(frozen=True, eq=False)
+class Profile(Value):
     """Values along the height, checked whenever they are read.
 
     Attributes
@@ -42,6 +64,15 @@ class Profile:
     function: Callable[[Float], ArrayLike]
     kinks: Float
     zero: bool
+
+    @property
+    def given(self) -> Along:
+        """The number, the function, or the table as read-only arrays, from which it was made."""
+        if isinstance(self.function, Constant):
+            return self.function.value
+        if isinstance(self.function, Interpolated):
+            return self.function.heights, self.function.values
+        return self.function
 
     def at(self, z: Float) -> Float:
         """Return the values at heights `z`, in the shape of `z`.
@@ -88,7 +119,7 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
         result = _table(name, given, height, unit, zero)
     else:
         constant = positive(name, given, unit, zero=zero)
-        result = Profile(name, unit, lambda z: np.full(z.shape, constant), np.zeros(0), zero)
+        result = Profile(name, unit, Constant(constant), np.zeros(0), zero)
     result.at(np.linspace(0.0, height, _LOOKS))
     return result
 
@@ -126,4 +157,4 @@ def _table(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: s
         message = f"{name} must be {kind}, but its table holds {values[i]:g} {unit} at {z[i]:g} m."
         raise InputError(message)
     inside = z[(z > 0.0) & (z < height)]
-    return Profile(name, unit, lambda at: np.interp(at, z, values), np.unique(inside), zero)
+    return Profile(name, unit, Interpolated(z, values), np.unique(inside), zero)

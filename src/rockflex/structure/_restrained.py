@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol, SupportsIndex
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties, Tendon, tendon_set
 
 __all__ = ["Restrained"]
@@ -45,8 +46,8 @@ class Restrained:
     def __init__(self, structure: Unrestrained, tendons: Tendon | Iterable[Tendon]) -> None:
         if isinstance(structure, type) or not (hasattr(structure, "rocking") and hasattr(structure, "modal")):
             message = (
-                f"structure must be a structure such as a Frame, but {structure!r} was given. RockingProperties take "
-                "their tendons themselves: RockingProperties(..., tendons=...)."
+                f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
+                "take their tendons themselves: RockingProperties(..., tendons=...)."
             )
             raise InputError(message)
         vars(self).update(structure=structure, tendons=tendon_set(tendons))

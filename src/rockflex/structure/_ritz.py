@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import MOST_MODES, positive, whole_number
+from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 from rockflex.structure._sections import Sections
@@ -24,7 +26,7 @@ _INDEPENDENT = 1e-13  # smallest eigenvalue of the mass matrix of shapes of unit
 
 
 @dataclass(frozen=True, eq=False)
-class RitzShapes:
+class RitzShapes(Value):
     """Shape functions ψ_j(z) of a cantilever with their first two derivatives.
 
     Each is a function of heights (P,) in m and returns (P, n), one column a shape. A shape and its slope vanish at the
@@ -94,6 +96,30 @@ class RitzShapes:
         return value.shape[1]
 
 
+@dataclass(frozen=True, eq=False)
+class CosineShapes(Value):
+    """1 - cos(r z) at heights (P,), one column a rate r in rad/m."""
+
+    rates: Float
+
+    def __call__(self, z: Float) -> Float:
+        return 1.0 - np.cos(np.outer(z, self.rates))
+
+
+class CosineSlopes(CosineShapes):
+    """The first derivative of `CosineShapes`."""
+
+    def __call__(self, z: Float) -> Float:
+        return self.rates * np.sin(np.outer(z, self.rates))
+
+
+class CosineCurvatures(CosineShapes):
+    """The second derivative of `CosineShapes`."""
+
+    def __call__(self, z: Float) -> Float:
+        return self.rates**2 * np.cos(np.outer(z, self.rates))
+
+
 def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
     """Return the shapes 1 - cos((2j - 1) π z/(2 H)), j = 1..n (Silva & Stojadinović 2024, Eq. 36).
 
@@ -103,12 +129,10 @@ def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
         If the height or the number is not positive.
     """
     h = positive("height", height, "m")
-    rates = (2.0 * np.arange(1, whole_number("n_shapes", n_shapes, 1) + 1) - 1.0) * math.pi / (2.0 * h)
-    return RitzShapes(
-        lambda z: 1.0 - np.cos(np.outer(z, rates)),
-        lambda z: rates * np.sin(np.outer(z, rates)),
-        lambda z: rates**2 * np.cos(np.outer(z, rates)),
-    )
+    numbers = np.arange(1, whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1, dtype=np.float64)
+    with computable(f"The shapes of a structure of the height {h:g} m"):
+        rates = (2.0 * numbers - 1.0) * math.pi / (2.0 * h)
+    return RitzShapes(CosineShapes(rates), CosineSlopes(rates), CosineCurvatures(rates))
 
 
 def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalisedModes:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.structure._profile import Profile
 
 __all__ = ["LumpedMasses", "Sections", "on_beam"]
@@ -16,7 +17,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class LumpedMasses:
+class LumpedMasses(Value):
     """Bodies fixed to a beam.
 
     Attributes
@@ -64,7 +65,7 @@ class LumpedMasses:
 
 
 @dataclass(frozen=True, eq=False)
-class Sections:
+class Sections(Value):
     """Profiles and bodies of a beam.
 
     Attributes

@@ -8,9 +8,11 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import one_of, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._beam import Beam
 
@@ -22,7 +24,7 @@ _N_ELEMENTS = 2000  # as many as the paper takes
 
 
 @dataclass(frozen=True, eq=False)
-class TaperedTower:
+class TaperedTower(Value):
     """A hollow truncated cone with a wall of one thickness (Silva & Stojadinović 2024, Section 4.1.1).
 
     Attributes
@@ -65,6 +67,9 @@ class TaperedTower:
     n_modes: int = 5
 
     def __post_init__(self) -> None:
+        if not one_of(self.method, ("fe", "ritz")):
+            message = f'method must be "fe" or "ritz", but {shown(self.method)} was given.'
+            raise InputError(message)
         vars(self).update(
             height=positive("height", self.height, "m"),
             base_radius=positive("base_radius", self.base_radius, "m"),
@@ -86,13 +91,14 @@ class TaperedTower:
     @computable("The sections of a tower with these radii, wall, density and elastic_modulus")
     def beam(self) -> Beam:
         """The cantilever that the tower is."""
+        ring = (self.height, self.base_radius, self.top_radius, self.wall)
         return Beam(
             height=self.height,
-            mass=lambda z: self.density * self._area(z),
-            bending_stiffness=lambda z: self.elastic_modulus * self._area(z) * self._gyration(z),
+            mass=_Area(*ring, self.density),
+            bending_stiffness=_SecondMoment(*ring, self.elastic_modulus),
             half_width=self.base_radius,
             damping_ratio=self.damping_ratio,
-            rotary_inertia=lambda z: self.density * self._area(z) * self._gyration(z),
+            rotary_inertia=_SecondMoment(*ring, self.density),
             rotary_in_modes=False,
             method=self.method,
             n_modes=self.n_modes,
@@ -124,14 +130,33 @@ class TaperedTower:
         """
         return self.beam.rocking(n_modes)
 
-    def _radii(self, z: Float) -> tuple[Float, Float]:
+
+@dataclass(frozen=True)
+class _Ring:
+    """The ring that a section is, at any height: height and radii of the tower and its wall in m, and a factor."""
+
+    height: float
+    base_radius: float
+    top_radius: float
+    wall: float
+    factor: float
+
+    def radii(self, z: Float) -> tuple[Float, Float]:
         outer = self.base_radius + (self.top_radius - self.base_radius) * z / self.height
         return outer, np.maximum(outer - self.wall, 0.0)
 
-    def _area(self, z: Float) -> Float:
-        outer, inner = self._radii(z)
-        return math.pi * (outer**2 - inner**2)
 
-    def _gyration(self, z: Float) -> Float:
-        outer, inner = self._radii(z)
-        return (outer**2 + inner**2) / 4.0
+class _Area(_Ring):
+    """The factor times the area in m²."""
+
+    def __call__(self, z: Float) -> Float:
+        outer, inner = self.radii(z)
+        return self.factor * (math.pi * (outer**2 - inner**2))
+
+
+class _SecondMoment(_Ring):
+    """The factor times the second moment of the area in m⁴."""
+
+    def __call__(self, z: Float) -> Float:
+        outer, inner = self.radii(z)
+        return self.factor * (math.pi * (outer**2 - inner**2)) * ((outer**2 + inner**2) / 4.0)

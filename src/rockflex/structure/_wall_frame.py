@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from rockflex._checks import damping_ratios, positive, whole_number
+from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
 from rockflex._computable import computable
+from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 
@@ -23,7 +24,7 @@ _LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 
 
 @dataclass(frozen=True, eq=False)
-class WallFrame:
+class WallFrame(Value):
     """A uniform wall in flexure beside a uniform frame in shear, tied all along the height.
 
     EI u'''' - GA u'' = m ω² u: the coupled beam of Miranda & Taghavi (2005, Journal of Structural Engineering 131(2),
@@ -65,7 +66,7 @@ class WallFrame:
     n_modes: int = 5
 
     def __post_init__(self) -> None:
-        n_modes = whole_number("n_modes", self.n_modes, 1)
+        n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
             height=positive("height", self.height, "m"),
             mass=positive("mass", self.mass, "kg"),

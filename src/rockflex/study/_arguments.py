@@ -5,8 +5,9 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Any, Literal, Protocol, get_args
 
-from rockflex._checks import finite_vector, real_or_nan
+from rockflex._checks import finite_vector, one_of, real_or_nan
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, NonlinearModel, RockingModel
 from rockflex.motion import GroundMotion
@@ -44,8 +45,8 @@ class Structure(Protocol):
 
 def check_output(output: str) -> None:
     """Raise an InputError unless `output` is known."""
-    if output not in get_args(Output):
-        message = f'output must be "history" or "peaks", but {output!r} was given.'
+    if not one_of(output, get_args(Output)):
+        message = f'output must be "history" or "peaks", but {shown(output)} was given.'
         raise InputError(message)
 
 
@@ -91,7 +92,8 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
     seconds = real_or_nan(value)
     if not 0.0 <= seconds <= LONGEST:
         message = (
-            f'free_vibration must be zero or more seconds (at most {LONGEST:g}), or "settle", but {value!r} was given.'
+            f'free_vibration must be zero or more seconds (at most {LONGEST:g}), or "settle", but {shown(value)} was '
+            "given."
         )
         raise InputError(message)
     return seconds
@@ -101,7 +103,8 @@ def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
     """Raise an InputError unless both are what their names say, or None."""
     if not isinstance(bouc_wen, BoucWen | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = (
-            f"bouc_wen must be a BoucWen or None, but {bouc_wen!r} was given. Write BoucWen(yield_displacement=...)."
+            f"bouc_wen must be a BoucWen or None, but {shown(bouc_wen)} was given. "
+            "Write BoucWen(yield_displacement=...)."
         )
         raise InputError(message)
     if impact is not None and (isinstance(impact, type) or not isinstance(impact, ImpactLaw)):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -133,7 +136,8 @@ def check_initial(initial: InitialState | None) -> None:
     """Raise an InputError unless `initial` is a state or None."""
     if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = (
-            f"initial must be an InitialState or None, but {initial!r} was given. Write InitialState(rotation=...)."
+            f"initial must be an InitialState or None, but {shown(initial)} was given. "
+            "Write InitialState(rotation=...)."
         )
         raise InputError(message)
 
@@ -160,7 +164,7 @@ def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[floa
     """One positive number or more, as a list."""
     numbers = finite_vector(name, values, unit)
     if numbers.min(initial=math.inf) <= 0.0 or numbers.size == 0:
-        message = f"{name} must be one or more positive numbers{unit and f' in {unit}'}, but {values!r} was given."
+        message = f"{name} must be one or more positive numbers{unit and f' in {unit}'}, but {shown(values)} was given."
         raise InputError(message)
     return numbers.tolist()
 
@@ -170,13 +174,13 @@ def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list
     given = [scales] if isinstance(scales, Real) else _items(scales)
     factors = [real_or_nan(factor) for factor in given or ()]
     if not factors or not all(map(math.isfinite, factors)):
-        message = f"scales must be one or more finite factors, but {scales!r} was given."
+        message = f"scales must be one or more finite factors, but {shown(scales)} was given."
         raise InputError(message)
     largest = max(factors, key=abs)
     if not math.isfinite(largest * strongest.pga):
         message = (
-            f"scales must keep the accelerations finite, but the factor {largest:g} was given for {strongest.name!r} "
-            f"with {strongest.pga:.3g} m/s². Give a smaller factor."
+            f"scales must keep the accelerations finite, but the factor {largest:g} was given for "
+            f"{shown(strongest.name)} with {strongest.pga:.3g} m/s². Give a smaller factor."
         )
         raise InputError(message)
     return factors
@@ -184,7 +188,7 @@ def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list
 
 def _items(given: Any) -> list[Any] | None:
     """What a sequence holds; None where `given` is none."""
-    if isinstance(given, str):
+    if isinstance(given, str | bytes):
         return None
     try:
         items = iter(given)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.parallel import core_count, map_dask, map_threads
 from rockflex.store import StudyFolder
 
@@ -83,7 +84,7 @@ def run_study(
 
     spec = load_study(study) if isinstance(study, str | Path) else study
     if workers is not None and dask is not None:
-        message = f"workers is for threads here, but {workers!r} was given together with the cluster at {dask}."
+        message = f"workers is for threads here, but {shown(workers)} was given together with the cluster at {dask}."
         raise InputError(message)
     plan = spec.plan()
     if folder is None:

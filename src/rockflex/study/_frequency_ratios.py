@@ -1,12 +1,9 @@
 """Uplifted frequencies over the slenderness of a structure."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, SupportsIndex
 
-import numpy as np
-
-from rockflex._checks import whole_number
+from rockflex._checks import dimensions, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, uplifted_modes
 from rockflex.study._arguments import Structure, positive_numbers, properties_of
@@ -14,7 +11,7 @@ from rockflex.study._arguments import Structure, positive_numbers, properties_of
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["frequency_ratios", "on_base"]
+__all__ = ["frequency_ratios"]
 
 
 def frequency_ratios(
@@ -64,7 +61,7 @@ def frequency_ratios(
     rows: list[dict[str, Any]] = []
     for label, count in kept:
         for aspect_ratio in ratios:
-            based = on_base(properties, float(properties.effective_height[0]) / aspect_ratio)
+            based = properties.with_half_width(float(properties.effective_height[0]) / aspect_ratio)
             found = uplifted_modes(based, count)
             rows += [
                 {
@@ -85,7 +82,7 @@ def frequency_ratios(
 
 
 def _several(n_modes: Any) -> list[Any]:
-    given = list(n_modes) if np.ndim(n_modes) == 1 else [n_modes]
+    given = list(n_modes) if dimensions(n_modes) == 1 else [n_modes]
     if not given:
         message = "n_modes is empty. Give at least one number of modes, or None for all."
         raise InputError(message)
@@ -97,20 +94,3 @@ def _kept(given: SupportsIndex | None, available: int) -> tuple[str, int]:
         return "MDOF-S", available
     count = whole_number("n_modes", given, 1, available)
     return f"{count + 1}DOF-S", count
-
-
-def on_base(properties: RockingProperties, half_width: float, added_mass: float = 0.0) -> RockingProperties:
-    """The same structure on a base of another half width in m, which has `added_mass` in kg more.
-
-    I_θ changes with m_tot B²; what rotary inertia the bodies have stays. The base's mass has no height, so it changes
-    neither L_0^r nor the modes.
-
-    Raises
-    ------
-    InputError
-        If a tendon does not stand within the base, or less mass is left than the modes have.
-    """
-    wider = properties.m_tot * (half_width**2 - properties.half_width**2) + added_mass * half_width**2
-    return replace(
-        properties, half_width=half_width, i_theta=properties.i_theta + wider, m_tot=properties.m_tot + added_mass
-    )

@@ -1,15 +1,15 @@
 """Where a free motion starts from."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._checks import finite_vector, within
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.models import RockingModel
 
 __all__ = ["InitialState"]
@@ -20,7 +20,7 @@ LARGEST = 1e9  # m, m/s or rad/s: beyond any structure, and far from where numbe
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class InitialState:
+class InitialState(Value):
     """The state at t = 0, in place of rest.
 
     The base starts uplifted where `rotation` is not zero, on the side of its sign. With `rotation` zero and
@@ -61,10 +61,6 @@ class InitialState:
             rotation_velocity=within("rotation_velocity", rotation_velocity, LARGEST, "rad/s"),
         )
 
-    def __reduce__(self) -> tuple[Callable[..., "InitialState"], tuple[Any, ...]]:
-        # Rebuilt on unpickling: NumPy forgets that an array was read-only.
-        return InitialState, (self.rotation, self.modal_displacement, self.modal_velocity, self.rotation_velocity)
-
     def state(self, model: RockingModel) -> Array:
         """State [D.., D'.., θ, θ'] for a model.
 
@@ -88,8 +84,8 @@ class InitialState:
         state[-2:] = self.rotation, self.rotation_velocity
         if not model.lifts and np.any(state[-2:] != 0.0):
             message = (
-                f"{model.label} has a base that cannot lift, but rotation={self.rotation!r} and "
-                f"rotation_velocity={self.rotation_velocity!r} were given. Give zero, or a model that rocks."
+                f"{model.label} has a base that cannot lift, but rotation={shown(self.rotation)} and "
+                f"rotation_velocity={shown(self.rotation_velocity)} were given. Give zero, or a model that rocks."
             )
             raise InputError(message)
         return state

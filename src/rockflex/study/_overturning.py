@@ -11,9 +11,11 @@ import numpy as np
 from rockflex._checks import in_range
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
-from rockflex.motion import GroundMotion
+from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.parallel import map_threads
 from rockflex.response import Response, respond
 from rockflex.study._arguments import Structure, check_options, described, positive_numbers, properties_of
@@ -27,8 +29,8 @@ __all__ = ["OverturningScales", "overturning_scales", "overturning_spectrum"]
 SCAN = tuple(float(scale) for scale in np.arange(1.0, 30.01, 0.1))  # a_p/(g α)
 
 
-@dataclass(frozen=True)
-class OverturningScales:
+@dataclass(frozen=True, eq=False)
+class OverturningScales(Value):
     """Two boundaries of the scales that overturn; overturning is not monotone, and between them both may happen.
 
     Parameters
@@ -80,11 +82,12 @@ def overturning_scales(
     SolverError
         If a run cannot be solved.
     """
-    tried = _scan(scales)
+    tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
         raise InputError(message)
+    check_horizontal(motion)
     return _search(_runner(structure, model, impact), motion, tried, width)
 
 
@@ -134,13 +137,16 @@ def overturning_spectrum(
         If a run cannot be solved.
     """
     ratios = positive_numbers("frequency_ratios", frequency_ratios, "")
-    tried = _scan(relative_amplitudes)
+    tried = _scan("relative_amplitudes", relative_amplitudes)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
     properties = properties_of(structure)
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
     unit = properties.resisting_moment / properties.l0r  # g α
     run = _runner(properties, model, impact)
     periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
+    if not callable(pulse):
+        message = f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given."
+        raise InputError(message)
     pulses = [pulse(unit, period) for period in periods]
     for made in pulses:
         if not isinstance(made, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -218,9 +224,9 @@ def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: 
     return stands, falls, impacts
 
 
-def _scan(scales: Sequence[float]) -> list[float]:
-    numbers = positive_numbers("scales", scales, "")
+def _scan(name: str, scales: Sequence[float]) -> list[float]:
+    numbers = positive_numbers(name, scales, "")
     if len(numbers) < 2 or any(b <= a for a, b in pairwise(numbers)):
-        message = f"scales must rise, two at least, but {scales!r} was given. They are the grid that is searched."
+        message = f"{name} must rise, two at least, but {shown(scales)} was given. They are the grid that is searched."
         raise InputError(message)
     return numbers

@@ -5,9 +5,9 @@ from typing import Literal
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, LinearModel, Model, RockingModel, parse_model
-from rockflex.motion import GroundMotion
+from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.response import Response, elastic_observables, floor_observables, global_observables, respond
-from rockflex.solve import AdaptiveEngine, Engine, ExactEngine
+from rockflex.solve import AdaptiveEngine, Engine, ExactEngine, preparing
 from rockflex.study._arguments import (
     Output,
     Structure,
@@ -75,7 +75,8 @@ def simulate(
     Raises
     ------
     InputError
-        If the model's label is unknown, a value is out of range, or an argument is of the wrong kind.
+        If the model's label is unknown, a value is out of range, an argument is of the wrong kind, or the motion is a
+        vertical component.
     SolverError
         If the run cannot be solved; the message names the time and the state.
     """
@@ -85,6 +86,7 @@ def simulate(
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
         raise InputError(message)
+    check_horizontal(motion)
     check_initial(initial)
     free = free_vibration_time(free_vibration)
     check_settling(tied, free)
@@ -101,12 +103,13 @@ def simulate(
 
 def make_engine(model: RockingModel, output: Output) -> Engine:
     """Engine that tracks the global peaks and, for histories, those of the floors."""
-    rows = global_observables(model)
-    floors = model.properties.floors if output == "history" else None
-    if isinstance(model, LinearModel):
+    with preparing(model):
+        rows = global_observables(model)
+        floors = model.properties.floors if output == "history" else None
+        if isinstance(model, LinearModel):
+            if floors is not None:
+                rows = rows + floor_observables(model, floors)
+            return ExactEngine(model, rows)
         if floors is not None:
-            rows = rows + floor_observables(model, floors)
-        return ExactEngine(model, rows)
-    if floors is not None:
-        rows = rows + elastic_observables(model, floors)
-    return AdaptiveEngine(model, rows)
+            rows = rows + elastic_observables(model, floors)
+        return AdaptiveEngine(model, rows)

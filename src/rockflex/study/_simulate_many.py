@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
-from rockflex.motion import GroundMotion
+from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
+from rockflex.motion import check_horizontal
 from rockflex.parallel import map_threads
 from rockflex.response import respond
 from rockflex.solve import Engine
@@ -20,12 +20,11 @@ from rockflex.study._arguments import (
     factors_of,
     free_vibration_time,
     hysteresis_of,
-    is_structure,
     properties_of,
-    sequence_of,
 )
 from rockflex.study._initial import InitialState
 from rockflex.study._simulate import make_engine
+from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._table import Table
 
 if TYPE_CHECKING:
@@ -39,9 +38,9 @@ CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to sh
 
 
 def simulate_many(
-    structures: Structure | RockingProperties | Sequence[Structure | RockingProperties],
-    motions: GroundMotion | Sequence[GroundMotion],
-    models: str | Model | Sequence[str | Model] = "MDOF-S",
+    structures: Structures,
+    motions: Motions,
+    models: Models = "MDOF-S",
     output: Output = "peaks",
     scales: float | Sequence[float] = 1.0,
     free_vibration: float | Literal["settle"] = 0.0,
@@ -57,8 +56,10 @@ def simulate_many(
 
     Parameters
     ----------
-    structures, motions, models
-        One of each, or a sequence; a suite is a sequence of motions.
+    structures, motions
+        One of each, a sequence, or a mapping from names; a suite is a sequence of motions.
+    models
+        Labels or models, one or a sequence.
     output
         ``"peaks"``, or ``"history"`` for a further column `response` with every run's `Response`.
     scales
@@ -74,28 +75,25 @@ def simulate_many(
     Returns
     -------
     pandas.DataFrame
-        One row a run, structures outermost, then motions, models and scales. Columns: `structure` (index in
-        `structures`), `motion` (name), `scale`, `model`, `status`, `error`, then every scalar of `Response` by its
-        name, in SI units. A run that cannot be solved, or a model with more modes than its structure, has its message
-        in `error` and every other result missing: NaN, or NA in the columns of counts (Int64) and of flags (boolean).
+        One row a run, structures outermost, then motions, models and scales. Columns: `structure` (its name in a
+        mapping, else its index), `motion` (name), `scale`, `model`, `status`, `error`, then every scalar of `Response`
+        by its name, in SI units. A run that cannot be solved, or a model with more modes than its structure, has its
+        message in `error` and every other result missing: NaN, or NA in the columns of counts (Int64) and of flags
+        (boolean).
 
     Raises
     ------
     InputError
-        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, or a scaled
-        motion would overflow.
+        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, a motion is a
+        vertical component, or a scaled motion would overflow.
     """
     check_output(output)
     check_options(bouc_wen, impact)
     check_initial(initial)
-    everything = sequence_of(
-        "structures", structures, is_structure, "a structure such as a Frame, or RockingProperties"
-    )
-    records = sequence_of("motions", motions, lambda given: isinstance(given, GroundMotion), "a GroundMotion")
-    labels = sequence_of(
-        "models", models, lambda given: isinstance(given, str | Model), 'a label such as "2DOF-S", or a Model'
-    )
-    chosen = [parse_model(model) for model in labels]
+    everything, names = structures_of(structures)
+    records = motions_of(motions)
+    check_horizontal(*records)
+    chosen = models_of(models)
     yielding = hysteresis_of(chosen, bouc_wen)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
     free = free_vibration_time(free_vibration)
@@ -140,7 +138,7 @@ def simulate_many(
 
     for _ in map_threads(work, tasks(), workers):
         pass
-    return table.frame(shape, [motion.name for motion in records], factors, [model.label for model in chosen])
+    return table.frame(shape, names, [motion.name for motion in records], factors, [model.label for model in chosen])
 
 
 def _prepare(

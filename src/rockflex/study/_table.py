@@ -37,7 +37,12 @@ class Table:
             self.responses[row] = response
 
     def frame(
-        self, shape: tuple[int, ...], motions: list[str], scales: list[float], models: list[str]
+        self,
+        shape: tuple[int, ...],
+        structures: list[str] | None,
+        motions: list[str],
+        scales: list[float],
+        models: list[str],
     ) -> "pd.DataFrame":
         import pandas as pd
 
@@ -47,7 +52,7 @@ class Table:
             error[row] = message
         table = pd.DataFrame(
             {
-                "structure": structure,
+                "structure": structure if structures is None else _named(structure, structures),
                 "motion": _named(motion, motions),
                 "scale": np.asarray(scales)[scale],
                 "model": _named(model, models),

@@ -2,11 +2,12 @@
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, InstanceOf, field_validator
 
 from rockflex._errors import InputError
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified
 from rockflex.structure.file import Table
+from rockflex.study._arguments import check_options
 
 __all__ = ["LAWS", "Assumed", "BoucWenTable", "impact_law"]
 
@@ -24,13 +25,23 @@ class BoucWenTable(Table):
 
 
 class Assumed(Table):
-    """Keys for the impact law and the hysteresis; None of either is the model's own law, and no yielding."""
+    """Keys for the impact law and the hysteresis; None of either is the model's own law, and no yielding.
 
-    impact: Literal["simplified", "complete", "restitution"] | None = Field(
+    In Python `impact` may be any `ImpactLaw` too, in place of a name.
+    """
+
+    impact: Literal["simplified", "complete", "restitution"] | InstanceOf[ImpactLaw] | None = Field(
         None, description='"simplified", "complete" or "restitution"'
     )
     restitution: float | None = Field(None, description="a number from 0 to 1")
     bouc_wen: BoucWenTable | None = Field(None, description="a table")
+
+    @field_validator("impact", mode="before")
+    @classmethod
+    def _law(cls, given: object) -> object:
+        if not isinstance(given, str | int | float | list | dict | None):  # none of what a file holds
+            check_options(None, given)  # pyright: ignore[reportArgumentType]
+        return given
 
     def law(self) -> ImpactLaw | None:
         """Return the impact law; None for the model's own.
@@ -43,7 +54,10 @@ class Assumed(Table):
         if (self.restitution is not None) != (self.impact == "restitution"):
             message = 'restitution and impact = "restitution" go together. Give both or neither.'
             raise InputError(message)
-        return impact_law(self.impact, self.restitution)
+        if self.impact is None or isinstance(self.impact, str):
+            return impact_law(self.impact, self.restitution)
+        check_options(None, self.impact)  # a copy with another law was not checked
+        return self.impact
 
     def hysteresis(self) -> BoucWen | None:
         """Return the hysteresis; None if nothing yields.
@@ -60,6 +74,9 @@ def impact_law(name: str | None, restitution: float | None = None) -> ImpactLaw 
     """Return the law of a name in `LAWS`, or None for None; `restitution` belongs to ``"restitution"``."""
     if name is None:
         return None
+    if name not in LAWS:
+        message = f"impact must be one of {', '.join(LAWS)}, but {name!r} was given."
+        raise InputError(message)
     if restitution is not None:
         return Restitution(restitution)
     return VVELSimplified() if name == "simplified" else VVELComplete()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import CloudFits, OutcomeFragility, bootstrap_band, fit_clouds, fit_outcomes
+from rockflex.fragility import CloudFits, OutcomeFragility, bootstrap_band, fit_each_cloud, fit_outcomes
 from rockflex.study.plans import CloudPlan, CloudStudy
 from rockflex.web._jobs import Job
 from rockflex.web._packing import plain
@@ -71,11 +71,8 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
         view["notes"].append("The runs so far share one intensity.")
         return plain(view)
     grid = np.geomspace(im.min(), im.max(), GRID)
-    try:
-        fits = fit_clouds(solved, choice.measure, nominal=choice.limit == "nominal")
-    except (InputError, SolverError) as error:
-        view["notes"].append(str(error))
-        return plain(view)
+    fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == "nominal")
+    view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
         view["curves"].append(_curve(fit, part, choice, grid, view["notes"]))

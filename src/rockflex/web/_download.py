@@ -10,8 +10,9 @@ import numpy as np
 import tomli_w
 
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import fit_clouds
+from rockflex.fragility import fit_each_cloud
 from rockflex.models import parse_model
+from rockflex.motion import GroundMotion
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, design_table_of
 from rockflex.web._jobs import Job
@@ -98,7 +99,7 @@ def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
     rows = [response.peaks() for response in found]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["record", "scale", *rows[0]])
+    writer.writerow(["motion", "scale", *rows[0]])
     writer.writerows([motion.name, state.scale, *row.values()] for row in rows)
     return "peaks.csv", text.getvalue()
 
@@ -126,7 +127,12 @@ def _record(state: State, uploads: Uploads) -> tuple[str, str]:
     motion = motion_of(state.record, uploads)
     rows = zip(motion.time.tolist(), motion.acceleration.tolist(), strict=True)
     lines = [f"{t!r},{a!r}" for t, a in rows]
-    return f"{clean_name(motion.name)}.csv", "\n".join(["time (s),acc (m/s2)", *lines, ""])
+    return f"{_file_name(motion)}.csv", "\n".join(["time (s),acc (m/s2)", *lines, ""])
+
+
+def _file_name(motion: GroundMotion) -> str:
+    """The name of a motion as that of a file; a unit in it is no path."""
+    return clean_name(motion.name.replace("/", "_"))
 
 
 def _structure_toml(state: State, _: Uploads) -> tuple[str, str]:
@@ -139,7 +145,7 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
     head = "# rockflex cloud study.toml --out study\n"
     records: dict[str, Any] = {"suites": [state.record.suite], "include": [motion.name]}
     if state.record.source != "suite":
-        name = f"{clean_name(motion.name)}.csv"
+        name = f"{_file_name(motion)}.csv"
         head += f'# Put the record, which the page gives as "{name}", into the folder records beside this file.\n'
         records = {"folder": "records"}
     content: dict[str, Any] = {
@@ -191,8 +197,11 @@ def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
         return "runs.csv", "text/csv", runs.to_csv(index=False).encode()
     from rockflex.plot import plot_fragility
 
+    fits, reasons = fit_each_cloud(runs, state.cloud.measure, nominal=state.cloud.limit == "nominal")
+    if not fits:
+        message = f"There is no curve to draw. {' '.join(f'{model}: {why}' for (_, model), why in reasons.items())}"
+        raise Refusal(message)
     try:
-        fits = fit_clouds(runs, state.cloud.measure, nominal=state.cloud.limit == "nominal")
         figure = plot_fragility(fits, level=state.cloud.level, overturning=True)
         return "fragility.svg", "image/svg+xml", svg(figure)
     except (InputError, SolverError) as error:

@@ -161,7 +161,7 @@ def _modes(built: Built) -> list[dict[str, Any]]:
     p = built.properties
     if not p.n_modes:
         return []
-    lifted = uplifted_modes(p).omega
+    lifted = uplifted_modes(p)
     return [
         {
             "period": 2.0 * np.pi / p.omega[n],
@@ -169,7 +169,8 @@ def _modes(built: Built) -> list[dict[str, Any]]:
             "mass_share": p.effective_mass[n] / p.m_tot,
             "effective_height": p.effective_height[n],
             "damping": p.zeta[n],
-            "uplifted_period": 2.0 * np.pi / lifted[n] if n < lifted.size and lifted[n] > 0.0 else None,
+            "uplifted_period": 2.0 * np.pi / lifted.omega[n] if lifted.omega[n] > 0.0 else None,
+            "uplifted_damping": lifted.damping_ratio[n],
         }
         for n in range(p.n_modes)
     ]

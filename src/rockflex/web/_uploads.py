@@ -5,6 +5,7 @@ import io
 import re
 import zipfile
 from collections import OrderedDict
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, read_motion
+from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_motion
 from rockflex.web._limits import FILE, FREEDOMS, check_motion
 from rockflex.web._refusal import Refusal
 
@@ -76,7 +77,7 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Raises
     ------
     Refusal
-        If the file is too large, cannot be read, or holds too long a record.
+        If the file is too large, cannot be read, or holds too long a record or a vertical component.
     """
     shown = clean_name(name)
     text = _decoded(shown, content)
@@ -91,7 +92,12 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     except OSError as error:
         message = "the server could not keep the file for a moment. Try again."
         raise Refusal({"record.upload": message}, 503) from error
-    named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", motion.metadata)
+    info = motion.metadata or RecordInfo()
+    info = replace(info, direction=direction_of(Path(shown), info.component))  # the file here has another name
+    named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info)
+    if is_vertical(named):
+        message = f"{shown} is a vertical component by its header or its name. Choose a horizontal one."
+        raise Refusal({"record.upload": message})
     check_motion(named, "record.upload")
     return named
 

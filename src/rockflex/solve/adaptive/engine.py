@@ -7,7 +7,7 @@ import numpy as np
 from rockflex._constants import GRAVITY
 from rockflex._kernel import Entry
 from rockflex.models import EXTRA, LINEAR, VERTICAL, NonlinearModel, impact_of, lost_support_row
-from rockflex.solve._engine import QUIET, Engine
+from rockflex.solve._engine import QUIET, Engine, preparing
 from rockflex.solve._observables import Observables
 from rockflex.solve.adaptive.layout import Flow, stages
 from rockflex.solve.adaptive.run import run
@@ -57,10 +57,12 @@ class AdaptiveEngine(Engine):
             scale=_scale(model),
             tolerance=tolerance,
         )
-        self._impact, self._physics = impact, physics_of(linear)
+        self._impact = impact
         n = model.properties.n_modes
         self._plain_rows = np.delete(both, 2 * n + 2, axis=2)
-        self._contact = contact_basis(self._physics, self._plain_rows[0])
+        with preparing(model):
+            self._physics = physics_of(linear)
+            self._contact = contact_basis(self._physics, self._plain_rows[0])
         self._systems: dict[float, System] = {}
 
     def system(self, dt: float) -> System:

@@ -78,7 +78,7 @@ def rocking_basis(physics: Physics, accelerations: Array, rows: Array) -> Basis:
     try:
         inverse = np.linalg.inv(columns)
         condition = float(np.abs(columns).sum(axis=0).max() * np.abs(inverse).sum(axis=0).max())
-    except np.linalg.LinAlgError:
+    except (np.linalg.LinAlgError, FloatingPointError):
         inverse, condition = columns, np.inf
     dense = condition > WORST_CONDITION
     if dense:

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._kernel import Entry
 from rockflex.models import LinearModel, impact_of, lost_support_row
-from rockflex.solve._engine import QUIET, Engine
+from rockflex.solve._engine import QUIET, Engine, preparing
 from rockflex.solve._observables import Observables
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
@@ -33,19 +33,21 @@ class ExactEngine(Engine):
     def __init__(self, model: LinearModel, observables: Observables) -> None:
         impact, failures = impact_of(model.law, model.properties)
         super().__init__(model, 2 + observables.contact.shape[0], failures)
-        self._impact, self._physics = impact, physics_of(model)
+        self._impact = impact
         rotation = np.zeros(2 * model.properties.n_modes + 4)
         rotation[-4] = 1.0
         supported = np.zeros_like(rotation)
         lost = lost_support_row(model) if model.lifts else supported
         contact = np.vstack((model.contact_moment(), observables.contact, supported))
         self._rows = np.stack((contact, np.vstack((rotation, observables.rocking, lost))))
-        self._contact = contact_basis(self._physics, self._rows[0])
-        # A base that cannot lift never rocks, and a neutral one is integrated: the second phase only fills the place.
-        self._rocking = self._contact
-        if model.lifts and not model.neutral:
-            accelerations = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
-            self._rocking = rocking_basis(self._physics, accelerations, self._rows[1])
+        with preparing(model):
+            self._physics = physics_of(model)
+            self._contact = contact_basis(self._physics, self._rows[0])
+            # A base that cannot lift never rocks, and a neutral one is integrated: the second phase fills the place.
+            self._rocking = self._contact
+            if model.lifts and not model.neutral:
+                accelerations = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
+                self._rocking = rocking_basis(self._physics, accelerations, self._rows[1])
         self._systems: dict[float, System] = {}
 
     def system(self, dt: float) -> System:

@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from rockflex._errors import InputError
+from rockflex._files import path_of
+from rockflex._shown import shortened
 from rockflex.structure.file._entry import StructureEntry
 from rockflex.structure.file._table import checked
 from rockflex.structure.file._tables import Built
@@ -40,8 +42,9 @@ def read_structure(path: str | Path) -> Built:
         If the file cannot be read, a key is unknown or missing, or a value is wrong; the message names file, table
         and key.
     """
-    content = {key: value for key, value in read_toml(Path(path), "structure").items() if key not in _FOR_RUNS}
-    return build_in(Path(path), checked(StructureEntry, content, str(path)))
+    file = path_of("path", path)
+    content = {key: value for key, value in read_toml(file, "structure").items() if key not in _FOR_RUNS}
+    return build_in(file, checked(StructureEntry, content, str(path)))
 
 
 def read_toml(file: Path, kind: str) -> dict[str, Any]:
@@ -61,7 +64,10 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
         message = f"The {kind} file {file} cannot be read: {error.strerror}."
         raise InputError(message) from error
     except ValueError as error:  # not TOML, or not UTF-8
-        message = f"{file} is not a valid TOML file: {error}."
+        message = f"{file} is not a valid TOML file: {shortened(str(error))}."
+        raise InputError(message) from error
+    except RecursionError as error:
+        message = f"{file} is nested too deep to be read: brackets within brackets, more than any {kind} has."
         raise InputError(message) from error
 
 

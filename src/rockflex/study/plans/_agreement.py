@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rockflex._checks import in_range, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._values import Value
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,14 +22,14 @@ FEWEST = 3  # pairs, below which nothing is said
 STATUSES = ("no_uplift", "rocking", "overturned")
 SUMS = 6  # per comparison, from which slope and R² follow
 SHOWN = (
-    *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "record", "pga", "pgv"),
+    *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion", "pga", "pgv"),
     *("status_mdof", "status_2dof", "max_rotation_mdof", "max_rotation_2dof"),
     *("max_top_displacement_mdof", "max_top_displacement_2dof"),
 )
 
 
 @dataclass(frozen=True, eq=False)
-class PopulationStatistics:
+class PopulationStatistics(Value):
     """Agreement of MDOF-S with what one mode, or one and the second on a fixed base, say of it.
 
     The tables `agreement` and `combination` have one row a comparison of y, from MDOF-S, with x, an estimate of it:

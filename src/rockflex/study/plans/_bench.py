@@ -4,22 +4,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from rockflex._checks import instance
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
-from rockflex.motion import GroundMotion, Suite
+from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
+from rockflex.motion import Suite
 from rockflex.response import Response, respond
 from rockflex.solve import Engine
 from rockflex.study._arguments import (
-    Structure,
     check_options,
     free_vibration_time,
     hysteresis_of,
-    is_structure,
     properties_of,
-    sequence_of,
 )
 from rockflex.study._simulate import make_engine
+from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study.plans._intensity import MEASURES, intensity_measures, scaled_measures
 from rockflex.study.plans._records import record_group
 from rockflex.study.plans._tables import RESULTS, Columns, Row, kinds_of, peaks_of
@@ -133,7 +133,7 @@ def check_different(name: str, values: Sequence[str]) -> None:
     """Raise an InputError if a value occurs more than once."""
     repeated = [value for place, value in enumerate(values) if value in values[:place]]
     if repeated:
-        message = f"{name}: {repeated[0]!r} occurs more than once. Give each once."
+        message = f"{name}: {shown(repeated[0])} occurs more than once. Give each once."
         raise InputError(message)
 
 
@@ -145,7 +145,7 @@ def record_facts(motions: Suite) -> list[Row]:
         info = motion.metadata
         facts.append(
             {
-                "record": place,
+                "motion": place,
                 "group": groups.index(record_group(motion)),
                 "magnitude": None if info is None else info.magnitude,
                 "distance_km": None if info is None else info.distance_km,
@@ -157,23 +157,20 @@ def record_facts(motions: Suite) -> list[Row]:
 def record_columns(motions: Suite) -> Columns:
     """Columns for what `record_facts` says."""
     groups = list(dict.fromkeys(record_group(motion) for motion in motions))
-    return {"record": motions.names, "group": groups, **kinds_of("magnitude distance_km", float)}
+    return {"motion": motions.names, "group": groups, **kinds_of("magnitude distance_km", float)}
 
 
 def bench_of(
-    structures: Mapping[str, Structure | RockingProperties]
-    | Structure
-    | RockingProperties
-    | Sequence[Structure | RockingProperties],
-    motions: GroundMotion | Suite | Sequence[GroundMotion],
-    models: str | Model | Sequence[str | Model],
+    structures: Structures,
+    motions: Motions,
+    models: Models,
     free_vibration: float | Literal["settle"],
     bouc_wen: BoucWen | None,
     impact: ImpactLaw | None,
     *,
     friction: bool = False,
 ) -> Bench:
-    """Check the arguments of a study in Python, and make them ready.
+    """Check the arguments of a study in Python, and make them ready; structures without names are "S1", "S2", ...
 
     Raises
     ------
@@ -182,21 +179,11 @@ def bench_of(
         option is out of range.
     """
     check_options(bouc_wen, impact)
-    wanted = 'a label such as "2DOF-S", or a Model'
-    labels = sequence_of("models", models, lambda given: isinstance(given, str | Model), wanted)
-    chosen = tuple(map(parse_model, labels))
+    instance("friction", friction, bool)
+    chosen = tuple(models_of(models))
     free = free_vibration_time(free_vibration)
-    suite = motions
-    if not isinstance(suite, Suite):
-        suite = Suite(sequence_of("motions", motions, lambda given: isinstance(given, GroundMotion), "a GroundMotion"))
-    return Bench(_named(structures), suite, Assumptions(chosen, free, impact, bouc_wen, friction))
-
-
-def _named(structures: Any) -> dict[str, RockingProperties]:
-    """Properties of structures by name: a mapping's own names, or "S1", "S2", ... of a sequence."""
-    wanted = "a structure such as a Frame, or RockingProperties"
-    names = [str(name) for name in structures] if isinstance(structures, Mapping) else []
-    listed = list(structures.values()) if isinstance(structures, Mapping) else structures
-    listed = sequence_of("structures", listed, is_structure, wanted)
+    suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
+    listed, names = structures_of(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
-    return {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
+    named = {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
+    return Bench(named, suite, Assumptions(chosen, free, impact, bouc_wen, friction))

@@ -1,15 +1,15 @@
 """Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 from pydantic import Field, field_validator
 
-from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import GroundMotion, Suite
-from rockflex.study._arguments import Structure, factors_of
+from rockflex.models import BoucWen, ImpactLaw
+from rockflex.motion import GroundMotion
+from rockflex.study._arguments import factors_of
+from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._plan import ChunkedPlan, run_plan
 from rockflex.study.plans._spec import StructuresSpec
@@ -81,12 +81,9 @@ class CloudPlan(ChunkedPlan):
 
 
 def run_cloud(
-    structures: Mapping[str, Structure | RockingProperties]
-    | Structure
-    | RockingProperties
-    | Sequence[Structure | RockingProperties],
-    motions: GroundMotion | Suite | Sequence[GroundMotion],
-    models: str | Model | Sequence[str | Model] = "MDOF-S",
+    structures: Structures,
+    motions: Motions,
+    models: Models = "MDOF-S",
     scales: float | Sequence[float] = 1.0,
     free_vibration: float | Literal["settle"] = 0.0,
     bouc_wen: BoucWen | None = None,
@@ -99,9 +96,9 @@ def run_cloud(
     Parameters
     ----------
     structures
-        Structures by name, or in a sequence, of which they are called "S1", "S2", ...
+        One, a sequence, in which they are called "S1", "S2", ..., or a mapping from their names.
     motions
-        Motions whose names differ.
+        One, a sequence such as a suite, or a mapping from names; their names differ.
     models, scales, free_vibration, bouc_wen, impact
         As in `simulate_many`.
     friction
@@ -112,7 +109,7 @@ def run_cloud(
     Returns
     -------
     pandas.DataFrame
-        One row a run. `structure`, `record`, `group` (shared by the components of one recording), `magnitude` and
+        One row a run. `structure`, `motion`, `group` (shared by the components of one recording), `magnitude` and
         `distance_km` where known, `model`, `scale`; measures of the scaled motion: `pga` (m/s²), `pgv` (m/s), `pgd`
         (m), `arias` (m/s), `cav` (m/s), `sd_t1` (m) and `sa_t1` (m/s²) at the structure's first period and damping,
         `relative_pga` = pga/(g tan α) and `relative_pgv` = p pgv/(g tan α) with g tan α = M_r/L_0^r and

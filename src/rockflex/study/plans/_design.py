@@ -1,6 +1,6 @@
 """Design of a base: how wide it must be, and which tendon is to hold it down (Section 4.1)."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
@@ -11,10 +11,10 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import GroundMotion, Suite
+from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, Table
-from rockflex.study._arguments import Structure, factors_of
+from rockflex.study._arguments import Structure, described, factors_of
+from rockflex.study._subjects import Models, Motions
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._cloud import QUIET, CloudPlan
 from rockflex.study.plans._design_levels import Design, TendonLevel, designs_of, half_widths_of
@@ -178,10 +178,10 @@ class DesignPlan(CloudPlan):
 
 def run_design(
     structure: Structure | RockingProperties,
-    motions: GroundMotion | Suite | Sequence[GroundMotion],
+    motions: Motions,
     half_widths: ArrayLike,
     tendons: Sequence[TendonLevel] = (),
-    models: str | Model | Sequence[str | Model] = "MDOF-S",
+    models: Models = "MDOF-S",
     scales: float | Sequence[float] = 1.0,
     base_mass_per_width: float = 0.0,
     free_vibration: float | Literal["settle"] = "settle",
@@ -199,7 +199,7 @@ def run_design(
         A structure, or its `RockingProperties`, on a base of any width. Tendons of its own keep their forces,
         stiffnesses and places.
     motions
-        Motions whose names differ.
+        As in `run_cloud`.
     half_widths : array_like, shape (n,)
         B in m, positive.
     tendons
@@ -225,6 +225,9 @@ def run_design(
         `run_cloud`.
     """
     given: Any = scales
+    if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        message = f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given."
+        raise InputError(message)
     bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact)
     designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
     return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from rockflex._checks import positive, real_or_nan
+from rockflex._checks import instance, positive, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.study._arguments import described, positive_numbers
-from rockflex.study._frequency_ratios import on_base
 from rockflex.study.plans._bench import check_different
 
 __all__ = ["Design", "TendonLevel", "designs_of", "half_widths_of"]
@@ -52,6 +52,7 @@ class TendonLevel:
     def __post_init__(self) -> None:
         force = positive("prestress_ratio", self.prestress_ratio, "W", zero=True)
         stiffness = positive("stiffness_ratio", self.stiffness_ratio, "L_0^r g/B²", zero=True)
+        instance("name", self.name, str)
         words = f"F₀ = {force:.6g} W, k = {stiffness:.6g} L₀ʳg/B²" if force or stiffness else "no tendon"
         vars(self).update(prestress_ratio=force, stiffness_ratio=stiffness, name=self.name or words)
         if self.yield_ratio is not None:
@@ -112,9 +113,8 @@ def designs_of(
     for level in levels or (None,):
         for width in widths:
             name = f"B = {width:.6g} m" + (f", {level.name}" if level and len(levels) > 1 else "")
-            added = 2.0 * per_width * (width - properties.half_width)
             try:
-                based = on_base(properties, width, added)
+                based = _on_base(properties, width, per_width)
                 based = based if level is None else level.held(based)
             except InputError as error:
                 message = f"{name}: {error}"
@@ -122,6 +122,16 @@ def designs_of(
             own = "no tendon" if not properties.tendons else "its own tendons"
             found.append(Design(name, own if level is None else level.name, based))
     return found
+
+
+def _on_base(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
+    """The structure on another base, which gains `per_width` in kg for each metre of its width 2 B.
+
+    The mass of the base has no height, so it changes neither L_0^r nor the modes.
+    """
+    based = properties.with_half_width(half_width)
+    added = 2.0 * per_width * (half_width - properties.half_width)
+    return replace(based, m_tot=based.m_tot + added, i_theta=based.i_theta + added * half_width**2)
 
 
 def half_widths_of(given: Any) -> list[float]:
@@ -140,7 +150,7 @@ def half_widths_of(given: Any) -> list[float]:
         if set(given) != set(RANGE) or not sound:
             message = (
                 "half_widths must be a list in m, or a range {smallest = 1.0, largest = 3.0, count = 9} of "
-                f"positive numbers in m, 2 to {MOST} of them, but {given!r} was given."
+                f"positive numbers in m, 2 to {MOST} of them, but {shown(given)} was given."
             )
             raise InputError(message)
         given = np.linspace(smallest, largest, int(count))

@@ -4,6 +4,7 @@ import math
 
 from rockflex._checks import real_or_nan
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.study.plans._intensity import check_measure
 
 __all__ = ["OVERTURNED", "THRESHOLD", "check_limit", "check_same_for_all", "rotation_of"]
@@ -47,7 +48,7 @@ def rotation_of(limit: float | str, nominal: float) -> float:
         is_of = f" ({rotation:.3g} rad)" if words and math.isfinite(rotation) else ""
         message = (
             f"limit must be a rotation from {THRESHOLD:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
-            f'"nominal" or "0.5 nominal" in the same range, or "overturning", but {limit!r}{is_of} was given.'
+            f'"nominal" or "0.5 nominal" in the same range, or "overturning", but {shown(limit)}{is_of} was given.'
         )
         raise InputError(message)
     return rotation

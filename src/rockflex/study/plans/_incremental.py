@@ -1,17 +1,15 @@
 """Incremental dynamic analysis: every record scaled until it overturns, and beyond."""
 
 import math
-from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 from pydantic import Field, model_validator
 
-from rockflex._checks import in_range, positive
+from rockflex._checks import in_range, one_of, positive
 from rockflex._errors import InputError
-from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import GroundMotion, Suite
-from rockflex.study._arguments import Structure
+from rockflex._shown import shown
+from rockflex.models import BoucWen, ImpactLaw
+from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._intensity import check_measure
 from rockflex.study.plans._ladder import Ladder, rungs, steps_between, steps_from_rest
@@ -25,6 +23,8 @@ if TYPE_CHECKING:
 __all__ = ["IncrementalPlan", "IncrementalStudy", "incremental_capacities", "run_incremental"]
 
 Limit = Literal["overturning", "nominal"]
+
+WIDEST = 1e12  # the last scale over the first
 
 
 class IncrementalStudy(StructuresSpec):
@@ -127,17 +127,20 @@ def check_ladder(smallest: float, largest: float, growth: float, tolerance: floa
     if not smallest < largest:
         message = f"largest_scale must be above smallest_scale, {smallest:g}, but {largest:g} was given."
         raise InputError(message)
+    if largest / smallest > WIDEST:
+        message = (
+            f"largest_scale must be at most {WIDEST:g} times smallest_scale, {smallest:g}, but {largest:g} was given. "
+            "Bring the two closer."
+        )
+        raise InputError(message)
     in_range("growth", growth, 1.0001, 100.0, hint="It is the factor from one scale to the next: 1.15 for 15 %.")
     in_range("tolerance", tolerance, 1e-9, 0.5)
 
 
 def run_incremental(
-    structures: Mapping[str, Structure | RockingProperties]
-    | Structure
-    | RockingProperties
-    | Sequence[Structure | RockingProperties],
-    motions: GroundMotion | Suite | Sequence[GroundMotion],
-    models: str | Model | Sequence[str | Model] = "MDOF-S",
+    structures: Structures,
+    motions: Motions,
+    models: Models = "MDOF-S",
     smallest_scale: float = 0.1,
     largest_scale: float = 20.0,
     growth: float = 1.15,
@@ -180,8 +183,8 @@ def run_incremental(
         If the scales make no grid, a model's base cannot lift, or as in `run_cloud`.
     """
     bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact)
-    if limit not in ("overturning", "nominal"):
-        message = f'limit must be "overturning" or "nominal", but {limit!r} was given.'
+    if not one_of(limit, ("overturning", "nominal")):
+        message = f'limit must be "overturning" or "nominal", but {shown(limit)} was given.'
         raise InputError(message)
     plan = IncrementalPlan(bench, smallest_scale, largest_scale, growth, tolerance, limit, 64)
     return run_plan(plan, workers)
@@ -200,7 +203,7 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
     Returns
     -------
     pandas.DataFrame
-        `structure`, `record`, `group`, `model`; `capacity`, the measure at the first scale that overturns, or where
+        `structure`, `motion`, `group`, `model`; `capacity`, the measure at the first scale that overturns, or where
         `censored` the measure at the largest scale that stands; `first_overturning_scale`, `last_survival_scale`,
         `resurrections`; `failed`, the number of runs that could not be solved. Missing where none could.
 
@@ -213,12 +216,12 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
     import pandas as pd
 
     rows = []
-    for _, ladder in runs.groupby(["structure", "record", "model"], observed=True, sort=False):
+    for _, ladder in runs.groupby(["structure", "motion", "model"], observed=True, sort=False):
         first = ladder.iloc[0]
         solved = ladder[ladder["overturned"].notna()]
         falls = solved[solved["overturned"].astype(bool)]
         last = falls.iloc[0] if len(falls) else (solved.iloc[-1] if len(solved) else None)
-        row = {name: first[name] for name in ("structure", "record", "group", "model")}
+        row = {name: first[name] for name in ("structure", "motion", "group", "model")}
         row["capacity"] = math.nan if last is None else float(last[measure])
         row["censored"] = not len(falls)
         row |= {name: first[name] for name in ("first_overturning_scale", "last_survival_scale", "resurrections")}

@@ -2,8 +2,10 @@
 
 import math
 
+from rockflex._checks import one_of
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
 
@@ -37,7 +39,7 @@ def intensity_measures(properties: RockingProperties, motion: GroundMotion) -> d
 def scaled_measures(measures: dict[str, float], scale: float) -> dict[str, float]:
     """Measures of the motion multiplied by `scale`, of either sign."""
     factor = abs(scale)
-    return {name: value * (factor**2 if name in SQUARED else factor) for name, value in measures.items()}
+    return {name: value * factor * (factor if name in SQUARED else 1.0) for name, value in measures.items()}
 
 
 def factor_to(measures: dict[str, float], name: str, level: float) -> float:
@@ -50,6 +52,6 @@ def factor_to(measures: dict[str, float], name: str, level: float) -> float:
 
 def check_measure(name: str) -> None:
     """Raise an InputError unless there is such a measure."""
-    if name not in MEASURES:
-        message = f"measure must be one of {', '.join(MEASURES)}, but {name!r} was given."
+    if not one_of(name, MEASURES):
+        message = f"measure must be one of {', '.join(MEASURES)}, but {shown(name)} was given."
         raise InputError(message)

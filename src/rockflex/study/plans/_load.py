@@ -4,6 +4,8 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from rockflex._errors import InputError
+from rockflex._files import path_of
+from rockflex._shown import shown
 from rockflex.structure.file import read_toml
 from rockflex.study.plans._cloud import CloudStudy
 from rockflex.study.plans._design import DesignStudy
@@ -46,7 +48,7 @@ def load_study(path: str | Path) -> Study:
     InputError
         If the file cannot be read, a key is unknown or missing, or a value is wrong; the message names file and key.
     """
-    file = Path(path)
+    file = path_of("path", path)
     content = read_toml(file, "study")
     kind = content.get("study")
     model = KINDS.get(kind) if isinstance(kind, str) else None
@@ -54,7 +56,7 @@ def load_study(path: str | Path) -> Study:
         known = ", ".join(f'"{name}"' for name in KINDS)
         near = get_close_matches(str(kind), KINDS, n=1)
         hint = f' Did you mean "{near[0]}"?' if near else ""
-        was = f"{kind!r} was given" if "study" in content else "it is missing"
+        was = f"{shown(kind)} was given" if "study" in content else "it is missing"
         message = f"{file}: study must be one of {known}, but {was}.{hint}"
         raise InputError(message)
     try:

@@ -1,12 +1,11 @@
 """A study cut into chunks that can be computed anywhere."""
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol, SupportsIndex
 
 from rockflex._checks import whole_number
-from rockflex.motion import Suite
+from rockflex.motion import Suite, check_horizontal
 from rockflex.parallel import map_threads
 from rockflex.study.plans._records import checksums
 from rockflex.study.plans._tables import Columns, Row, Table, tabulate, to_frame
@@ -47,6 +46,7 @@ class ChunkedPlan(ABC):
     """
 
     def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
+        check_horizontal(*motions)
         self.motions = motions
         self.n_units = n_units
         self.per_chunk = whole_number("the size of a chunk", per_chunk, 1)
@@ -68,7 +68,7 @@ class ChunkedPlan(ABC):
     @property
     def n_chunks(self) -> int:
         """Number of chunks."""
-        return math.ceil(self.n_units / self.per_chunk)
+        return -(-self.n_units // self.per_chunk)
 
     @property
     def checksums(self) -> dict[str, str]:

@@ -17,6 +17,7 @@ from rockflex.response import Response, global_observables, respond
 from rockflex.solve import ExactEngine, Observables
 from rockflex.study._arguments import free_vibration_time
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
+from rockflex.study._subjects import Motions, motions_of
 from rockflex.study.plans._bench import record_columns, record_facts
 from rockflex.study.plans._plan import ChunkedPlan, run_plan
 from rockflex.study.plans._prototypes import STORY_MASS, Prototype, draw_prototype
@@ -35,6 +36,9 @@ SECOND = "period_2 sd_2 sa_2 top_ordinate_2 effective_mass_2 effective_height_2"
 COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear srss_base_moment"
 
 
+MOST = 2**32 - 1  # pairs that have random numbers of their own
+
+
 class PopulationStudy(Spec):
     """Random structures under random records, each with MDOF-S and 2DOF-S (Section 3.3).
 
@@ -42,7 +46,9 @@ class PopulationStudy(Spec):
     """
 
     study: Literal["population"] = Field("population", description='"population"')
-    pairs: int = Field(1000, ge=1, description="the number of random structures, a whole number of at least 1")
+    pairs: int = Field(
+        1000, ge=1, le=MOST, description="the number of random structures, a whole number from 1 to 4294967295"
+    )
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     free_vibration: float | Literal["settle"] = Field(
         0.0, description='the free vibration after the record, a number in s or "settle"'
@@ -163,7 +169,7 @@ def _combined(rocking: Response, second: SecondMode) -> Row:
 
 
 def run_population(
-    motions: Suite,
+    motions: Motions,
     pairs: int = 1000,
     seed: int = 0,
     free_vibration: float | Literal["settle"] = 0.0,
@@ -178,7 +184,7 @@ def run_population(
     Parameters
     ----------
     motions
-        The records to draw from, evenly.
+        The records to draw from, evenly; as in `run_cloud`.
     pairs
         Number of structures.
     seed
@@ -190,7 +196,7 @@ def run_population(
     -------
     pandas.DataFrame
         One row a pair. What was drawn: `pair`, `n_stories`, `behaviour` ("shear" or "flexure"), `height` (m), `period`
-        (s), `coefficient`, `aspect_ratio`, `base_mass_ratio`, `stiffness_ratio`, `damping_ratio`, `record`, `group`,
+        (s), `coefficient`, `aspect_ratio`, `base_mass_ratio`, `stiffness_ratio`, `damping_ratio`, `motion`, `group`,
         `magnitude`, `distance_km`, `pga`, `pgv`; of the structure `nominal_limit` (rad), `structure_mass` and
         `total_mass` (kg), `l0r_g` = L_0^r g (N m), `uplift_acceleration` = M_r/L_0^r (m/s²); of its second mode on a
         fixed base `period_2`, `sd_2`, `sa_2`, `top_ordinate_2` = Γ_2 φ_top,2, `effective_mass_2`, `effective_height_2`;
@@ -203,5 +209,6 @@ def run_population(
     InputError
         If a value is out of range.
     """
-    count, start = whole_number("pairs", pairs, 1), whole_number("seed", seed, 0)
-    return run_plan(PopulationPlan(motions, count, start, free_vibration_time(free_vibration), 32), workers)
+    count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
+    suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
+    return run_plan(PopulationPlan(suite, count, start, free_vibration_time(free_vibration), 32), workers)

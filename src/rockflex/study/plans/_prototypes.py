@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rockflex._checks import whole_number
 from rockflex.structure import Frame
 
 __all__ = ["Prototype", "draw_prototype"]
@@ -73,8 +74,15 @@ def draw_prototype(seed: int, number: int, n_records: int) -> Prototype:
     """Draw the prototype of a number: it depends on seed, number and the count of records alone.
 
     Every property is uniformly distributed and independent of the others.
+
+    Raises
+    ------
+    InputError
+        If one of the three is no whole number, or negative.
     """
-    bits = np.random.Philox(np.random.SeedSequence(seed, spawn_key=(number,)))
+    start, place = whole_number("seed", seed, 0), whole_number("number", number, 0, 2**32 - 1)
+    records = whole_number("n_records", n_records, 1, 10**9)
+    bits = np.random.Philox(np.random.SeedSequence(start, spawn_key=(place,)))
     draws = np.random.Generator(bits).random(6).tolist()
     shear = draws[3] < 0.5
     low, high = SHEAR_COEFFICIENTS if shear else FLEXURE_COEFFICIENTS
@@ -84,7 +92,7 @@ def draw_prototype(seed: int, number: int, n_records: int) -> Prototype:
         base_mass_ratio=BASE_MASSES[_whole(draws[2], 0, len(BASE_MASSES) - 1)],
         stiffness_ratio=math.inf if shear else 0.0,
         coefficient=low + (high - low) * draws[4],
-        record=_whole(draws[5], 0, n_records - 1),
+        record=_whole(draws[5], 0, records - 1),
     )
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, Suite, load_suite, read_suite
+from rockflex._shown import shown
+from rockflex.motion import GroundMotion, OnError, Suite, load_suite, read_suite
 from rockflex.structure.file import Table
 
 __all__ = ["Records", "checksums", "record_group"]
@@ -19,12 +20,18 @@ class Records(Table):
 
     suites: list[str] = Field(default_factory=list, description='a list of suites, such as "fema-p695-far-field"')
     folder: str | None = Field(None, description="the path of a folder of records, in quotes")
+    on_error: OnError = Field(
+        "raise", description='"raise" or "skip": what to do with files of the folder that cannot be read'
+    )
     include: list[str] = Field(["*"], description='a list of patterns of record names to keep, such as "FF-1-*"')
 
     @model_validator(mode="after")
     def _some(self) -> "Records":
         if not self.suites and self.folder is None:
             message = 'no record is named. Give suites = ["fema-p695-far-field"], folder = "...", or both.'
+            raise InputError(message)
+        if self.folder is None and self.on_error != "raise":
+            message = "on_error is for the files of a folder, but none is named. Leave it out."
             raise InputError(message)
         return self
 
@@ -34,18 +41,18 @@ class Records(Table):
         Raises
         ------
         InputError
-            If a suite is unknown, the folder or a file in it cannot be read, two records have the same name, or a
-            pattern of `include` fits none.
+            If a suite is unknown, the folder or, unless `on_error` is "skip", a file in it cannot be read, two records
+            have the same name, or a pattern of `include` fits none.
         """
         motions = [motion for name in self.suites for motion in load_suite(name)]
         if self.folder is not None:
-            motions += read_suite(base / self.folder)
+            motions += read_suite(base / self.folder, on_error=self.on_error)
         names = [motion.name for motion in motions]
         for pattern in self.include:
             if not any(fnmatchcase(name, pattern) for name in names):
                 message = (
-                    f"[records] include: no record's name fits {pattern!r}. There are {len(names)}, from {names[0]!r} "
-                    f"to {names[-1]!r}; * stands for any text and ? for one letter."
+                    f"[records] include: no record's name fits {shown(pattern)}. There are {len(names)}, from "
+                    f"{shown(names[0])} to {shown(names[-1])}; * stands for any text and ? for one letter."
                 )
                 raise InputError(message)
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))

@@ -7,12 +7,14 @@ from typing import Any, Literal, Self
 from pydantic import Field, PrivateAttr, ValidationError, field_validator
 
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, problems
 from rockflex.study._arguments import free_vibration_time, properties_of
 from rockflex.study.assumed import Assumed
 from rockflex.study.plans._bench import Assumptions, Bench, check_different
+from rockflex.study.plans._own_law import law_checksum, law_document
 from rockflex.study.plans._records import Records
 
 __all__ = ["Spec", "StructuresSpec"]
@@ -78,13 +80,32 @@ class StructuresSpec(Assumed, Spec):
         free_vibration_time(value)
         return value
 
+    def document(self) -> dict[str, Any]:
+        """Everything that determines the study, as JSON has it: infinite numbers as "inf", what is None left out.
+
+        Raises
+        ------
+        InputError
+            If `impact` is a law of the user's own whose values JSON does not know.
+        """
+        if self.impact is None or isinstance(self.impact, str):
+            return super().document()
+        return self.model_copy(update={"impact": None}).document() | {"impact": _plain(law_document(self.impact))}
+
     def checksums(self) -> dict[str, str]:
-        """SHA-256 of the numbers in each file that a structure names, by its place in the document."""
-        return {
+        """SHA-256 of the numbers in each file that a structure names, and of the module of the user's own impact law.
+
+        Raises
+        ------
+        InputError
+            If that law stands in no file.
+        """
+        files = {
             f"structures[{place}].{key}": value
             for place, entry in enumerate(self.structures)
             for key, value in entry.checksums(self._folder).items()
         }
+        return files if self.impact is None or isinstance(self.impact, str) else files | law_checksum(self.impact)
 
     def bench(self, *, friction: bool = False) -> Bench:
         """Build the structures and load the records.
@@ -101,7 +122,7 @@ class StructuresSpec(Assumed, Spec):
             try:
                 properties[names[place - 1]] = properties_of(entry.build(self._folder))
             except InputError as error:
-                message = f"[[structures]] no. {place}{entry.name and f', {entry.name!r}'}: {error}"
+                message = f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"
                 raise InputError(message) from error
         free = free_vibration_time(self.free_vibration)
         models = tuple(map(parse_model, self.models))

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from rockflex._checks import positive
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.study._arguments import positive_numbers
 from rockflex.study.plans._bench import Bench
 from rockflex.study.plans._intensity import check_measure, factor_to
@@ -53,7 +54,9 @@ class StripePlan(ChunkedPlan):
         for structure, name in enumerate(bench.names):
             for record, motion in enumerate(bench.motions):
                 if not math.isfinite(factor_to(bench.measures(structure, record), measure, 1.0)):
-                    message = f"{motion.name!r} has no {measure} for {name!r}, so no scale takes it to a level."
+                    message = (
+                        f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
+                    )
                     raise InputError(message)
         runs = len(bench.names) * len(bench.motions) * len(bench.labels) * len(self.levels)
         super().__init__(bench.motions, runs, per_chunk)
@@ -109,7 +112,9 @@ def stripe_counts(
     elif limit == "uplift":
         exceeds = solved["status"] != "no_uplift"
     elif isinstance(limit, str):
-        message = f'limit must be "overturning", "nominal", "uplift" or a rotation in rad, but {limit!r} was given.'
+        message = (
+            f'limit must be "overturning", "nominal", "uplift" or a rotation in rad, but {shown(limit)} was given.'
+        )
         raise InputError(message)
     else:
         exceeds = solved["max_rotation"] > positive("limit", limit, "rad")

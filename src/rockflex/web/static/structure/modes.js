@@ -39,13 +39,14 @@ function picture(view, shape, n) {
 export function table(view) {
   if (!view.modes.length)
     return h("p", { class: "help" }, "A rigid block has no modes: simulate it with the model “rigid”.");
-  const head = ["Mode", "Period T [s]", "Mass m* [kg]", "of the total", "Height h* [m]", "Damping", "Period while uplifted [s]"];
+  const head = ["Mode", "Period T [s]", "Mass m* [kg]", "of the total", "Height h* [m]", "Damping",
+    "Period while uplifted [s]", "Damping while uplifted"];
   const value = (v) => h("td", { "data-value": v }, number(v));
   const percent = (v) => h("td", {}, `${number(100 * v, 3)} %`);
   const rows = view.modes.slice(0, ROWS).map((m, i) => h("tr", {},
     h("th", { scope: "row" }, String(i + 1)),
     value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
-    value(m.uplifted_period)));
+    value(m.uplifted_period), percent(m.uplifted_damping)));
   return h("div", {},
     h("div", { class: "scroll" }, h("table", { id: "modes" },
       h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),

@@ -1,0 +1,47 @@
+"""Damping of the vibration about one pivot, from complex eigenvalues."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["uplifted_damping"]
+
+Float = NDArray[np.float64]
+
+
+def uplifted_damping(squares: Float, damping: Float) -> Float:
+    """Return ζ* (n,) of the vibrations q'' + C q' + Λ q = 0, those of the rotation left out.
+
+    Parameters
+    ----------
+    squares : ndarray, shape (n + 1,)
+        Λ: the eigenvalues ω² of the undamped system in rad²/s², rising; the first is the rotation's.
+    damping : ndarray, shape (n + 1, n + 1)
+        C in 1/s, over the undamped modes with unit modal mass; symmetric, positive semidefinite.
+
+    Notes
+    -----
+    Roots λ come in pairs: two that are conjugate, or two real ones of a motion that does not vibrate (the slowest
+    with the fastest, where there are more). The rotation's pair is the growing root and the slowest real one that
+    decays; without a growing root, the pair with the least product. The others are taken in the order of √(λ_a λ_b),
+    which without damping is that of ω*, and have ζ* = -(λ_a + λ_b)/(2 √(λ_a λ_b)).
+    """
+    size = squares.size
+    # Displacements times ω: with no damping the matrix is skew-symmetric but for the rotation, and so well conditioned.
+    scale = np.sqrt(np.abs(squares))
+    scale[scale == 0.0] = 1.0
+    matrix = np.zeros((2 * size, 2 * size))
+    matrix[:size, size:] = np.diag(scale)
+    matrix[size:, :size] = np.diag(-squares / scale)
+    matrix[size:, size:] = -damping
+    roots = np.linalg.eigvals(matrix)
+    turning = roots[roots.imag > 0.0]
+    still = roots.real[roots.imag == 0.0]
+    still = still[np.argsort(np.abs(still))]
+    grows = bool(squares[0] < 0.0)
+    if grows:
+        still = np.delete(still, np.argmax(still))[1:]
+    slow, fast = still[: still.size // 2], still[::-1][: still.size // 2]
+    total = np.concatenate([2.0 * turning.real, slow + fast])
+    product = np.concatenate([np.abs(turning) ** 2, np.abs(slow * fast)])
+    order = np.argsort(product)[0 if grows else 1 :]
+    return -total[order] / (2.0 * np.sqrt(product[order]))

@@ -1,0 +1,135 @@
+"""Many record files read into a suite."""
+
+import warnings
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Literal, get_args
+
+from rockflex._errors import InputError, RecordWarning
+from rockflex._files import path_of
+from rockflex._shown import shown
+from rockflex.motion._direction import is_vertical
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._readers import read_motion
+from rockflex.motion._suite import Suite
+
+__all__ = ["OnError", "folder_files", "read_files", "read_suite"]
+
+OnError = Literal["raise", "skip"]
+
+SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
+TOLD = 10  # files whose faults are told in full; of more only the names
+
+
+def read_suite(
+    paths: str | Path | Iterable[str | Path],
+    units: str | None = None,
+    dt: float | None = None,
+    on_error: OnError = "raise",
+) -> Suite:
+    """Read the horizontal components among record files into a suite, sorted by file name.
+
+    Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out with a warning that names them: see
+    `RecordInfo`, whose `direction` says what the header or the name of a file tells.
+
+    Parameters
+    ----------
+    paths : path or iterable of paths
+        A directory, of which every file ending in .at2, .csv, .dat, .tsv or .txt (upper case too) is read,
+        or the files themselves.
+    units, dt : optional
+        As in `read_motion`, for the files that do not say them.
+    on_error : {"raise", "skip"}
+        With files that cannot be read: raise an error that names all of them, or go on with the others, and name them
+        in a warning.
+
+    Returns
+    -------
+    Suite
+        The motions, named after their files without the ending; the suite is named after the directory.
+
+    Raises
+    ------
+    InputError
+        If files cannot be read (see `read_motion`) and `on_error` is "raise", no file is left, a directory holds no
+        record, or two files have the same name.
+
+    Warns
+    -----
+    RecordWarning
+        If a vertical component, or a file that cannot be read, is left out.
+    """
+    if isinstance(paths, str | Path):
+        name, files = _folder(path_of("paths", paths))
+    elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        name, files = "", [path_of("paths", path) for path in paths]
+    else:
+        message = f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given."
+        raise InputError(message)
+    files.sort(key=lambda file: (file.name, str(file)))
+    return Suite(read_files(files, units, dt, on_error).values(), name)
+
+
+def read_files(
+    files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError
+) -> dict[Path, GroundMotion]:
+    """Read the horizontal components among record files, by their file; see `read_suite`."""
+    if on_error not in get_args(OnError):
+        message = f'on_error must be "raise" or "skip", but {shown(on_error)} was given.'
+        raise InputError(message)
+    motions: dict[Path, GroundMotion] = {}
+    faults: dict[Path, str] = {}
+    for file in files:
+        try:
+            motions[file] = read_motion(file, units=units, dt=dt)
+        except InputError as error:
+            faults[file] = str(error)
+    vertical = [file for file, motion in motions.items() if is_vertical(motion)]
+    horizontal = {file: motion for file, motion in motions.items() if not is_vertical(motion)}
+    if faults:
+        told = _told(faults, len(files))
+        if on_error == "raise" or not motions:
+            raise InputError(told + (' on_error="skip" goes on with the other files.' if motions else ""))
+        warnings.warn(f"Left out: {told}", RecordWarning, stacklevel=3)
+    if vertical:
+        names = ", ".join(file.name for file in vertical)
+        components = f"{len(vertical)} vertical component{'s' * (len(vertical) > 1)}"
+        if not horizontal:
+            message = (
+                f"No horizontal component was given, only {components}: {names}. Give horizontal ones; where a "
+                "header or a file's name is wrong, correct it."
+            )
+            raise InputError(message)
+        warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=3)
+    return horizontal
+
+
+def folder_files(folder: Path) -> list[Path]:
+    """Record files of a directory, by their ending, sorted by name.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    files = [file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES and file.is_file()]
+    if not files:
+        message = f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}."
+        raise InputError(message)
+    return sorted(files)
+
+
+def _folder(folder: Path) -> tuple[str, list[Path]]:
+    if not folder.is_dir():
+        message = (
+            f"{folder} is not a directory. Give a directory, or a list of files; one file alone is read by read_motion."
+        )
+        raise InputError(message)
+    return folder.resolve().name, folder_files(folder)
+
+
+def _told(faults: dict[Path, str], n_files: int) -> str:
+    """Name every file that cannot be read, and the faults of the first few."""
+    shown, others = list(faults.values())[:TOLD], [str(file) for file in list(faults)[TOLD:]]
+    told = " ".join(shown) if n_files == 1 else f"{len(faults)} of {n_files} files cannot be read. {' '.join(shown)}"
+    return f"{told} The others: {', '.join(others)}." if others else told

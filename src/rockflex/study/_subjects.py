@@ -1,0 +1,76 @@
+"""What a study in Python is of: structures, motions and models, each one, several, or several by name."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, TypeAlias, cast
+
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.models import Model, parse_model
+from rockflex.motion import GroundMotion
+from rockflex.study._arguments import Structure, is_structure, sequence_of
+
+__all__ = ["Models", "Motions", "Structures", "models_of", "motions_of", "structures_of"]
+
+Structures: TypeAlias = (
+    Structure
+    | RockingProperties
+    | Iterable[Structure | RockingProperties]
+    | Mapping[str, Structure]
+    | Mapping[str, RockingProperties]
+    | Mapping[str, Structure | RockingProperties]
+)
+Motions: TypeAlias = GroundMotion | Iterable[GroundMotion] | Mapping[str, GroundMotion]
+Models: TypeAlias = str | Model | Iterable[str | Model]
+
+
+def structures_of(given: Structures) -> tuple[list[Structure | RockingProperties], list[str] | None]:
+    """Return the structures, and their names where they were given by name.
+
+    Raises
+    ------
+    InputError
+        If there is none, something is no structure, or a name is no text.
+    """
+    names, several = _named("structures", given)
+    return sequence_of("structures", several, is_structure, "a structure such as a Frame, or RockingProperties"), names
+
+
+def motions_of(given: Motions) -> list[GroundMotion]:
+    """Return the motions; those given by name have that name in place of their own.
+
+    Raises
+    ------
+    InputError
+        If there is none, something is no motion, or a name is no text.
+    """
+    names, several = _named("motions", given)
+    motions = sequence_of("motions", several, lambda each: isinstance(each, GroundMotion), "a GroundMotion")
+    if names is None:
+        return motions
+    return [replace(motion, name=name) for name, motion in zip(names, motions, strict=True)]
+
+
+def models_of(given: Models) -> list[Model]:
+    """Return the models of labels.
+
+    Raises
+    ------
+    InputError
+        If there is none, a label is unknown, or something is neither a label nor a `Model`.
+    """
+    wanted = 'a label such as "2DOF-S", or a Model'
+    labels = sequence_of("models", given, lambda each: isinstance(each, str | Model), wanted)
+    return [parse_model(each) for each in labels]
+
+
+def _named(what: str, given: Any) -> tuple[list[str] | None, Any]:
+    """The names of a mapping and what it holds; no names and `given` itself of anything else."""
+    if not isinstance(given, Mapping):
+        return None, given
+    entries = cast("Mapping[Any, Any]", given)
+    for name in entries:
+        if not isinstance(name, str):
+            message = f"The names of {what} must be texts, but {name!r} was given. Write {{{str(name)!r}: ...}}."
+            raise InputError(message)
+    return list(entries), list(entries.values())

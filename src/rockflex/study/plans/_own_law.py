@@ -1,0 +1,67 @@
+"""What the folder of a study says of a user's own impact law, so that no other law goes on in it."""
+
+import hashlib
+import inspect
+import sys
+from collections.abc import Mapping
+from typing import Any, cast
+
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex.models import ImpactLaw
+
+__all__ = ["law_checksum", "law_document"]
+
+
+def law_document(law: ImpactLaw) -> dict[str, Any]:
+    """Return the law's class, its words and the values that it holds, as plain JSON.
+
+    Raises
+    ------
+    InputError
+        If it holds something else than numbers, texts, arrays, and lists, tuples or dictionaries of them.
+    """
+    kind = type(law)
+    state = cast("Any", law).__getstate__()
+    parts = state if isinstance(state, tuple) else (state,)  # a class with slots gives two dictionaries
+    values = {name: _said(name, value, kind) for part in parts if part for name, value in part.items()}
+    return {"law": f"{kind.__module__}.{kind.__qualname__}", "keeps": law.keeps, "loses": law.loses, "values": values}
+
+
+def law_checksum(law: ImpactLaw) -> dict[str, str]:
+    """Return the SHA-256 of the module that defines the law's class; nothing of a law of this package.
+
+    Raises
+    ------
+    InputError
+        If the class stands in no file.
+    """
+    kind = type(law)
+    if kind.__module__.partition(".")[0] == __name__.partition(".")[0]:
+        return {}
+    try:
+        source = inspect.getsource(sys.modules[kind.__module__])
+    except (OSError, TypeError, KeyError) as error:
+        message = (
+            f"The impact law {kind.__qualname__} stands in no file, so a study's folder cannot tell later whether it "
+            "is still the same law. Put it into a module (a .py file) and import it, or run the study without a folder."
+        )
+        raise InputError(message) from error
+    return {f"impact, {kind.__module__}": hashlib.sha256(source.encode()).hexdigest()}
+
+
+def _said(name: str, value: Any, kind: type) -> Any:
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    if isinstance(value, np.ndarray | np.generic):
+        return _said(name, value.tolist(), kind)
+    if isinstance(value, list | tuple):
+        return [_said(name, each, kind) for each in cast("list[Any]", value)]
+    if isinstance(value, Mapping):
+        return {str(key): _said(name, each, kind) for key, each in cast("Mapping[Any, Any]", value).items()}
+    message = (
+        f"A study's folder must record the values of its impact law, but {kind.__qualname__}.{name} is of type "
+        f"{type(value).__name__}. Let the law hold numbers, texts and arrays, or run the study without a folder."
+    )
+    raise InputError(message)

@@ -1,0 +1,116 @@
+"""Values in messages: in full where they are short, and never long."""
+
+import time
+
+import numpy as np
+import pytest
+
+from rockflex import InputError, SolverError
+from rockflex._checks import finite, finite_matrix, finite_vector, in_range, instance, positive, whole_number
+from rockflex._files import path_of
+from rockflex._shown import shortened, shown
+
+
+@pytest.mark.parametrize(
+    "value",
+    [1.5, -0.0, True, None, "word", 10**30, [1.0, 2.0], (1,), {"b": 1, "a": {"c": [2]}}, {3}, np.float64(2.0), b"x"],
+)
+def test_short_values_are_written_as_they_are(value: object) -> None:
+    assert shown(value) == repr(value)
+
+
+class Endless:
+    def __repr__(self) -> str:
+        raise RecursionError
+
+
+def test_long_values_are_cut() -> None:
+    loop: list[object] = []
+    loop.append(loop)
+    begin = time.perf_counter()
+    for value in ("x" * 10**7, list(range(10**6)), np.zeros(10**6), {"k" * 10**6: "v" * 10**6}, loop, Endless()):
+        assert len(shown(value)) <= 160
+    assert shown([["deep", [["er"]]]] * 30).startswith("[['deep', [[...]]], [")
+    assert shown({n: n for n in range(99)}).endswith("11: 11, ...}")
+    assert time.perf_counter() - begin < 1.0
+    assert shown("ab" * 200).startswith("'abab")
+    assert shown("ab" * 200).endswith("abab'")
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_integers_that_python_does_not_write(sign: int) -> None:
+    assert shown(sign * 10**5000) == "an integer of about 5000 digits"
+
+
+def test_text_keeps_both_ends() -> None:
+    assert shortened("short", 20) == "short"
+    assert shortened("0123456789" * 9, 26) == "0123456789 ... 0123456789"
+
+
+@pytest.mark.parametrize("kind", [InputError, SolverError])
+def test_messages_end(kind: type[Exception]) -> None:
+    text = str(kind("file " + "x" * 10**6 + " mend it."))
+    assert len(text) < 2000
+    assert text.startswith("file xxx")
+    assert text.endswith("xxx mend it.")
+
+
+HUGE = 10**400
+
+
+@pytest.mark.parametrize(
+    ("check", "message"),
+    [
+        (lambda: positive("a", HUGE, "m"), "a must be a number in m, but an integer of about 400 digits was given."),
+        (lambda: positive("a", 1j, "m"), "a must be a number in m, but 1j was given."),
+        (lambda: positive("a", np.ones(1), "m"), "a must be a number in m, but array([1.]) was given."),
+        (
+            lambda: finite("a", HUGE, "m"),
+            "a must be a finite number in m, but an integer of about 400 digits was given.",
+        ),
+        (
+            lambda: in_range("a", -(10**5000), 0.0, 1.0),
+            "a must be a number, but an integer of about 5000 digits was given.",
+        ),
+        (
+            lambda: whole_number("a", HUGE, 1, 9),
+            "a must be a whole number from 1 to 9, but an integer of about 400 digits was given.",
+        ),
+        (
+            lambda: finite_vector("a", [1.0, HUGE], "m"),
+            "a must be a sequence of numbers in m, but list with a number too large for double precision was given.",
+        ),
+        (
+            lambda: finite_vector("a", np.ones(2) * 1j, "m"),
+            "a must be a sequence of numbers in m, but ndarray of complex numbers was given.",
+        ),
+        (
+            lambda: finite_vector("a", np.zeros(2, "M8[D]"), "m"),
+            "a must be a sequence of numbers in m, but ndarray was given.",
+        ),
+        (
+            lambda: finite_matrix("a", [[1.0], [1.0, 2.0]], "m", (2, 2)),
+            "a must be a matrix of numbers in m, but list whose rows differ in length was given.",
+        ),
+        (lambda: instance("a", InputError, str), "a must be of type str, but the class InputError was given."),
+        (lambda: instance("a", 1, str), "a must be of type str, but int was given."),
+        (lambda: path_of("path", 1), "path must be a path, but int was given."),
+        (
+            lambda: path_of("path", "a\0b"),
+            "path must be that of a file, but 'a\\x00b' was given: a path holds no null character.",
+        ),
+        (
+            lambda: path_of("path", "\ud800"),
+            "path must be that of a file, but '\\ud800' was given: it holds a character that no path has.",
+        ),
+    ],
+)
+def test_messages(check: object, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        check()
+    assert str(caught.value) == message
+
+
+def test_a_path_too_long() -> None:
+    with pytest.raises(InputError, match=r"^path must be that of a file, but 'xxx.*x' was given: File name too long"):
+        path_of("path", "x" * 10**5)

@@ -1,0 +1,290 @@
+"""Every public value is equal to one made of the same, and to its copies; see `rockflex._values`."""
+
+import copy
+import dataclasses
+import math
+import pickle
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+import pytest
+from pydantic import BaseModel
+
+import rockflex as rf
+from rockflex._values import Value
+from rockflex.modal import MassNormalisedModes
+from rockflex.models import ForgottenLaw, LinearModel, NonlinearModel
+from rockflex.motion import GroundMotion
+
+RECORD = 2.5 * np.sin(np.arange(300) * 0.1)
+ROTATION = np.where(np.arange(40) % 5, np.linspace(2e-4, 0.05, 40), 0.0)
+RUNS = (np.linspace(0.1, 2.0, 40), ROTATION, (np.arange(40) > 33) & (ROTATION > 0.0))
+STUDY = {
+    "structures": [{"name": "one", "frame": {"n_stories": 2, "story_height": 3.0, "story_mass": 4e4, "base_mass": 4e4,
+                    "stiffness_ratio": math.inf, "period": 0.5, "aspect_ratio": 6.0, "damping_ratio": 0.02}}],
+    "records": {"suites": ["el-centro-1940"]},
+}  # fmt: skip
+
+
+def frame() -> rf.Frame:
+    return rf.Frame(2, 3.0, 4e4, 4e4, math.inf, 0.5, 8.0, 0.02)
+
+
+def tendons() -> list[rf.Tendon]:
+    return [rf.Tendon(2e5, 1e6, position=x, yield_force=1e6) for x in (-0.4, 0.4)]
+
+
+def motion() -> GroundMotion:
+    return GroundMotion(RECORD, 0.01, "sine", rf.RecordInfo(event="none", magnitude=6.5))
+
+
+def response() -> rf.Response:
+    return rf.simulate(rf.Restrained(frame(), rf.Tendon(1e5, 1e6)), motion())
+
+
+def lumped() -> rf.LumpedStructure:
+    return rf.LumpedStructure([1e3, 2e3], [[3e5, -1e5], [-1e5, 1e5]], [3.0, 6.0], base_mass=1e3, half_width=0.5,
+                              damping_ratio=0.02)  # fmt: skip
+
+
+def beam(**other: object) -> rf.Beam:
+    given = {"mass": ([0.0, 4.0, 10.0], [2e3, 1e3, 1e3]), "bending_stiffness": 1e9, "rotary_inertia": 10.0}
+    bodies = rf.LumpedMasses([10.0], [500.0])
+    return rf.Beam(height=10.0, half_width=1.0, damping_ratio=0.02, lumped_masses=bodies, **(given | other))
+
+
+def statistics() -> rf.PopulationStatistics:
+    columns = ["max_top_displacement", "max_rotation", "max_base_shear", "max_base_moment", "max_second_displacement"]
+    pairs = pd.DataFrame({f"{name}_{model}": np.arange(1.0, 7.0) for name in columns for model in ("mdof", "2dof")})
+    known = {"status": "rocking", "nominal_overturning": False}
+    pairs = pairs.assign(**{f"{name}_{model}": value for name, value in known.items() for model in ("mdof", "2dof")})
+    others = ["structure_mass", "l0r_g", "sd_2", "srss_top_displacement", "srss_base_shear", "srss_base_moment"]
+    facts = ["n_stories", "period", "aspect_ratio", "base_mass_ratio", "pga", "pgv"]
+    pairs = pairs.assign(**dict.fromkeys(others + facts, 2.0), pair=range(6), behaviour="shear", motion="R")
+    return rf.population_statistics(pairs, n_resamples=20)
+
+
+def law_of_two() -> rf.AnnualRate:
+    return rf.annual_rate(rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]), rf.LognormalFragility(0.5, 0.4))
+
+
+VALUES = {
+    rf.Adequacy: lambda: rf.adequacy(frame().rocking()),
+    rf.AdequacyTolerance: lambda: rf.AdequacyTolerance(base_moment=math.inf),
+    rf.AnnualRate: law_of_two,
+    rf.Beam: beam,
+    rf.BootstrapBand: lambda: rf.bootstrap_band(rf.fit_cloud, RUNS[0], RUNS[0] ** 2 * (1.0 + RUNS[1]), at=[0.5], n=20),
+    rf.BoucWen: lambda: rf.BoucWen(0.05),
+    rf.CantileverWithTipMass: lambda: rf.CantileverWithTipMass(10.0, 1e4, 1e9, 1e3, 1.0, 0.02, 500.0),
+    rf.CloudFit: lambda: rf.fit_cloud([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
+    rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, 0),
+    rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
+    rf.EnergyLedger: lambda: response().energy,
+    rf.FishBone: lambda: rf.FishBone([3.0, 3.5], 1e3, 1e7, [1e6, math.inf], base_mass=0.0, half_width=0.5,
+                                     damping_ratio=0.02),
+    rf.FloorModes: lambda: frame().rocking().floors,
+    rf.FloorPeaks: lambda: response().floors,
+    rf.Frame: frame,
+    rf.GroundMotion: motion,
+    rf.HazardCurve: lambda: rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]),
+    rf.History: lambda: response().history,
+    rf.InitialState: lambda: rf.InitialState(0.01, [0.001], rotation_velocity=0.1),
+    rf.LogisticFit: lambda: rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5], [0, 0, 1, 0, 1]),
+    rf.LognormalFragility: lambda: rf.LognormalFragility(0.5, 0.4, np.eye(2)),
+    rf.LumpedMasses: lambda: rf.LumpedMasses([1.0, 2.0], [10.0, 20.0], [0.0, 1.0]),
+    rf.LumpedStructure: lumped,
+    rf.ModalProperties: lambda: frame().modal(),
+    rf.ModalStructure: lambda: rf.from_matrices([1e3, 2e3], [[3e5, -1e5], [-1e5, 1e5]], [3.0, 6.0], base_mass=1e3,
+                                                half_width=0.5, damping_ratio=0.02),
+    rf.Model: lambda: rf.Model(2, complete=True, closure="SI"),
+    rf.OutcomeFragility: lambda: rf.fit_outcomes(*RUNS),
+    rf.OutcomeProbabilities: lambda: rf.fit_outcomes(*RUNS).probabilities([0.5, 1.5]),
+    rf.OverturningScales: lambda: rf.overturning_scales(frame(), motion(), [0.01, 0.02]),
+    rf.PinnedBeam: lambda: rf.pinned_beam("flexure", 0.5),
+    rf.PopulationStatistics: statistics,
+    rf.Progress: lambda: rf.Progress(3, 2, 1, 64),
+    rf.RecordInfo: lambda: rf.RecordInfo(event="none"),
+    rf.Response: response,
+    rf.Restitution: lambda: rf.Restitution(0.5),
+    rf.Restrained: lambda: rf.Restrained(frame(), tendons()),
+    rf.RitzShapes: lambda: rf.cosine_shapes(10.0, 3),
+    rf.RockingProperties: lambda: rf.Restrained(frame(), tendons()).rocking(),
+    rf.SecondMode: lambda: rf.modal_combination(frame(), motion()).second,
+    rf.Suite: lambda: rf.Suite([motion(), dataclasses.replace(motion(), name="other")], "two"),
+    rf.TaperedTower: lambda: rf.TaperedTower(200, 8, 4, 1, 2400, 25e9, 0.02),
+    rf.Tendon: lambda: tendons()[0],
+    rf.TendonLevel: lambda: rf.TendonLevel(0.5, 0.5),
+    rf.UnanimousOutcome: lambda: rf.UnanimousOutcome(True, 4),
+    rf.UpliftedModes: lambda: rf.uplifted_modes(frame().rocking()),
+    rf.VVELComplete: rf.VVELComplete,
+    rf.VVELSimplified: rf.VVELSimplified,
+    rf.WallFrame: lambda: rf.WallFrame(30.0, 3e5, 2.0, 1.0, 1e4, 8.0, 0.02),
+    # not in `rockflex` itself, but in what it returns
+    ForgottenLaw: lambda: ForgottenLaw("Mine()", "this", "that"),
+    LinearModel: lambda: LinearModel("MDOF-S", frame().rocking()),
+    MassNormalisedModes: lambda: VALUES[rf.ModalStructure]().modes,
+    NonlinearModel: lambda: NonlinearModel("2DOF-C", frame().rocking(1), bouc_wen=rf.BoucWen(0.05)),
+}  # fmt: skip
+STUDIES = {
+    rf.CloudStudy: lambda: rf.CloudStudy(**STUDY, scales=[1.0, 2.0]),
+    rf.DesignStudy: lambda: rf.DesignStudy(**STUDY, half_widths=[1.0, 1.5], level=0.5),
+    rf.IncrementalStudy: lambda: rf.IncrementalStudy(**STUDY),
+    rf.PopulationStudy: lambda: rf.PopulationStudy(records=STUDY["records"], pairs=4, seed=1),
+    rf.Records: lambda: rf.Records(suites=["el-centro-1940"]),
+    rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
+}
+NO_VALUES = {rf.StudyFolder}  # a place on the disk, held open by a process
+UNHASHABLE = {rf.PopulationStatistics}  # it holds tables
+
+cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])
+
+
+def test_every_public_value_is_tested_here():
+    public = {found for name in rf.__all__ if isinstance(found := getattr(rf, name), type)}
+    values = {kind for kind in public if dataclasses.is_dataclass(kind) or issubclass(kind, BaseModel | tuple)}
+    assert values - NO_VALUES <= VALUES.keys() | STUDIES.keys()
+
+
+@pytest.mark.parametrize(("kind", "make"), (VALUES | STUDIES).items())
+def test_made_of_the_same_is_the_same(kind, make):
+    one, other = make(), make()
+    assert type(one) is kind
+    assert one is not other
+    assert one == other
+
+
+@pytest.mark.parametrize("make", [make for kind, make in VALUES.items() if kind not in UNHASHABLE])
+def test_equal_values_are_one_key(make):
+    assert len({make(), make(), pickle.loads(pickle.dumps(make()))}) == 1
+
+
+@pytest.mark.parametrize("make", (VALUES | STUDIES).values())
+@pytest.mark.parametrize("clone", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
+def test_a_copy_is_the_same(make, clone):
+    value = make()
+    if hasattr(value, "modal"):
+        value.modal()  # what it then keeps goes into no copy
+    twin = clone(value)
+    assert twin == value
+    assert type(twin) is type(value)
+
+
+@cases
+def test_every_field_counts(make):
+    value = make()
+    for field in dataclasses.fields(value):
+        other = copy.copy(value)
+        vars(other)[field.name] = object()
+        assert other != value, field.name
+
+
+@cases
+@pytest.mark.parametrize("clone", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
+def test_arrays_stay_read_only(make, clone):
+    value = make()
+    for each in (value, clone(value)):
+        assert not [name for name, array in arrays_in(each) if array.flags.writeable]
+
+
+def arrays_in(value: object, name: str = "") -> Iterator[tuple[str, np.ndarray]]:
+    if isinstance(value, np.ndarray):
+        yield name, value
+    elif isinstance(value, list | tuple):
+        for place, each in enumerate(value):
+            yield from arrays_in(each, f"{name}[{place}]")
+    elif dataclasses.is_dataclass(value):
+        for field in dataclasses.fields(value):
+            yield from arrays_in(getattr(value, field.name), f"{name}.{field.name}")
+
+
+def test_a_copied_structure_gives_the_same_numbers():
+    for make in (VALUES[rf.TaperedTower], VALUES[rf.CantileverWithTipMass], beam, lumped, VALUES[rf.WallFrame]):
+        structure = make()
+        assert pickle.loads(pickle.dumps(structure)).rocking() == structure.rocking()
+
+
+def test_functions_are_equal_to_themselves_alone():
+    def mass(z):
+        return 1e3 + 0.0 * z
+
+    assert beam(mass=mass) == beam(mass=mass)
+    assert beam(mass=mass) != beam(mass=lambda z: 1e3 + 0.0 * z)
+
+
+def test_a_table_is_the_same_in_lists_and_in_arrays():
+    assert beam(mass=(np.array([0.0, 4.0, 10.0]), (2e3, 1e3, 1e3))) == beam()
+
+
+def test_the_users_table_cannot_change_a_beam():
+    values = [2e3, 1e3]
+    made = beam(mass=([0.0, 10.0], values))
+    values[0] = 9e3
+    assert made.mass[1][0] == 2e3
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Pair(Value):
+    first: object
+    second: object = None
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Other(Value):
+    first: object
+    second: object = None
+
+
+SAME = [
+    (np.array([1.0, np.nan]), np.array([1.0, -np.nan])),  # a missing number is a missing number
+    (np.array([0.0]), np.array([-0.0])),
+    (np.array([1, 2]), np.array([1.0, 2.0])),
+    (math.nan, float("nan")),
+    (np.float64("nan"), math.nan),
+    (0.0, -0.0),
+    (1, 1.0),
+    ([1.0, (np.array([1.0]),)], [1.0, (np.array([1.0]),)]),
+    ({"a": np.array([1.0])}, {"a": np.array([1.0])}),
+    (np.array(["a"]), np.array(["a"])),
+    (Pair(np.array([1.0])), Pair(np.array([1.0]))),
+]
+DIFFERENT = [
+    (np.array([1.0]), np.array([1.0, 1.0])),
+    (np.array([1.0]), np.array([[1.0]])),
+    (np.array([1.0]), 1.0),
+    (np.array([1.0, 2.0]), (1.0, 2.0)),
+    (np.array([np.nan]), np.array([1.0])),
+    ((1.0,), [1.0]),
+    ((1.0,), (1.0, 2.0)),
+    (np.array([]), None),
+    ({"a": 1.0}, {"b": 1.0}),
+    (math.nan, 1.0),
+    (Pair(1.0), Other(1.0)),
+    (pd.DataFrame({"a": [1.0]}), np.array([1.0])),
+    (pd.DataFrame({"a": [1.0]}), "a"),
+]
+
+
+@pytest.mark.parametrize(("one", "other"), SAME)
+def test_same(one, other):
+    assert Pair(one) == Pair(other)
+    assert hash(Pair(one)) == hash(Pair(other))
+
+
+@pytest.mark.parametrize(("one", "other"), DIFFERENT)
+def test_different(one, other):
+    assert Pair(one) != Pair(other)
+    assert Pair(other) != Pair(one)
+
+
+def test_another_class_is_another_value():
+    assert Pair(1.0) != Other(1.0)
+    assert Pair(1.0) != (1.0, None)
+
+
+def test_a_table_has_no_hash():
+    table = Pair(pd.DataFrame({"a": [1.0, np.nan]}))
+    assert table == Pair(pd.DataFrame({"a": [1.0, np.nan]}))
+    assert table != Pair(pd.DataFrame({"a": [1.0, 2.0]}))
+    with pytest.raises(TypeError, match="unhashable type: 'DataFrame'"):
+        hash(table)
