@@ -140,7 +140,7 @@ NO_CLOSURE = 'The closures "SI" and "E" belong to complete models with modes. Le
         ({"closure": True, "complete": True}, 'closure must be "SI", "E" or None, but True was given.'),
         ({"complete": "yes"}, "complete must be True (Eqs. 13 and 14) or False (Eq. 23), but 'yes' was given."),
         ({"complete": None}, "complete must be True (Eqs. 13 and 14) or False (Eq. 23), but None was given."),
-        ({"yields": 1}, "yields must be True (the label ends in -BW) or False, but 1 was given."),
+        ({"yields": 1}, "yields must be True (the label has -BW) or False, but 1 was given."),
     ],
 )
 def test_combinations_that_make_no_model(arguments, text):

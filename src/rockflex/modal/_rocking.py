@@ -14,15 +14,20 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal._floors import FloorModes
+from rockflex.modal._rocking_checks import (
+    SLACK,
+    check_modes,
+    checked_base_mass,
+    checked_inertia,
+    checked_top_height,
+    tendons_within,
+)
 from rockflex.modal._tendons import Tendon, tendon_set
 
 __all__ = ["RockingProperties"]
 
 Float = NDArray[np.float64]
 
-# Room for the rounding of sums that are equal when all modes are kept.
-_SLACK = 1e-9
-_PRINTED = 1e-5  # of I_θ: room for values that were printed to six digits
 _OVERTURNING_SHARE = 0.7
 
 
@@ -119,14 +124,14 @@ class RockingProperties(Value):
             "m_tot": positive("m_tot", m_tot, "kg"),
             "half_width": positive("half_width", half_width, "m"),
         }
-        _check_modes(modes)
+        check_modes(modes)
         n_modes = modes["omega"].size
-        inertia = _translational_inertia(modes, scalars, translational_inertia)
+        inertia = checked_inertia(modes, scalars, translational_inertia)
         if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
             message = f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}."
             raise InputError(message)
         damping = damping_ratios("zeta", zeta, n_modes)
-        held = _tendons_within(tendon_set(tendons), scalars["half_width"])
+        held = tendons_within(tendon_set(tendons), scalars["half_width"])
         vars(self).update(
             modes,
             **scalars,
@@ -134,8 +139,8 @@ class RockingProperties(Value):
             translational_inertia=inertia,
             floors=floors,
             tendons=held,
-            top_height=_top_height(floors, top_height),
-            base_mass=_base_mass(modes, scalars["m_tot"], inertia, base_mass),
+            top_height=checked_top_height(floors, top_height),
+            base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
         )
 
     @property
@@ -154,7 +159,7 @@ class RockingProperties(Value):
         moments = np.array([above, self.l0r, self.translational_inertia])
         shares = np.array([self.effective_mass * self.effective_height**k for k in range(3)]).sum(axis=1)
         left = moments - shares
-        left[np.abs(left) <= _SLACK * np.abs(moments)] = 0.0
+        left[np.abs(left) <= SLACK * np.abs(moments)] = 0.0
         return left
 
     @property
@@ -240,102 +245,3 @@ class RockingProperties(Value):
             top_height=self.top_height,
             base_mass=self.base_mass,
         )
-
-
-def _check_modes(modes: dict[str, Float]) -> None:
-    omega, effective_mass = modes["omega"], modes["effective_mass"]
-    for name, values in modes.items():
-        if values.size != omega.size:
-            message = f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given."
-            raise InputError(message)
-    for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
-        if values.min(initial=np.inf) <= 0.0:
-            i = int(np.argmin(values))
-            message = (
-                f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. "
-                "Leave out modes that do not take part."
-            )
-            raise InputError(message)
-    falls = np.flatnonzero(omega[1:] < omega[:-1])
-    if falls.size:
-        i = int(falls[0])
-        message = (
-            f"omega must rise from mode to mode, but omega[{i + 1}] = {omega[i + 1]:g} rad/s is below "
-            f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency."
-        )
-        raise InputError(message)
-
-
-def _tendons_within(tendons: tuple[Tendon, ...], half_width: float) -> tuple[Tendon, ...]:
-    for tendon in tendons:
-        if abs(tendon.position) > half_width * (1.0 + _SLACK):
-            message = (
-                f"Tendons must pass through the base, {half_width:g} m to each side of its centre, but one stands at "
-                f"{tendon.position:g} m. Positions are measured from the centre."
-            )
-            raise InputError(message)
-    return tendons
-
-
-def _top_height(floors: FloorModes | None, given: float | None) -> float | None:
-    if given is not None:
-        return positive("top_height", given, "m")
-    return None if floors is None else float(floors.heights.max())
-
-
-def _base_mass(modes: dict[str, Float], m_tot: float, inertia: float, given: float | None) -> float | None:
-    mass = modes["effective_mass"]
-    modal_mass = float(mass.sum())
-    if given is not None:
-        base = positive("base_mass", given, "kg", zero=True)
-        if m_tot - base < modal_mass - _SLACK * m_tot:
-            message = (
-                f"base_mass must leave the {modal_mass:.9g} kg that the modes move, but {base:.9g} kg of m_tot = "
-                f"{m_tot:.9g} kg was given."
-            )
-            raise InputError(message)
-        return base
-    complete = mass.size > 0 and float(mass @ modes["effective_height"] ** 2) >= (1.0 - _SLACK) * inertia
-    return max(m_tot - modal_mass, 0.0) if complete else None
-
-
-@computable("The inertia of the modes, from effective_mass and effective_height,")
-def _translational_inertia(modes: dict[str, Float], scalars: dict[str, float], given: float | None) -> float:
-    mass = modes["effective_mass"]
-    modal_mass = float(mass.sum())
-    modal_inertia = float(mass @ modes["effective_height"] ** 2)
-    i_theta, m_tot = scalars["i_theta"], scalars["m_tot"]
-    if m_tot < modal_mass * (1.0 - _SLACK):
-        message = (
-            f"m_tot must be at least the sum of effective_mass, {modal_mass:.9g} kg, but {m_tot:.9g} kg was "
-            "given. It is the mass of the whole structure with its base; check the units too."
-        )
-        raise InputError(message)
-    if i_theta <= modal_inertia:
-        message = (
-            "i_theta must exceed the sum of effective_mass * effective_height**2, "
-            f"{modal_inertia:.9g} kg m², but {i_theta:.9g} kg m² was given: no inertia is left to rotate. "
-            "It is taken about a pivot, with the base; check the units too."
-        )
-        raise InputError(message)
-    source = "i_theta - m_tot * half_width**2, its default," if given is None else "what was given"
-    if given is None:
-        inertia = i_theta - m_tot * scalars["half_width"] ** 2
-    else:
-        inertia = positive("translational_inertia", given, "kg m²")
-    if not modal_inertia * (1.0 - _SLACK) <= inertia < i_theta:
-        message = (
-            "translational_inertia must be at least the sum of effective_mass * effective_height**2, "
-            f"{modal_inertia:.9g} kg m², and below i_theta, {i_theta:.9g} kg m², but {source} is "
-            f"{inertia:.9g} kg m². Give the sum of m_i h_i² over the masses above the base."
-        )
-        raise InputError(message)
-    least = inertia + m_tot * scalars["half_width"] ** 2
-    if i_theta < least * (1.0 - _PRINTED):
-        message = (
-            "i_theta must be at least translational_inertia + m_tot * half_width**2, "
-            f"{least:.9g} kg m², but {i_theta:.9g} kg m² was given. It is taken about a pivot, so it changes with the "
-            "base: properties.with_half_width(B) is the same structure on another one."
-        )
-        raise InputError(message)
-    return max(inertia, modal_inertia)
