@@ -18,11 +18,10 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["DRAWS", "PAIRS", "SEED", "intervals", "pool", "population", "weaker"]
+__all__ = ["DRAWS", "PAIRS", "SEED", "intervals", "pool", "population"]
 
 PAIRS, SEED = 1000, 2024
 DRAWS = 400
-WEAKER = 0.6  # times the records' acceleration
 KNOWN = 0.95  # of the draws, for which a measure must exist
 
 
@@ -38,12 +37,6 @@ def pool(records: Records) -> "pd.DataFrame":
 def population(records: Records) -> "pd.DataFrame":
     """The first thousand, which the figures show."""
     return pool(records).iloc[:PAIRS]
-
-
-@lru_cache(maxsize=1)
-def weaker(records: Records) -> "pd.DataFrame":
-    """The same structures as the first thousand, under records of 0.6 times the acceleration."""
-    return rf.run_population(rf.Suite([motion.scaled(WEAKER) for motion in records.suite]), PAIRS, SEED)
 
 
 @lru_cache(maxsize=1)

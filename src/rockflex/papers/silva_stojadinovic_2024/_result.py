@@ -45,9 +45,13 @@ class Result:
         object.__setattr__(self, "numbers", tuple(self.numbers))
         object.__setattr__(self, "figures", MappingProxyType(dict(self.figures)))
 
-    @cached_property
+    @property
     def remarks(self) -> tuple[Remark, ...]:
         """What was computed beside the numbers; nothing is before it is asked for, as some take half a minute."""
+        return self._remarks
+
+    @cached_property
+    def _remarks(self) -> tuple[Remark, ...]:
         return tuple(remark() for remark in self.remarking)
 
     def count(self, verdict: Verdict) -> int:

@@ -17,8 +17,8 @@ FUNCTIONS = 5  # of Eq. 36
 def ritz_of_slices(slices: int) -> dict[str, Array]:
     """ω (rad/s), m* (10⁶ kg), h* (m) and Γ of a Ritz solution with sums over slices in place of integrals.
 
-    The functions are those of Eq. 36. What the stiffness matrix integrates, EI φ_i'' φ_j'', is taken at the upper end of
-    each slice, and what the mass matrix does by the trapezoidal rule.
+    The functions are those of Eq. 36. What the stiffness matrix integrates, EI φ_i'' φ_j'', is taken at the upper end
+    of each slice, and what the mass matrix does by the trapezoidal rule.
     """
     from scipy.linalg import eigh
 
@@ -53,7 +53,7 @@ def first_frequency(elements: int, place: float) -> float:
     from scipy.linalg import eigh
 
     a = TOWER.height / elements
-    low = a * np.arange(elements)
+    low: Array = a * np.arange(elements, dtype=float)
     k = np.array([[12, 6 * a, -12, 6 * a], [6 * a, 4 * a**2, -6 * a, 2 * a**2],
                   [-12, -6 * a, 12, -6 * a], [6 * a, 2 * a**2, -6 * a, 4 * a**2]]) / a**3  # fmt: skip
     m = np.array([[156, 22 * a, 54, -13 * a], [22 * a, 4 * a**2, 13 * a, -3 * a**2],
@@ -63,7 +63,7 @@ def first_frequency(elements: int, place: float) -> float:
         own = slice(2 * e, 2 * e + 4)
         stiffness[own, own] += ei * k
         mass[own, own] += mu * m
-    least = eigh(stiffness[2:, 2:], mass[2:, 2:], eigvals_only=True, subset_by_index=(0, 0), driver="gvx")
+    least = eigh(stiffness[2:, 2:], mass[2:, 2:], eigvals_only=True, subset_by_index=(0, 0))
     return float(np.sqrt(np.abs(least[0])))
 
 

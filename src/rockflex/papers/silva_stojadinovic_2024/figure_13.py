@@ -1,10 +1,13 @@
 """Figure 13: 2DOF-S combined with the second mode on a fixed base."""
 
+from functools import partial
+
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._population import DRAWS, PAIRS, intervals, population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
 
 __all__ = ["TITLE", "reproduce"]
 
@@ -45,7 +48,10 @@ def reproduce(records: Records) -> Result:
         "R² is that of the line of equality, as in the paper; the blue line is y = c_1 x. Ours is the median, and the "
         f"90 % interval that of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
     )
-    return Result("figure-13", TITLE, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note)
+    return Result(
+        "figure-13", TITLE, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note,
+        remarking=(partial(under_weaker, records, PRINTED),),
+    )  # fmt: skip
 
 
 def _size(slope: Interval) -> Interval:

@@ -40,7 +40,8 @@ def reproduce(records: Records) -> Result:
             note=f"0.1 is our reading; {_few(runs)}",
         ),
         tendency(
-            "largest difference of P between MDOF-S and a 2DOF model, flexure less shear", PLACE, "largest differences for flexure-dominant structures", more, "> 0",
+            "largest difference of P between MDOF-S and a 2DOF model, flexure less shear", PLACE,
+            "largest differences for flexure-dominant structures", more, "> 0",
         ),
     )  # fmt: skip
     note = (

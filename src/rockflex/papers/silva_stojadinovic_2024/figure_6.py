@@ -20,23 +20,23 @@ def reproduce(records: Records) -> Result:
     """Run the cloud, and compare the models' regressions."""
     runs = cloud(records)
     found = differences(records, QUANTITY)
-    largest = places(records, QUANTITY).idxmax()
+    largest = {part: str(place) for part, place in places(records, QUANTITY).idxmax().items()}
     numbers = (
         statistic(
             "largest difference of the medians of θ_max", PLACE, "0.002", found["median, largest"], "rad",
             note=largest["median"],
         ),
         statistic(
-            "largest difference of the medians of θ_max over the median of MDOF-S", PLACE, "15", percent(found["median, of the largest"]), "%",
-            note=largest["median"],
+            "largest difference of the medians of θ_max over the median of MDOF-S", PLACE, "15",
+            percent(found["median, of the largest"]), "%", note=largest["median"],
         ),
         statistic(
             "largest difference of the 84 % quantiles of θ_max", PLACE, "0.005", found["84 % quantile, largest"], "rad",
             note=largest["quantile"],
         ),
         statistic(
-            "largest difference of the 84 % quantiles of θ_max over that of MDOF-S", PLACE, "12", percent(found["84 % quantile, of the largest"]), "%",
-            note=largest["quantile"],
+            "largest difference of the 84 % quantiles of θ_max over that of MDOF-S", PLACE, "12",
+            percent(found["84 % quantile, of the largest"]), "%", note=largest["quantile"],
         ),
     )  # fmt: skip
     note = (
@@ -51,14 +51,14 @@ def reproduce(records: Records) -> Result:
 def _readings(records: Records) -> Remark:
     """The differences where they are largest in rad, and where they are relatively largest."""
     at = places(records, QUANTITY)
-    largest = at.idxmax()
+    largest = {part: str(place) for part, place in at.idxmax().items()}
     reasons = {
         "median": "largest of the medians, in rad",
         "quantile": "largest of the 84 % quantiles, in rad",
         "median_relative": "relatively largest of the medians",
         "quantile_relative": "relatively largest of the 84 % quantiles",
     }
-    rows = [("the paper", "", "0.002 rad (15 %)", "0.005 rad (12 %)")]
+    rows: list[tuple[str, ...]] = [("the paper", "", "0.002 rad (15 %)", "0.005 rad (12 %)")]
     for reason, words in reasons.items():
         row = at.loc[largest[reason]]
         cells = [f"{row[part]:.5f} rad ({100.0 * row[part + '_relative']:.1f} %)" for part in ("median", "quantile")]
@@ -66,8 +66,8 @@ def _readings(records: Records) -> Remark:
     return Remark(
         Kind.BESIDE,
         "Which difference is the largest",
-        "One structure and model a line. By the largest relative difference, the other reading of the text, the "
-        "medians would miss both printed values.",
+        "One structure and model a line. The last two lines are the other reading of the text, by the largest relative "
+        "difference.",
         ("structure and model", "where the difference is", "medians", "84 % quantiles"),
         rows,
     )

@@ -17,7 +17,7 @@ def reproduce(records: Records) -> Result:
     """Run the cloud, and compare the models' regressions."""
     runs = cloud(records)
     found = differences(records, QUANTITY)
-    largest = places(records, QUANTITY).idxmax()
+    largest = {part: str(place) for part, place in places(records, QUANTITY).idxmax().items()}
     mean = "median of the 2DOF models over that of MDOF-S, mean of three structures"
     numbers = (
         statistic(

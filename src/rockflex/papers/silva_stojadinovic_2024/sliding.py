@@ -61,7 +61,7 @@ def _runs(records: Records) -> "pd.DataFrame":
 
     suite = records.suite[::EVERY]
     groups = rf.run_cloud(frame_of("#1"), suite, MODEL).set_index("record")["group"].astype(str).to_dict()
-    rows: list[dict[str, object]] = []
+    rows: list[dict[str, str | float]] = []
     for model in MODELS:
         for name in STRUCTURES:
             for motion in suite:
@@ -98,18 +98,25 @@ def _intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str, Interva
 def _both_signs(records: Records) -> Remark:
     """The same with the sign of the weight mended, and of the other models."""
     rows: list[tuple[str, ...]] = []
+    above: dict[str, list[str]] = {sign: [] for sign in SIGNS}
     for sign, words in SIGNS.items():
         for model in MODELS:
             found = _intervals(_runs(records), model, sign)
+            above[sign] += [model] * (found["shear over flexure"].estimate > 1.0)
             cells = [f"{found[name].estimate:.2f}" for name in PAIRS]
             rows.append((words, model, *cells, f"{found[ABOVE].estimate:.0f}"))
     return Remark(
         Kind.BESIDE,
         "Both signs of the weight in Eq. 22",
-        "With Eq. 22 as printed, −g + z''_i, shear-dominant buildings need more friction than flexural ones in both "
-        "models of one mode. With the sign mended the order is the reverse in every model: the paper's conclusion on "
-        "shear and flexure hangs on this misprint. MDOF-S has the reverse order with either sign. The other statements "
-        "hold with both.",
+        "Eq. 22 is printed with −g + z''_i, of which one sign is wrong. As printed, shear-dominant buildings are more "
+        f"prone to sliding than flexural ones with {_listed(above['printed'])}; with the sign mended, with "
+        f"{_listed(above['mended'])}."
+        + " The paper's conclusion hangs on this misprint."
+        * (MODEL in above["printed"] and not above["mended"]),
         ("Eq. 22", "model", *(f"least ratio, {name}" for name in PAIRS), ABOVE),
         rows,
     )
+
+
+def _listed(models: list[str]) -> str:
+    return " and ".join(models) or "no model"
