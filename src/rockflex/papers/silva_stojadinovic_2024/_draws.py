@@ -67,9 +67,9 @@ def _resting(pairs: "pd.DataFrame") -> dict[str, float]:
 
 def _outliers(pairs: "pd.DataFrame", found: rf.PopulationStatistics) -> dict[str, float]:
     """Of the rocking pairs with the largest differences of rotation."""
-    few = found.outliers[found.outliers["share"].notna()].head(FEW)
+    few = found.outliers[found.outliers["share"].notna()].head(FEW)  # none, if all overturned
     return {
-        "aspect ratio of outliers": float(few["aspect_ratio"].median()),
-        "stories of outliers": float(few["n_stories"].median()),
-        "period of outliers": float(few["period"].median() / pairs["period"].median()),
+        "aspect ratio of outliers": float(few["aspect_ratio"].astype(float).median()),
+        "stories of outliers": float(few["n_stories"].astype(float).median()),
+        "period of outliers": float(few["period"].astype(float).median() / pairs["period"].median()),
     }
