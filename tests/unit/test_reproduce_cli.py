@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from page import check_page
 from rockflex.cli import app
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, reproduce
+from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, reproduce
 
 
 def invoke(*arguments):
@@ -42,7 +42,7 @@ def test_targets_alone_in_the_order_of_the_paper():
     assert "figure-3" not in done.stdout
     assert "141.6332" in done.stdout
     last = done.stdout.splitlines()[-1].split()
-    assert last == ["all", "38", "0", "0", "8"]
+    assert last == ["all", "38", "0", "0", "0", "8"]
     assert "72 components of FEMA P-695" in done.stderr
 
 
@@ -66,20 +66,35 @@ def test_unknown_targets_are_refused_with_close_matches(target, hint):
 
 def test_files_of_a_target(tmp_path):
     out = tmp_path / "paper"
-    done = invoke("figure-15", "table-3", "--out", out)
+    done = invoke("figure-15", "table-1", "--out", out)
     assert done.exit_code == 0, done.stderr
     assert f"open {out / 'report.html'}" in done.stderr.replace("\n", "")
     names = {file.name for file in out.iterdir()}
     assert names == {"report.html", "report.md", "numbers.csv", "figure-15.svg", "summary.json"}
     check_page((out / "report.html").read_text("utf-8"), 1)
     summary = json.loads((out / "summary.json").read_text("utf-8"))
-    assert summary["targets"] == ["table-3", "figure-15"]
-    assert summary["numbers"]["does not reproduce"] == 8
-    again = invoke("table-3", "--out", out)
+    assert summary["targets"] == ["table-1", "figure-15"]
+    assert summary["numbers"]["does not reproduce"] == 1
+    assert summary["checks"].startswith("0 of 0 checks")
+    again = invoke("table-1", "--out", out)
     assert again.exit_code == 2
     assert "is not empty" in again.stderr
-    assert invoke("table-3", "--out", out, "--force").exit_code == 0
+    assert invoke("table-1", "--out", out, "--force").exit_code == 0
     assert not (out / "figure-15.svg").exists()
+
+
+@pytest.mark.parametrize("seeds", [9, 0, -3])
+def test_too_few_seeds_are_refused(seeds):
+    done = invoke("figure-9", "--seeds", seeds)
+    assert done.exit_code == 2
+    assert f"seeds must be a whole number of at least 10, but {seeds} was given" in done.stderr.replace("\n", " ")
+
+
+def test_checks_are_printed_and_not_counted():
+    done = invoke("table-2", "figure-11")
+    assert done.exit_code == 0
+    assert "check of ourselves" in done.stdout
+    assert done.stdout.splitlines()[-1].split() == ["all", "0", "0", "0", "0", "0"]
 
 
 def test_force_needs_a_folder():
@@ -89,14 +104,15 @@ def test_force_needs_a_folder():
 
 
 def test_records_of_ones_own(at2):
-    done = invoke("sliding", "figure-6", "--records", at2)
+    done = invoke("figure-6", "--records", at2)
     assert done.exit_code == 0, done.stderr
     assert f"8 records of the folder {at2.name}, in place of the paper's 210" in done.stderr
     records = Records(at2)
     assert set(records.suite.names) == set(rf.load_suite("fema-p695-far-field")[:16].names[::2])
     assert records.el_centro.name == rf.load_suite("el-centro-1940")[0].name
-    mine, embedded = (reproduce(["figure-8"], given)[0] for given in (records, Records()))
-    assert mine.count(Verdict.REPRODUCED) == embedded.count(Verdict.REPRODUCED) == 10
+    (drawn,) = reproduce(["figure-8"], Records(at2, seeds=10))
+    assert drawn.numbers == ()
+    assert [check.holds for check in drawn.checks] == [True] * 10
 
 
 def test_a_folder_without_records_is_refused(tmp_path):

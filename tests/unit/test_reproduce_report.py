@@ -9,18 +9,28 @@ import pytest
 from matplotlib.figure import Figure
 
 from page import Page, check_page
-from rockflex.papers.silva_stojadinovic_2024 import Result, Verdict
-from rockflex.papers.silva_stojadinovic_2024._verdict import compared, stated, statistic
+from rockflex.papers.silva_stojadinovic_2024 import Kind, Remark, Result, Verdict
+from rockflex.papers.silva_stojadinovic_2024._beside import check
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, compared, stated, statistic
 from rockflex.report import Document, to_csv, to_html, to_markdown, write_report
 from rockflex.report._svg import inline
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
+KINDS = {str(kind): kind.meaning for kind in Kind}
 NUMBERS = (
     compared("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
     compared("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
-    statistic("R²", "Section 3.3", "0.99", 0.983, 0.978, 0.988),
+    statistic("R²", "Section 3.3", "0.99", Interval(0.983, 0.978, 0.988)),
     stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", ground=Verdict.EQUIVALENT),
+    statistic("difference", "Section 3.2", "0.002", Interval(0.00093, 0.00064, 0.00329), "rad"),
 )
+CHECKS = (check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"), check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"))
+computed = []
+
+
+def remark():
+    computed.append(1)
+    return Remark(Kind.AFTERWARDS, "Slices <b>", "20 of 20 & more.", ("h*_2 | m", "met"), [("51.33", "yes")])
 
 
 def drawing():
@@ -34,10 +44,18 @@ def drawing():
 @pytest.fixture(scope="module")
 def document():
     sections = [
-        Result("figure-3", "First & <only>", NUMBERS, {"figure-3": drawing, "figure-3-spread": drawing}, "A note_1."),
+        Result(
+            "figure-3",
+            "First & <only>",
+            NUMBERS,
+            {"figure-3": drawing, "figure-3-spread": drawing},
+            "A note_1.",
+            CHECKS,
+            (remark, lambda: Remark(Kind.BESIDE, "Short", "No table.")),
+        ),
         Result("table-1", "Second"),
     ]
-    return Document("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, sections)
+    return Document("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
 
 
 @pytest.fixture(scope="module")
@@ -69,9 +87,35 @@ def test_every_number_and_verdict_is_in_the_page(folder, document):
         for text in (line.place, line.name, line.printed, line.ours_as_text, line.difference_as_text, line.verdict):
             assert str(text) in page.cells
     assert document.counts == {
-        "reproduced": 1, "reproduced with other records": 1, "equivalent specimen": 1, "does not reproduce": 1,
+        "reproduced": 1, "compatible": 1, "equivalent specimen": 1, "cannot tell": 1, "does not reproduce": 1,
     }  # fmt: skip
     assert page.cells.count("a|b & c_*") == 2  # among those that do not reproduce, and in its section
+
+
+def test_checks_and_remarks_are_shown_and_not_counted(folder, document):
+    page, plain = (folder / "report.html").read_text("utf-8"), (folder / "report.md").read_text("utf-8")
+    assert sum(document.counts.values()) == len(NUMBERS)
+    assert f"<caption>{len(NUMBERS)} numbers</caption>" in page
+    for text in (page, plain):
+        assert "1 of 2 checks of ourselves hold" in text
+        assert all(meaning in text for meaning in KINDS.values())
+        assert "No table." in text
+    cells = Page(page).cells
+    assert {"T_1 & <x>", "m_tot g B", "51.33"} <= set(cells)
+    assert [cell for cell in cells if cell in ("yes", "no")] == ["yes", "no", "yes"]
+    assert "Slices &lt;b&gt;" in page
+    assert ">h*_2 | m<" in page
+    assert r"| h\*\_2 \| m | met |" in plain
+    assert "**Remark, chosen after the fact: Slices" in plain
+    assert "T_1 &" not in (folder / "numbers.csv").read_text("utf-8")
+
+
+def test_remarks_are_computed_once_and_when_they_are_asked_for(document):
+    assert computed == [1]  # for the page and the Markdown together
+    before = Result("figure-3", "First", remarking=(remark,))
+    assert computed == [1]
+    assert before.remarks is before.remarks
+    assert computed == [1, 1]
 
 
 def test_a_page_without_failures_has_no_list_of_them(document):
@@ -79,13 +123,14 @@ def test_a_page_without_failures_has_no_list_of_them(document):
     text = to_html(fine, {})
     check_page(text, 0)
     assert 'id="failing"' not in text
+    assert "Checks of ourselves, not counted" not in text
 
 
 def test_markdown_holds_the_same(folder, document):
     text = (folder / "report.md").read_text("utf-8")
     assert text == to_markdown(document)
     rows = [line for line in text.splitlines() if line.startswith("|")]
-    assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 2  # of the two kinds of table
+    assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 4  # of the four kinds of table
     assert r"a\|b & c\_\*" in text
     assert "**does not reproduce**" in text
     for stem in re.findall(r"\]\(([^)]*)\)", text):

@@ -1,4 +1,4 @@
-"""Printed numbers and verdicts: what is read from print, and that a wrong number does not pass."""
+"""Printed numbers, verdicts and checks: what is read from print, and that a wrong number does not pass."""
 
 import math
 
@@ -8,8 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
+from rockflex.papers.silva_stojadinovic_2024._beside import check
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, compared, stated, statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._printed import range_of
-from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict, compared, stated, statistic
+from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST
 
 
 @pytest.mark.parametrize(
@@ -109,25 +112,69 @@ def test_a_value_that_is_cut_off_says_so():
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "verdict"),
+    ("printed", "low", "high", "verdict"),
     [
-        (0.978, 0.988, Verdict.OTHER_RECORDS),
-        (0.994, 0.999, Verdict.OTHER_RECORDS),
-        (0.978, 0.984, Verdict.NOT),
-        (0.996, 0.999, Verdict.NOT),
-        (math.nan, math.nan, Verdict.NOT),
+        ("0.99", 0.978, 0.988, Verdict.COMPATIBLE),
+        ("0.99", 0.994, 0.999, Verdict.COMPATIBLE),
+        ("0.99", 0.978, 0.984, Verdict.NOT),
+        ("0.99", 0.996, 0.999, Verdict.NOT),
+        ("0.99", math.nan, math.nan, Verdict.UNDECIDED),
+        ("0.002", 0.0016, 0.0025, Verdict.COMPATIBLE),
+        ("0.002", 0.00064, 0.00329, Verdict.UNDECIDED),
+        ("0.002", 0.0026, 0.0099, Verdict.NOT),
+        ("−10", -12.0, -8.0, Verdict.COMPATIBLE),
+        ("−10", -12.0, -6.0, Verdict.UNDECIDED),
     ],
 )
-def test_statistics_pass_by_their_interval_alone(low, high, verdict):
-    line = statistic("R²", "Section 3.3", "0.99", 0.983, low, high)
+def test_statistics_are_judged_by_their_interval_and_its_width(printed, low, high, verdict):
+    line = statistic("x", "Section 3.3", printed, Interval(0.983, low, high))
     assert line.verdict is verdict
-    assert "must meet it" in line.criterion
-    assert line.difference == pytest.approx(-0.007)
+    known = not math.isnan(low)
+    assert line.criterion.startswith("90 % interval" if known else "too few runs for an interval")
+    assert ("wider than half of it" in line.criterion) == (known and verdict is Verdict.UNDECIDED)
+    assert line.difference == pytest.approx(0.983 - float(printed.replace("−", "-")))
+
+
+@given(st.floats(0.1, 100.0), st.floats(0.0, 2.0), st.floats(0.0, 2.0))
+def test_a_wider_interval_is_never_compatible_where_a_narrower_one_tells_nothing(value, below, above):
+    printed = f"{value:.2f}"
+    inner = Interval(value, value - below * 0.25 * value, value + above * 0.25 * value)
+    outer = Interval(value, inner.low - 0.5 * value, inner.high + 0.5 * value)
+    assert statistic("x", "y", printed, outer).verdict is Verdict.UNDECIDED
+    narrow = inner.high - inner.low <= WIDEST * float(printed)
+    assert (statistic("x", "y", printed, inner).verdict is Verdict.COMPATIBLE) == narrow
+
+
+@pytest.mark.parametrize(
+    ("criterion", "low", "high", "verdict"),
+    [
+        ("> 1", 1.07, 1.36, Verdict.COMPATIBLE),
+        ("> 1", 0.97, 1.36, Verdict.UNDECIDED),
+        ("> 1", 0.60, 0.97, Verdict.NOT),
+        ("≤ 6", 5.0, 6.0, Verdict.COMPATIBLE),
+        ("< 5", 0.0, 148.0, Verdict.UNDECIDED),
+        ("> 1", math.nan, math.nan, Verdict.UNDECIDED),
+    ],
+)
+def test_a_tendency_must_hold_over_the_whole_interval(criterion, low, high, verdict):
+    line = tendency("ratio", "Section 3.2", "more", Interval(1.2, low, high), criterion)
+    assert line.verdict is verdict
+    assert line.criterion.startswith(f"{criterion} over the 90 % interval ")
+    assert (line.difference, line.difference_as_text) == (None, "")
+
+
+def test_checks_hold_or_do_not_and_have_no_verdict():
+    built = check("T_1", "Section 3.1", "0.5", 0.4999, unit="s", note="built so")
+    assert (built.holds, built.criterion, built.ours_as_text) == (True, "must round to it", "0.500")
+    assert not check("T_1", "Section 3.1", "0.5", 0.56).holds
+    assert not check("m*_1", "Table 2", "a formula", 1.1, "< 1").holds
+    assert check("m*_1", "Table 2", "a formula", 0.9, "< 1").criterion == "< 1"
+    assert not hasattr(built, "verdict")
 
 
 def test_statements_pass_by_their_criterion_alone():
     assert stated("slope", "", "overestimates", 0.97, "< 1").verdict is Verdict.REPRODUCED
-    wrong = stated("ratio", "", "underestimates", 1.09, "< 1", ground=Verdict.OTHER_RECORDS)
+    wrong = stated("ratio", "", "underestimates", 1.09, "< 1", ground=Verdict.EQUIVALENT)
     assert wrong.verdict is Verdict.NOT
     assert (wrong.difference, wrong.difference_as_text) == (None, "")
     assert stated("friction", "", "higher than 2", math.inf, "> 2").ours_as_text == "∞"
@@ -144,4 +191,5 @@ def test_texts():
     assert compared("x", "", "1", math.nan).ours_as_text == "none"
     assert compared("x", "", "1", -math.inf).ours_as_text == "−∞"
     assert isinstance(compared("x", "", "1", np.float64(1.0)).ours, float)
-    assert [verdict.meaning for verdict in Verdict] == list(dict.fromkeys(verdict.meaning for verdict in Verdict))
+    for kinds in (Verdict, Kind):
+        assert len({each.meaning for each in kinds}) == len(kinds)

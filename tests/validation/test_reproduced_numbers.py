@@ -1,7 +1,8 @@
 """Silva & Stojadinović 2024: every line that passes is read again from its printed text, with decimal arithmetic.
 
-What does not reproduce is listed here by name, so that a line neither joins nor leaves the list unseen. Statistics of
-the random prototypes are those of the embedded records and the seed of the targets.
+What does not reproduce is listed here by name, so that a line neither joins nor leaves the list unseen. What hangs on
+the records in place of the paper's is judged from its interval alone. There are fewer random prototypes here than in a
+report.
 """
 
 import re
@@ -13,14 +14,17 @@ import pytest
 import rockflex as rf
 from drawing import drawn
 from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, reproduce
-from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences
+from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, places
+from rockflex.papers.silva_stojadinovic_2024._number import Interval
+from rockflex.papers.silva_stojadinovic_2024._population import intervals, pool
 
 SLOW = {"sliding"}  # tested with few records
 MISSES = {
-    "figure-3": {"friction that 2DOF-C needs", "friction that 2DOF-C needs over B/h*_1"},
+    "figure-3": {"friction that 2DOF-C needs, Eq. 22 as printed"},
     "figure-4": {"u_top,max of MDOF-S over 2DOF-S, less 1"},
-    "figure-7": {"median of the 2DOF models over that of MDOF-S, mean of three structures, shear"},
     "figure-10": {
+        "shear: ω*_1/ω_1 less 1, largest of all models, h*_1/B = 1 and 2",
+        "flexure: ω*_1/ω_1 less 1, largest of all models, h*_1/B = 1 and 2",
         "shear: ω*_n/ω_n of 2DOF-S over the pinned beam's, largest, h*_1/B = 1000",
         "shear: ω*_n/ω_n of 3DOF-S over the pinned beam's, largest, h*_1/B = 1000",
         "shear: error of ω*_1 of 2DOF-S, h*_1/B = 5",
@@ -36,12 +40,13 @@ MISSES = {
     "figure-16": {"u_top,max of the weak structure"},
     "figure-17": {"u_top,max of Fig. 16's weak structure over Fig. 17's"},
 }
-BY_RECORDS = {"figure-5", "figure-6", "figure-9", "figure-13"}  # whatever fails there hangs on the records
+BY_RECORDS = {"figure-5", "figure-6", "figure-7", "figure-9", "figure-13", "sliding"}
+OWN = {"figure-8": 10, "figure-11": 1, "table-2": 8, "figure-3": 4, "figure-4": 3}  # checks of ourselves
 
 
 @pytest.fixture(scope="module")
 def records():
-    return Records()
+    return Records(seeds=10)
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +70,34 @@ def holds(criterion, ours):
     return {"<": ours < limit, ">": ours > limit, "≤": ours <= limit, "≥": ours >= limit}[sign]
 
 
+def interval_of(line):
+    """Ends of the interval of a line, as they are shown, and a unit of their last digit."""
+    found = re.search(r"90 % interval (\S+) to (\S+)", line.criterion)
+    low, high = (Decimal(text.replace("−", "-")) for text in found.groups())
+    return low, high, Decimal(1).scaleb(max(low.as_tuple().exponent, high.as_tuple().exponent))
+
+
+def by_interval(line):
+    """Judge a line of other records or draws anew, from its texts alone; None where their last digit decides."""
+    low, high, room = interval_of(line)
+    if line.criterion[0] in "<>≤≥":
+        criterion = line.criterion.split(" over ")[0]
+        ends = [{holds(criterion, end + shift) for shift in (-room, room)} for end in (low, high)]
+        if any(len(each) > 1 for each in ends):
+            return None
+        met = sum(next(iter(each)) for each in ends)
+        return (Verdict.NOT, Verdict.UNDECIDED, Verdict.COMPATIBLE)[met]
+    value, step = digits(line.printed)
+    for shift in (-room, room):
+        meets = low - shift <= value + step / 2 and value - step / 2 <= high + shift
+        if meets != (low <= value + step / 2 and value - step / 2 <= high):
+            return None
+    if not meets:
+        return Verdict.NOT
+    wide = high - low - abs(value) / 2
+    return None if abs(wide) <= 2 * room else Verdict.UNDECIDED if wide > 0 else Verdict.COMPATIBLE
+
+
 def agrees(line):
     """Judge a line anew, from its texts and its value alone."""
     if not np.isfinite(line.ours):
@@ -75,11 +108,6 @@ def agrees(line):
     if line.printed[0] in "<>≤≥":
         return holds(line.printed, ours)
     value, step = digits(line.printed)
-    interval = re.fullmatch(r"90 % interval (\S+) to (\S+) must meet it", line.criterion)
-    if interval:
-        low, high = (Decimal(text.replace("−", "-")) for text in interval.groups())
-        room = Decimal(1).scaleb(low.as_tuple().exponent)  # the interval is shown rounded
-        return low - room <= value + step / 2 and value - step / 2 <= high + room
     if line.criterion.startswith("cut off"):
         return abs(value) <= abs(ours) < abs(value) + step
     assert line.criterion == "must round to it"
@@ -88,25 +116,36 @@ def agrees(line):
 
 def test_every_line_that_passes_agrees_with_what_is_printed(results):
     found = lines(results)
-    assert len(found) > 220
+    assert len(found) > 150
     for name, line in found:
-        assert agrees(line) == (line.verdict is not Verdict.NOT), (name, line)
+        if name in BY_RECORDS:
+            again = by_interval(line)
+            assert again in (None, line.verdict), (name, line)
+        else:
+            assert agrees(line) == (line.verdict is not Verdict.NOT), (name, line)
 
 
 def test_what_does_not_reproduce_is_known(results):
     for name, result in results.items():
         if name not in BY_RECORDS:
-            own = [line for line in result.numbers if not line.criterion.startswith("90 % interval")]
-            assert {line.name for line in own if line.verdict is Verdict.NOT} == MISSES.get(name, set()), name
+            assert {line.name for line in result.numbers if line.verdict is Verdict.NOT} == MISSES.get(name, set()), (
+                name
+            )
 
 
 def test_verdicts_fit_their_ground(results):
+    grounds = {name: {Verdict.COMPATIBLE, Verdict.UNDECIDED} for name in BY_RECORDS}
+    grounds |= {name: {Verdict.EQUIVALENT} for name in ("figure-3", "figure-4")}
     for name, line in lines(results):
-        expected = {
-            **dict.fromkeys(("figure-3", "figure-4"), Verdict.EQUIVALENT),
-            **dict.fromkeys(("figure-5", "figure-6", "figure-7", "figure-9", "figure-13"), Verdict.OTHER_RECORDS),
-        }.get(name, Verdict.REPRODUCED)
-        assert line.verdict in (expected, Verdict.NOT), (name, line.name)
+        assert line.verdict in grounds.get(name, {Verdict.REPRODUCED}) | {Verdict.NOT}, (name, line.name)
+
+
+def test_checks_of_ourselves_hold_and_are_no_numbers(results):
+    for name, result in results.items():
+        assert len(result.checks) == OWN.get(name, 0), name
+        assert all(check.holds for check in result.checks), name
+    for name in ("figure-8", "figure-11", "table-2"):
+        assert results[name].numbers == (), name
 
 
 def test_the_direction_of_shear_is_a_slip_of_the_text(results):
@@ -116,8 +155,14 @@ def test_the_direction_of_shear_is_a_slip_of_the_text(results):
     assert (slip.place, slip.printed, slip.verdict) == ("Section 3.2", "2DOF models underestimate", Verdict.NOT)
     assert "overestimate" in slip.note
     assert (right.place, right.printed, right.verdict) == (
-        "Section 5", "2DOF models overestimate", Verdict.OTHER_RECORDS,
+        "Section 5", "2DOF models overestimate", Verdict.COMPATIBLE,
     )  # fmt: skip
+
+
+def test_a_value_that_table_1_repeats_is_one_number(results):
+    numbers = results["table-1"].numbers
+    assert len(numbers) == 26
+    assert sum(len(line.place.removeprefix("Table 1, ").split(", ")) for line in numbers) == 72
 
 
 def test_no_line_stands_twice(results):
@@ -134,29 +179,68 @@ def test_known_values(results):
     assert ours["figure-17", "θ_max, rocking"] == pytest.approx(1.123e-2, abs=5e-6)
     assert ours["table-3", "ω_1, finite elements"] == pytest.approx(1.65568, abs=5e-6)
     assert ours["figure-12", "shear: error of ω*_1 of 2DOF-S"] == pytest.approx(100 * (6.116 / 2.839 - 1), abs=0.1)
-    assert ours["figure-3", "simplified over complete resisting moment, less 1, mean while rocking"] == pytest.approx(
+    assert ours["figure-3", "friction that 2DOF-C needs, Eq. 22 as printed"] == pytest.approx(0.204, abs=0.001)
+    checks = {check.name: check.ours for result in results.values() for check in result.checks}
+    assert checks["simplified over complete resisting moment, less 1, mean while rocking"] == pytest.approx(
         7.1, abs=0.2
     )
-    assert ours["figure-11", "slope of the resisting moment of MDOF-S over L_0^r g"] == pytest.approx(-1.0, abs=1e-3)
-    assert ours["figure-3", "friction that 2DOF-C needs"] == pytest.approx(0.159, abs=0.001)
+    assert checks["slope of the resisting moment of MDOF-S over L_0^r g"] == pytest.approx(-1.0, abs=1e-3)
 
 
-def test_differences_of_the_clouds_by_hand(records):
+@pytest.mark.parametrize("quantity", ["max_rotation", "max_top_displacement"])
+def test_differences_of_the_clouds_by_hand(records, quantity):
     runs = cloud(records)
     assert len(runs) == 6 * 3 * 2 * 72
     kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > 1e-4)]
     medians = {}
     for key, group in kept.groupby(["structure", "model"], observed=True):
-        slope, start = np.polyfit(np.log(group["pgv"]), np.log(group["max_top_displacement"]), 1)
+        slope, start = np.polyfit(np.log(group["pgv"]), np.log(group[quantity]), 1)
         medians[key] = np.exp(start + slope * np.log(0.4))
-    away = {(s, m): (abs(v / medians[s, "MDOF-S"] - 1), abs(v - medians[s, "MDOF-S"])) for (s, m), v in medians.items()}
-    worst = max(away, key=lambda key: away[key][0])
-    found = differences(records, "max_top_displacement")
-    assert worst[0] == "#3"
-    assert found.median_relative[0] == pytest.approx(away[worst][0], rel=1e-9)
-    assert found.median[0] == pytest.approx(away[worst][1], rel=1e-9)
-    assert found.median[1] <= found.median[0] <= found.median[2]
-    assert found.ratios["#1", "2DOF-S"] == pytest.approx(medians["#1", "2DOF-S"] / medians["#1", "MDOF-S"], rel=1e-9)
+    away = {(s, m): (abs(v - medians[s, "MDOF-S"]), abs(v / medians[s, "MDOF-S"] - 1)) for (s, m), v in medians.items()}
+    found, largest = differences(records, quantity), places(records, quantity).idxmax()
+    for by, (name, other), place in (
+        (0, ("median, largest", "median, of the largest"), "median"),
+        (1, ("median, of the largest relative", "median, largest relative"), "median_relative"),
+    ):
+        worst = max(away, key=lambda key, by=by: away[key][by])
+        assert largest[place] == ", ".join(worst)
+        assert [found[name].estimate, found[other].estimate] == pytest.approx(away[worst], rel=1e-9)
+        assert found[name].low <= found[name].estimate <= found[name].high
+    ratio = {b: [medians[s, m] / medians[s, "MDOF-S"] for s, m in away if m != "MDOF-S" and int(s[1]) % 2 == odd]
+             for odd, b in enumerate(("flexure", "shear"))}  # fmt: skip
+    assert {b: found[b].estimate for b in ratio} == pytest.approx({b: np.mean(r) for b, r in ratio.items()}, rel=1e-9)
+
+
+def test_fig_6_is_judged_where_the_difference_is_largest_in_rad(results):
+    first, second, *_ = results["figure-6"].numbers
+    assert (first.note, second.note) == ("#3, 2DOF-S", "#3, 2DOF-S")
+    assert first.ours == pytest.approx(0.00205, abs=3e-5)
+    assert second.ours == pytest.approx(12.0, abs=0.2)
+
+
+def test_draws_of_a_thousand_spread_as_thousands_do(records):
+    pairs = pool(records)
+    assert len(pairs) == 10_000
+    resting = (pairs["status_mdof"] == "no_uplift").to_numpy().reshape(10, 1000)
+    share, found = resting.mean(), intervals(records)["no uplift"]
+    # Thousands drawn from ten thousands without replacement: hypergeometric, its 5 and 95 % quantiles.
+    spread = 1.645 * np.sqrt(1000 * share * (1 - share) * 0.9)
+    assert found.estimate == pytest.approx(1000 * share, abs=3)
+    assert (found.high - found.low) / 2 == pytest.approx(spread, rel=0.2)
+    assert found.low <= np.median(resting.sum(axis=1)) <= found.high
+
+
+def test_a_measure_that_few_draws_have_is_none(records, monkeypatch):
+    from rockflex.papers.silva_stojadinovic_2024 import _population
+
+    calls = iter(range(10**6))
+    monkeypatch.setattr(_population, "DRAWS", 20)
+    monkeypatch.setattr(
+        _population, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
+    )
+    found = _population.intervals.__wrapped__(records)
+    assert found["y"] == Interval(1.0, 1.0, 1.0)
+    assert all(np.isnan(found["x"]))
 
 
 @pytest.mark.parametrize("name", [name for name in TARGETS if name.startswith("figure")])

@@ -48,6 +48,15 @@ def reproduce(
         Path | None,
         typer.Option(metavar="DIR", help="Folder of records, such as PEER's AT2 files, in place of those embedded."),
     ] = None,
+    seeds: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="Random populations of 1000 pairs, at least 10, over which Figs. 9 and 13 are judged: fewer are "
+            "quicker and tell less. Default: 40.",
+            show_default=False,
+        ),
+    ] = None,
     names: Annotated[bool, typer.Option("--list", help="List the targets and run nothing.")] = False,
     force: options.Force = False,
 ) -> None:
@@ -65,7 +74,7 @@ def reproduce(
     wanted = targets or list(paper.TARGETS)
     for target in wanted:
         paper.title_of(target)
-    given = paper.Records(records)
+    given = paper.Records(records) if seeds is None else paper.Records(records, seeds)
     note(given.description)
     with progress("Computing", len(set(wanted))) as advance:
         results = paper.reproduce(wanted, given, lambda _: advance(1))
@@ -81,16 +90,18 @@ def reproduce(
 def _write(results: "list[Result]", records: "Records", out: Path, *, force: bool) -> None:
     from rockflex.cli._console import progress
     from rockflex.cli._output import staged, versions
-    from rockflex.papers.silva_stojadinovic_2024 import Verdict
+    from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
     from rockflex.report import Document, write_report
 
-    meanings = {str(verdict): verdict.meaning for verdict in Verdict}
-    document = Document(TITLE, SOURCE, records.description, versions(), meanings, results)
+    verdicts = {str(verdict): verdict.meaning for verdict in Verdict}
+    kinds = {str(kind): kind.meaning for kind in Kind}
+    document = Document(TITLE, SOURCE, records.description, versions(), verdicts, kinds, results)
     summary = {
         "versions": versions(),
         "records": records.description,
         "targets": [result.name for result in results],
         "numbers": document.counts,
+        "checks": document.checks,
     }
     figures = sum(len(result.figures) for result in results)
     with staged(out, summary, force=force) as stage, progress("Drawing", figures) as advance:
@@ -106,7 +117,11 @@ def _print_numbers(results: "Sequence[Result]") -> None:
         rows = [
             (n.name, n.printed, n.ours_as_text, n.unit, n.difference_as_text, str(n.verdict)) for n in result.numbers
         ]
-        show(console, grid(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows))
+        if rows:
+            show(console, grid(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows))
+        checks = [(c.name, c.stated, c.ours_as_text, c.unit, "yes" if c.holds else "no") for c in result.checks]
+        if checks:
+            show(console, grid(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks))
         typer.echo()
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-__all__ = ["Document", "Line", "Section"]
+__all__ = ["Document", "Line", "Proof", "Section", "Side"]
 
 
 class Line(Protocol):
@@ -61,6 +61,79 @@ class Line(Protocol):
         ...
 
 
+class Proof(Protocol):
+    """Something that must hold by construction; texts are plain."""
+
+    @property
+    def name(self) -> str:
+        """What it is."""
+        ...
+
+    @property
+    def place(self) -> str:
+        """Where the publication has what it is held to."""
+        ...
+
+    @property
+    def stated(self) -> str:
+        """What the publication has there."""
+        ...
+
+    @property
+    def ours_as_text(self) -> str:
+        """Our value with sensible digits."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Of the value; empty for a ratio."""
+        ...
+
+    @property
+    def criterion(self) -> str:
+        """What our value must meet."""
+        ...
+
+    @property
+    def holds(self) -> bool:
+        """Whether it does."""
+        ...
+
+    @property
+    def note(self) -> str:
+        """Why it must hold."""
+        ...
+
+
+class Side(Protocol):
+    """A remark: something computed beside the numbers."""
+
+    @property
+    def kind(self) -> str:
+        """One of the document's kinds of remarks."""
+        ...
+
+    @property
+    def title(self) -> str:
+        """Heading."""
+        ...
+
+    @property
+    def text(self) -> str:
+        """What was computed, and what it says."""
+        ...
+
+    @property
+    def head(self) -> Sequence[str]:
+        """Columns of its table; none without one."""
+        ...
+
+    @property
+    def rows(self) -> Sequence[Sequence[str]]:
+        """Cells of its table."""
+        ...
+
+
 class Section(Protocol):
     """A table or figure with its numbers."""
 
@@ -85,6 +158,16 @@ class Section(Protocol):
         ...
 
     @property
+    def checks(self) -> Sequence[Proof]:
+        """What holds by construction, and is counted nowhere."""
+        ...
+
+    @property
+    def remarks(self) -> Sequence[Side]:
+        """What was computed beside the numbers, and is counted nowhere."""
+        ...
+
+    @property
     def figures(self) -> Mapping[str, Callable[[], Any]]:
         """A function that draws the figure, by the stem of its file."""
         ...
@@ -104,6 +187,8 @@ class Document:
         Of everything that the numbers depend on.
     verdicts : mapping of str to str
         Meaning of every verdict, best first.
+    remarks : mapping of str to str
+        Meaning of every kind of remark.
     sections : sequence of Section
         In the publication's order.
     """
@@ -113,6 +198,7 @@ class Document:
     records: str
     versions: Mapping[str, str]
     verdicts: Mapping[str, str]
+    remarks: Mapping[str, str]
     sections: Sequence[Section]
 
     @property
@@ -120,3 +206,13 @@ class Document:
         """Lines with each verdict."""
         lines = [str(line.verdict) for section in self.sections for line in section.numbers]
         return {verdict: lines.count(verdict) for verdict in self.verdicts}
+
+    @property
+    def checks(self) -> str:
+        """How many checks there are, and how many hold, in a sentence."""
+        found = [check.holds for section in self.sections for check in section.checks]
+        return (
+            f"{sum(found)} of {len(found)} checks of ourselves hold. They follow from how the library, or an "
+            "equivalent specimen, is built, and so are not among the numbers; nor are remarks. A value that the "
+            "publication repeats is counted once."
+        )

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["to_html"]
 
 TEMPLATES = Path(__file__).parent / "templates"
-CLASSES = ("best", "good", "fair", "bad")  # of the verdicts, best first; the last one of a longer list is bad too
+CLASSES = ("best", "good", "fair", "open", "bad")  # of the verdicts, best first; the last one is bad
 
 
 def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
@@ -34,7 +34,7 @@ def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
     figures = {stem: Markup(inline(drawings[stem], stem, label)) for stem, label in labels.items()}
     verdicts = list(document.verdicts)
     last = len(verdicts) - 1
-    looks = {name: CLASSES[-1 if place == last else min(place, 2)] for place, name in enumerate(verdicts)}
+    looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
     failing = [line for s in document.sections for line in s.numbers if str(line.verdict) == verdicts[-1]]
     return _template().render(
         document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]

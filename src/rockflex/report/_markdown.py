@@ -5,10 +5,11 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rockflex.report._document import Document, Section
+    from rockflex.report._document import Document, Proof, Section
 
 __all__ = ["to_markdown"]
 
+CHECKS = ("place", "check", "paper", "rockflex", "unit", "holds", "criterion and remarks")
 HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict", "criterion and remarks")
 
 
@@ -24,6 +25,8 @@ def to_markdown(document: "Document") -> str:
             ("verdict", "numbers", "meaning"),
             [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()],
         ),
+        _plain(document.checks),
+        "\n".join(f"- *Remark, {_plain(kind)}.* {_plain(meaning)}" for kind, meaning in document.remarks.items()),
         *(part for section in document.sections for part in _section(section)),
     ]
     return "\n\n".join(parts) + "\n"
@@ -44,10 +47,23 @@ def _section(section: "Section") -> Iterable[str]:
     ]  # fmt: skip
     if rows:
         yield _table(HEAD, rows)
+    if section.checks:
+        yield "Checks of ourselves, not counted:"
+        yield _table(CHECKS, [_check(check) for check in section.checks])
+    for remark in section.remarks:
+        yield f"**Remark, {_plain(str(remark.kind))}: {_plain(remark.title)}.** {_plain(remark.text)}"
+        if remark.head:
+            yield _table(remark.head, remark.rows)
+
+
+def _check(check: "Proof") -> tuple[str, ...]:
+    remarks = "; ".join(part for part in (check.criterion, check.note) if part)
+    holds = "yes" if check.holds else "**no**"
+    return check.place, check.name, check.stated, check.ours_as_text, check.unit, holds, remarks
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head)]
+    lines = [[_plain(cell) for cell in head], ["---"] * len(head)]
     lines += [[cell if cell.startswith("**") else _plain(cell) for cell in row] for row in rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 

@@ -2,12 +2,14 @@
 
 The paper is "Surrogate models for seismic response analysis of flexible rocking structures", Earthquake Engng Struct
 Dyn, doi 10.1002/eqe.4193. A target is a module with a ``TITLE`` and a function ``reproduce(records)`` that returns a
-`Result`. What lets a number pass is written in one place, `_verdict`.
+`Result`. What lets a number pass is written in one place, `_number`.
 """
 
+from rockflex.papers.silva_stojadinovic_2024._beside import Check, Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._catalogue import TARGETS, reproduce, title_of
+from rockflex.papers.silva_stojadinovic_2024._number import Number
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
-from rockflex.papers.silva_stojadinovic_2024._verdict import Number, Verdict
+from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
-__all__ = ["TARGETS", "Number", "Records", "Result", "Verdict", "reproduce", "title_of"]
+__all__ = ["TARGETS", "Check", "Kind", "Number", "Records", "Remark", "Result", "Verdict", "reproduce", "title_of"]

@@ -1,6 +1,6 @@
 """The cloud of Section 3.2, which Figures 5 to 7 share, and how its models differ at PGV = 0.4 m/s."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -8,19 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._number import Interval
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["PGV", "THRESHOLD", "Differences", "cloud", "differences", "percent"]
+__all__ = ["PGV", "THRESHOLD", "cloud", "differences", "percent", "places"]
 
 Array = NDArray[np.float64]
 
 PGV = 0.4  # m/s, at which the text gives its differences
 THRESHOLD = 1e-4  # rad, above which a run rocks
 RESAMPLES = 200
+PARTS = ("median", "84 % quantile")
+SHEAR = np.array([row[2] == "shear" for row in STRUCTURES.values()])
+THIRD = list(STRUCTURES).index("#3")
 
 
 @lru_cache(maxsize=1)
@@ -30,67 +34,94 @@ def cloud(records: Records) -> "pd.DataFrame":
     return rf.run_cloud(frames, records.suite, MODELS, (1.0, 2.0))
 
 
-@dataclass(frozen=True, eq=False)
-class Differences:
-    """What the 2DOF models say at PGV = 0.4 m/s less what MDOF-S does, each with its 90 % interval (low, high).
+@lru_cache(maxsize=2)
+def differences(records: Records, quantity: str) -> dict[str, Interval]:
+    """Compare the fits of a response, ``"max_rotation"`` or ``"max_top_displacement"``, at PGV = 0.4 m/s.
 
     Records are resampled whole, with both components, both scales, all structures and all models.
-    """
 
-    median: tuple[float, float, float]
-    """Difference of medians, in the response's unit, of the structure and 2DOF model where it is relatively largest."""
-    median_relative: tuple[float, float, float]
-    quantile: tuple[float, float, float]
-    """The same of the 84 % quantiles."""
-    quantile_relative: tuple[float, float, float]
-    ratios: dict[tuple[str, str], float]
-    """Median of a 2DOF model over that of MDOF-S, by structure and model."""
-
-
-@lru_cache(maxsize=2)
-def differences(records: Records, quantity: str) -> Differences:
-    """Compare the fits of a response, ``"max_rotation"`` or ``"max_top_displacement"``.
+    Returns
+    -------
+    dict of str to Interval
+        Of the 2DOF models against MDOF-S, each for ``"median"`` and ``"84 % quantile"``: the largest absolute
+        difference in the response's unit (``"median, largest"``) and the same over the value of MDOF-S (``"median, of
+        the largest"``); the largest relative difference (``"median, largest relative"``) and the same in the response's
+        unit (``"median, of the largest relative"``). Of the medians alone: ``"#3 over the others"``, the largest
+        relative difference of #3 over that of all others; ``"2DOF-C less 2DOF-S"``, their largest difference over the
+        largest relative one; ``"shear"`` and ``"flexure"``, the mean ratio of a 2DOF model to MDOF-S.
 
     Raises
     ------
     InputError
         If too few runs rocked for a fit.
     """
+    im, table, groups = _kept(records, quantity)
+    names = list(_compare(_fit(im, table)))
+    band = rf.bootstrap_band(
+        _fit, im, table, groups, at=np.arange(len(names)), n=RESAMPLES,
+        curve=lambda fits, _: np.array(list(_compare(fits).values())),
+    )  # fmt: skip
+    three = zip(band.estimate, band.low, band.high, strict=True)
+    return {name: Interval(*map(float, each)) for name, each in zip(names, three, strict=True)}
+
+
+def places(records: Records, quantity: str) -> "pd.DataFrame":
+    """Differences by structure and 2DOF model, such as ``"#3, 2DOF-S"``.
+
+    The columns are `median` and `quantile`, in the response's unit, and the same over the value of MDOF-S,
+    `median_relative` and `quantile_relative`; the quantile is that of 84 %.
+    """
+    import pandas as pd
+
+    im, table, _ = _kept(records, quantity)
+    away, shares = (each.reshape(-1, len(PARTS)) for each in _away(_fit(im, table)))
+    names = [f"{name}, {model}" for name in STRUCTURES for model in MODELS[1:]]
+    columns = ["median", "quantile", "median_relative", "quantile_relative"]
+    return pd.DataFrame(np.column_stack((away, shares)), names, columns)
+
+
+def percent(values: Interval) -> Interval:
+    """Return an interval in per cent."""
+    return Interval(*(100.0 * value for value in values))
+
+
+def _kept(records: Records, quantity: str) -> tuple[Array, Array, "NDArray[np.str_]"]:
+    """PGV; structure and model as a number beside the response; recording: of the runs that rock and stand."""
     runs = cloud(records)
     kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > THRESHOLD)]
-    keys = [(name, model) for name in STRUCTURES for model in MODELS]
-    code = {key: number for number, key in enumerate(keys)}
+    code = {key: number for number, key in enumerate((name, model) for name in STRUCTURES for model in MODELS)}
     names, models = kept["structure"].astype(str), kept["model"].astype(str)
     codes = np.array([code[key] for key in zip(names, models, strict=True)], dtype=float)
     table = np.column_stack((codes, kept[quantity].to_numpy(dtype=float)))
-
-    def fit(im: Array, rows: Array) -> Array:
-        fits = [rf.fit_cloud(im[mine], rows[mine, 1]) for mine in (rows[:, 0] == i for i in range(len(keys)))]
-        return np.array([(each.median(PGV), each.quantile(PGV, 0.84)) for each in fits], dtype=float)
-
-    def curve(found: Array, at: Array) -> Array:
-        of = found.reshape(len(STRUCTURES), len(MODELS), 2)
-        away, relative = np.abs(of[:, 1:] - of[:, :1]), np.abs(of[:, 1:] / of[:, :1] - 1.0)
-        pairs = [(away[..., i].flat[place], relative[..., i].flat[place]) for i, place in enumerate(_worst(relative))]
-        return np.concatenate((np.ravel(pairs), (of[:, 1:, 0] / of[:, :1, 0]).ravel()))[at.astype(int)]
-
-    n = 4 + len(STRUCTURES) * (len(MODELS) - 1)
-    band = rf.bootstrap_band(
-        fit, kept["pgv"].to_numpy(dtype=float), table, kept["group"].astype(str).to_numpy(), at=np.arange(n),
-        n=RESAMPLES, curve=curve,
-    )  # fmt: skip
-    three = [(float(e), float(a), float(b)) for e, a, b in zip(band.estimate, band.low, band.high, strict=True)]
-    others = [(name, model) for name in STRUCTURES for model in MODELS[1:]]
-    ratios = {key: value[0] for key, value in zip(others, three[4:], strict=True)}
-    return Differences(three[0], three[1], three[2], three[3], ratios)
+    return kept["pgv"].to_numpy(dtype=float), table, kept["group"].astype(str).to_numpy(dtype=np.str_)
 
 
-def _worst(relative: Array) -> list[int]:
-    """Place of the structure and model with the largest relative difference, of medians and of quantiles."""
-    return [int(relative[..., i].argmax()) for i in range(2)]
+def _fit(im: Array, rows: Array) -> Array:
+    """Median and 84 % quantile by structure and model."""
+    shape = (len(STRUCTURES), len(MODELS), len(PARTS))
+    every = (rows[:, 0] == i for i in range(shape[0] * shape[1]))
+    fits = [rf.fit_cloud(im[mine], rows[mine, 1]) for mine in every]
+    return np.array([(fit.median(PGV), fit.quantile(PGV, 0.84)) for fit in fits], dtype=float).reshape(shape)
 
 
-def percent(values: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Return estimate, low and high in per cent."""
-    estimate, low, high = values
-    return 100.0 * estimate, 100.0 * low, 100.0 * high
+def _away(fits: Array) -> tuple[Array, Array]:
+    """Absolute and relative differences of the 2DOF models from MDOF-S."""
+    return np.abs(fits[:, 1:] - fits[:, :1]), np.abs(fits[:, 1:] / fits[:, :1] - 1.0)
+
+
+def _compare(fits: Array) -> Mapping[str, float]:
+    """What `differences` returns, of one set of fits."""
+    away, shares = _away(fits)
+    found: dict[str, float] = {}
+    for place, part in enumerate(PARTS):
+        absolute, relative = away[..., place].ravel(), shares[..., place].ravel()
+        most, worst = int(absolute.argmax()), int(relative.argmax())
+        found[f"{part}, largest"], found[f"{part}, of the largest"] = absolute[most], relative[most]
+        found[f"{part}, largest relative"], found[f"{part}, of the largest relative"] = relative[worst], absolute[worst]
+    by_structure, ratios = shares[..., 0].max(axis=1), fits[:, 1:, 0] / fits[:, :1, 0]
+    return found | {
+        "#3 over the others": by_structure[THIRD] / np.delete(by_structure, THIRD).max(),
+        "2DOF-C less 2DOF-S": np.abs(ratios[:, 0] - ratios[:, 1]).max() / by_structure.max(),
+        "shear": ratios[SHEAR].mean(),
+        "flexure": ratios[~SHEAR].mean(),
+    }

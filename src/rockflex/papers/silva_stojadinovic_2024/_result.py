@@ -2,10 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
-from rockflex.papers.silva_stojadinovic_2024._verdict import Number, Verdict
+from rockflex.papers.silva_stojadinovic_2024._beside import Check, Remark
+from rockflex.papers.silva_stojadinovic_2024._number import Number
+from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
 __all__ = ["Result"]
 
@@ -24,6 +27,10 @@ class Result:
         A function that draws the figure, by the stem of its file; nothing is drawn before it is called.
     note : str
         What the reader must know before the figures: assumptions that the paper leaves open.
+    checks : tuple of Check
+        What holds by construction, and so is not counted.
+    remarking : tuple of callable
+        Functions without arguments that compute the remarks.
     """
 
     name: str
@@ -31,10 +38,21 @@ class Result:
     numbers: tuple[Number, ...] = ()
     figures: Mapping[str, Callable[[], Any]] = field(default_factory=dict[str, Callable[[], Any]])
     note: str = ""
+    checks: tuple[Check, ...] = ()
+    remarking: tuple[Callable[[], Remark], ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "numbers", tuple(self.numbers))
         object.__setattr__(self, "figures", MappingProxyType(dict(self.figures)))
+
+    @property
+    def remarks(self) -> tuple[Remark, ...]:
+        """What was computed beside the numbers; nothing is before it is asked for, as some take half a minute."""
+        return self._remarks
+
+    @cached_property
+    def _remarks(self) -> tuple[Remark, ...]:
+        return tuple(remark() for remark in self.remarking)
 
     def count(self, verdict: Verdict) -> int:
         """Numbers with a verdict."""

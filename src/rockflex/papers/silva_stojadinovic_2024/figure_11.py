@@ -1,10 +1,10 @@
 """Figure 11: base moment over rotation of a pinned beam and of a rocking base."""
 
 import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._beside import check
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import tall_frame
-from rockflex.papers.silva_stojadinovic_2024._verdict import stated
 
 __all__ = ["TITLE", "reproduce"]
 
@@ -22,10 +22,12 @@ def reproduce(_: Records) -> Result:
     free = p.i_theta - float(p.effective_mass @ p.effective_height**2)
     moment = -free * float(response.rotation_acceleration[0])
     slope = (moment - p.resisting_moment) / float(response.rotation[0]) / (p.l0r * 9.81)
-    numbers = (
-        stated(
+    checks = (
+        check(
             "slope of the resisting moment of MDOF-S over L_0^r g", "Section 3.4", "negative rotational stiffness",
-            slope, "< 0", note="M = m_tot g B − L_0^r g θ has −1; from the first instant of a free motion",
+            slope, "< 0",
+            note="the model is built so: M = m_tot g B − L_0^r g θ has −1; from the first instant of a free motion",
         ),
     )  # fmt: skip
-    return Result("figure-11", TITLE, numbers, {"figure-11": lambda: rf.plot_moment_rotation_laws(frame)})
+    figures = {"figure-11": lambda: rf.plot_moment_rotation_laws(frame)}
+    return Result("figure-11", TITLE, figures=figures, checks=checks)

@@ -3,10 +3,10 @@
 import math
 
 import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._number import compared
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
-from rockflex.papers.silva_stojadinovic_2024._verdict import compared
 
 __all__ = ["TITLE", "reproduce"]
 

@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 
 import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._beside import Check, Kind, Remark, check
+from rockflex.papers.silva_stojadinovic_2024._number import Number, compared, stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._specimens import TWO_HZ, histories, nominal, spread, widest
-from rockflex.papers.silva_stojadinovic_2024._verdict import Number, Verdict, compared, stated
+from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
 __all__ = ["TITLE", "reproduce", "run"]
 
@@ -36,7 +38,10 @@ def reproduce(_: Records) -> Result:
         return rf.plot_history(list(runs.values()), panels=("rotation", "top_displacement"), title=LABEL)
 
     figures = {"figure-3": histories_figure, "figure-3-spread": lambda: spread(LABEL, runs, TWO_HZ, _make, run)}
-    return Result("figure-3", TITLE, tuple(_numbers(properties, runs)), figures, NOTE)
+    return Result(
+        "figure-3", TITLE, tuple(_numbers(properties, runs)), figures, NOTE, _checks(properties, runs["2DOF-C"]),
+        (partial(_both_signs, properties, runs),),
+    )  # fmt: skip
 
 
 def _make(base_mass_ratio: float, damping_ratio: float) -> rf.RockingProperties:
@@ -46,21 +51,12 @@ def _make(base_mass_ratio: float, damping_ratio: float) -> rf.RockingProperties:
 def _numbers(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Number]:
     equal = partial(compared, ground=Verdict.EQUIVALENT)
     holds = partial(stated, ground=Verdict.EQUIVALENT)
-    built = "met by construction"
-    mass, lever = p.effective_mass[0], p.effective_mass[0] * p.effective_height[0]
+    lever = p.effective_mass[0] * p.effective_height[0]
     complete, simple = runs["2DOF-C"], runs["2DOF-S"]
     longest = [float(np.max(r.impact_times - r.uplift_times[: r.impact_times.size])) for r in (simple, complete)]
-    friction = complete.required_friction
-    slide = p.half_width / p.effective_height[0]
+    friction = _as_printed(complete)
     return [
-        equal("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], "s", note=built),
-        equal("m*_1/m_s,tot", PLACE, "0.92", mass / 1.0, note=built),
         equal("m*_1 h*_1/L_0^r", PLACE, "0.98", lever / p.l0r, note="follows from the form chosen"),
-        equal("B/h*_1", PLACE, "0.16", slide, note=built),
-        equal(
-            "simplified over complete resisting moment, less 1, mean while rocking", PLACE, "approximately 7",
-            100.0 * _excess(p, complete), "%", note="the size is chosen for 7 % at the uplift",
-        ),
         holds(
             "θ_max, largest over least of the four models", PLACE, "any of the four can be used for the maxima",
             widest(r.max_rotation for r in runs.values()), "< 1.2",
@@ -82,11 +78,52 @@ def _numbers(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Numb
             longest[0] / longest[1], "< 1",
         ),
         equal(
-            "friction that 2DOF-C needs", PLACE, "0.27", friction,
-            note="here it is the inverse of the aspect ratio; the specimen's dimensions would decide",
+            "friction that 2DOF-C needs, Eq. 22 as printed", PLACE, "0.27", friction,
+            note="the specimen's dimensions would decide",
         ),
-        holds("friction that 2DOF-C needs over B/h*_1", PLACE, "larger than B/h*_1", friction / slide, "> 1"),
+        holds(
+            "friction that 2DOF-C needs over B/h*_1, Eq. 22 as printed", PLACE, "larger than B/h*_1",
+            friction / _slenderness(p), "> 1", note="with the sign of the weight mended it is not: see the remark",
+        ),
     ]  # fmt: skip
+
+
+def _checks(p: rf.RockingProperties, complete: rf.Response) -> tuple[Check, ...]:
+    built = "the equivalent is built so"
+    return (
+        check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=built),
+        check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=built),
+        check("B/h*_1", PLACE, "0.16", _slenderness(p), note=built),
+        check(
+            "simplified over complete resisting moment, less 1, mean while rocking", PLACE, "approximately 7",
+            100.0 * _excess(p, complete), unit="%", note="its size is chosen for 7 % at the uplift",
+        ),
+    )  # fmt: skip
+
+
+def _both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark:
+    """Friction with either sign of the weight."""
+    rows = [
+        (model, f"{_as_printed(run):.3f}", f"{run.required_friction:.3f}", f"{_slenderness(p):.3f}")
+        for model, run in runs.items()
+    ]
+    return Remark(
+        Kind.BESIDE,
+        "Both signs of the weight in Eq. 22",
+        "That more friction is needed than B/h*_1 follows from Eq. 22 as printed. With the sign mended the complete "
+        "models need just about B/h*_1, at which the base lifts.",
+        ("model", "as printed", "N = Σ m_i (g + z''_i)", "B/h*_1"),
+        rows,
+    )
+
+
+def _as_printed(run: rf.Response) -> float:
+    """Friction that a run needs by Eq. 22 as printed."""
+    return run.required_friction_excluding_impacts(0.0, printed=True)
+
+
+def _slenderness(p: rf.RockingProperties) -> float:
+    return float(p.half_width / p.effective_height[0])
 
 
 def _excess(p: rf.RockingProperties, response: rf.Response) -> float:

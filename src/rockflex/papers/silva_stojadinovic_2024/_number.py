@@ -1,0 +1,185 @@
+"""Whether a printed number reproduces: all rules are here.
+
+1. *Reproduced.* A value must round to the printed digits; words such as "about" widen nothing. Where a table cuts
+   digits off (Table 3 does so with some), a value that is cut off to the printed digits passes too, and the line says
+   so. A bound must hold. A statement in words is turned into a criterion on a number; the line shows both.
+2. *Compatible*, or *cannot tell*. The records of the paper cannot be had, nor its random draws. What comes of ours has
+   a 90 % interval. It must meet what rounds to the printed digits, or have its criterion hold throughout; an interval
+   that is wider than half the printed value, or over a part of which alone the criterion holds, tells nothing.
+3. *Equivalent specimen.* As 1, of structures that meet the published ratios of a tested specimen and are not it.
+4. *Does not reproduce.* Everything else. Nothing is adjusted to pass.
+
+A printed value counts once, wherever it is repeated. What follows from how the library, or an equivalent specimen, is
+built is no number but a `Check`; what was tried beside the printed values is a `Remark`.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rockflex.papers.silva_stojadinovic_2024._printed import Range, range_of
+from rockflex.papers.silva_stojadinovic_2024._shown import digits_of, percent, shown
+from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST, Verdict
+
+__all__ = ["Interval", "Number", "compared", "stated", "statistic", "tendency"]
+
+
+class Interval(NamedTuple):
+    """An estimate and its 90 % interval: over resampled recordings, or over random draws. NaN where there is none."""
+
+    estimate: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number of the paper beside ours.
+
+    Attributes
+    ----------
+    name, place : str
+        What it is, and where the paper has it.
+    printed : str
+        As printed, or the statement in words.
+    ours : float
+        In `unit`; not finite where a quantity has no bound.
+    unit : str
+        Empty for a ratio.
+    criterion : str
+        What `ours` had to meet.
+    verdict : Verdict
+        Whether it does, and on what ground.
+    difference : float or None
+        Ours less the printed value in `unit`; None of a statement, and of a bound that holds.
+    relative : float or None
+        The same over the printed value.
+    digits : int
+        Decimals with which `ours` is shown.
+    note : str
+        What to know of it.
+    """
+
+    name: str
+    place: str
+    printed: str
+    ours: float
+    unit: str
+    criterion: str
+    verdict: Verdict
+    difference: float | None
+    relative: float | None
+    digits: int
+    note: str
+
+    @property
+    def ours_as_text(self) -> str:
+        """Our value with two decimals more than the printed one has."""
+        return shown(self.ours, self.digits)
+
+    @property
+    def difference_as_text(self) -> str:
+        """The difference with its sign, and in per cent; empty where there is none."""
+        if self.difference is None:
+            return ""
+        text = f"{self.difference:+.{self.digits}f}"
+        if float(text) == 0.0:
+            return "0"
+        return (text if self.relative is None else f"{text} ({percent(self.relative)})").replace("-", "−")
+
+
+def compared(
+    name: str,
+    place: str,
+    printed: str,
+    ours: float,
+    unit: str = "",
+    *,
+    ground: Verdict = Verdict.REPRODUCED,
+    truncated: bool = False,
+    note: str = "",
+) -> Number:
+    """Compare a value, or a bound, that is printed (rules 1 and 3).
+
+    Parameters
+    ----------
+    name, place, printed, ours, unit, note
+        As in `Number`; `ours` in the unit of the print.
+    ground
+        Verdict of a value that agrees.
+    truncated
+        Whether the print may have cut digits off (rule 1).
+    """
+    wanted, value = range_of(printed, truncated=truncated), float(ours)
+    criterion = "must hold" if wanted.is_bound else "must round to it"
+    if truncated and value in wanted and value not in range_of(printed):
+        criterion = "cut off, not rounded, to it"
+    verdict = ground if value in wanted else Verdict.NOT
+    return _number(name, place, printed, value, unit, criterion, verdict, wanted, note)
+
+
+def stated(
+    name: str,
+    place: str,
+    printed: str,
+    ours: float,
+    criterion: str,
+    unit: str = "",
+    *,
+    ground: Verdict = Verdict.REPRODUCED,
+    note: str = "",
+) -> Number:
+    """Check a statement in words by a bound, such as ``"> 1"``, on a number (rules 1 and 3)."""
+    wanted, value = range_of(criterion), float(ours)
+    verdict = ground if value in wanted else Verdict.NOT
+    return Number(name, place, printed, value, unit, criterion, verdict, None, None, _digits(wanted, value), note)
+
+
+def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "", *, note: str = "") -> Number:
+    """Compare a value of other records or draws with the printed one, by its interval (rule 2)."""
+    wanted = range_of(printed)
+    digits = digits_of(wanted, ours.estimate)
+    known = math.isfinite(ours.low) and math.isfinite(ours.high)
+    wide = ours.high - ours.low > WIDEST * abs(wanted.value)
+    interval = f"90 % interval {shown(ours.low, digits)} to {shown(ours.high, digits)}"
+    if not known:
+        verdict, criterion = Verdict.UNDECIDED, "too few runs for an interval"
+    elif not wanted.meets(ours.low, ours.high):
+        verdict, criterion = Verdict.NOT, f"{interval} must meet it"
+    elif wide:
+        verdict, criterion = Verdict.UNDECIDED, f"{interval} meets it, and is wider than half of it"
+    else:
+        verdict, criterion = Verdict.COMPATIBLE, f"{interval} must meet it"
+    return _number(name, place, printed, float(ours.estimate), unit, criterion, verdict, wanted, note)
+
+
+def tendency(
+    name: str, place: str, printed: str, ours: Interval, criterion: str, unit: str = "", *, note: str = ""
+) -> Number:
+    """Check a bound, or a statement in words, on a number of other records or draws, by its interval (rule 2)."""
+    wanted, value = range_of(criterion), float(ours.estimate)
+    digits = _digits(wanted, value)
+    holds = [float(end) in wanted for end in (ours.low, ours.high)]
+    verdict = Verdict.COMPATIBLE if all(holds) else Verdict.UNDECIDED if any(holds) else Verdict.NOT
+    if math.isnan(ours.low) or math.isnan(ours.high):
+        verdict = Verdict.UNDECIDED
+    text = f"{criterion} over the 90 % interval {shown(ours.low, digits)} to {shown(ours.high, digits)}"
+    return Number(name, place, printed, value, unit, text, verdict, None, None, digits, note)
+
+
+def _number(
+    name: str, place: str, printed: str, ours: float, unit: str, criterion: str, verdict: Verdict, wanted: Range,
+    note: str,
+) -> Number:  # fmt: skip
+    away = ours - wanted.value
+    silent = not math.isfinite(away) or (wanted.is_bound and verdict is not Verdict.NOT)
+    relative = None if silent or wanted.value == 0.0 else away / abs(wanted.value)
+    digits = digits_of(wanted, ours)
+    return Number(
+        name, place, printed, ours, unit, criterion, verdict, None if silent else away, relative, digits, note
+    )
+
+
+def _digits(wanted: Range, ours: float) -> int:
+    """Of a number that is held against a bound: at least three decimals, none of whole numbers."""
+    return 0 if ours.is_integer() else max(digits_of(wanted, ours), 3)
