@@ -30,6 +30,7 @@ __all__ = [
     "StoryMass",
     "StructureFile",
     "Units",
+    "WorkLimit",
     "YieldDisplacement",
     "frame_arguments",
 ]
@@ -145,6 +146,14 @@ Friction = Annotated[
         metavar="MU",
         help="Print the friction that each run needs (Eqs. 20-22), and when sliding would start with this coefficient.",
         rich_help_panel=ASSUMPTIONS,
+    ),
+]
+WorkLimit = Annotated[
+    str | None,
+    typer.Option(
+        "--work-limit",
+        metavar="S|none",
+        help="The most computing that one run may take, in s of one core; none lifts the limit. Default: 60.",
     ),
 ]
 Units = Annotated[

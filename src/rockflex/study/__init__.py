@@ -1,6 +1,6 @@
 """Studies: one run, the cross product of many, and spectra of what rocks."""
 
-from rockflex.study._arguments import Structure, properties_of
+from rockflex.study._arguments import WORK_LIMIT, Structure, properties_of
 from rockflex.study._conduct import Progress, estimate_time, run_study
 from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
@@ -11,6 +11,7 @@ from rockflex.study._simulate import simulate
 from rockflex.study._simulate_many import simulate_many
 
 __all__ = [
+    "WORK_LIMIT",
     "CombinedPeaks",
     "InitialState",
     "OverturningScales",

@@ -9,8 +9,9 @@ from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.parallel import map_threads
 from rockflex.response import respond
-from rockflex.solve import Engine
+from rockflex.solve import Engine, WorkLimitError
 from rockflex.study._arguments import (
+    WORK_LIMIT,
     Output,
     Structure,
     check_initial,
@@ -23,6 +24,7 @@ from rockflex.study._arguments import (
     is_structure,
     properties_of,
     sequence_of,
+    work_limit_of,
 )
 from rockflex.study._initial import InitialState
 from rockflex.study._simulate import make_engine
@@ -49,6 +51,7 @@ def simulate_many(
     impact: ImpactLaw | None = None,
     initial: InitialState | None = None,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
@@ -70,6 +73,8 @@ def simulate_many(
         cannot be solved.
     workers
         Number of threads; None for one a core.
+    work_limit
+        Most work of each run, as in `simulate`. A run that is more has its message in `error`.
 
     Returns
     -------
@@ -82,8 +87,8 @@ def simulate_many(
     Raises
     ------
     InputError
-        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, or a scaled
-        motion would overflow.
+        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, a scaled
+        motion would overflow, or every run is more work than `work_limit`.
     """
     check_output(output)
     check_options(bouc_wen, impact)
@@ -98,7 +103,8 @@ def simulate_many(
     chosen = [parse_model(model) for model in labels]
     yielding = hysteresis_of(chosen, bouc_wen)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
-    free = free_vibration_time(free_vibration)
+    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
+    refused: list[WorkLimitError] = []
     shape = (len(everything), len(records), len(chosen), len(factors))
     inner = len(chosen) * len(factors)  # runs of one structure under one motion
     each = len(records) * inner
@@ -132,14 +138,19 @@ def simulate_many(
                     free_vibration=free,
                     state=state,
                     history=output == "history",
+                    work_limit=limit,
                 )
             except (SolverError, InputError) as error:
                 table.errors[row] = str(error)
+                if isinstance(error, WorkLimitError):
+                    refused.append(error)
                 continue
             table.enter(row, respond(model, motion.name, solution))
 
     for _ in map_threads(work, tasks(), workers):
         pass
+    if len(refused) == table.status.size:
+        raise refused[0]
     return table.frame(shape, [motion.name for motion in records], factors, [model.label for model in chosen])
 
 

@@ -42,10 +42,11 @@ class Stages(NamedTuple):
     branch: Array  # (1,): sign of the hysteretic spring's velocity
     known: NDArray[np.bool_]  # (1,): whether the first stage is the last one of the step before
     size: Array  # (2N + 3,): largest magnitude of each component so far
+    work: Array  # (5,): `Log.work`
 
 
-def stages(motion: Array, rows: int) -> Stages:
-    """Room for one run that starts from `motion`."""
+def stages(motion: Array, rows: int, work: Array) -> Stages:
+    """Room for one run that starts from `motion`; `work` is that of its log."""
     n = motion.size
     return Stages(
         motion,
@@ -58,4 +59,5 @@ def stages(motion: Array, rows: int) -> Stages:
         np.ones(1),
         np.zeros(1, dtype=np.bool_),
         np.zeros(n - EXTRA + 1),
+        work,
     )

@@ -8,12 +8,12 @@ from rockflex.solve.adaptive.cross import cross
 from rockflex.solve.adaptive.glide import glide
 from rockflex.solve.adaptive.layout import Flow, Stages
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CARRY, CONTACT, LEFT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.probe import EVENT
 from rockflex.solve.exact.run import SETTLED, UNSETTLED, settled
 from rockflex.solve.exact.sample import cross_sample
-from rockflex.solve.exact.unit import CROSSED
+from rockflex.solve.exact.unit import CROSSED, SPENT
 
 __all__ = ["run"]
 
@@ -54,6 +54,9 @@ def run(
             system, flow, impact, piece, dt, offset, side, log, room, stages, nodes, count
         )
         offset += reached
+        log.work[LEFT] -= reached * log.work[CARRY]
+        if status == CROSSED and log.work[LEFT] < 0.0:
+            status = SPENT
         if status != CROSSED:
             return status, offset, count
         last = piece[piece.size - 1]
@@ -123,7 +126,7 @@ def cross_piece(
             if status != CROSSED:
                 return status, i + 1, side, count
         else:
-            _, side, _, count = cross_sample(
+            status, side, _, count = cross_sample(
                 system,
                 impact,
                 side,
@@ -139,6 +142,8 @@ def cross_piece(
                 nodes,
                 count,
             )
+            if status != CROSSED:
+                return status, i + 1, side, count
             to_state(system, IN_CONTACT, piece[i + 1], slope, side, room)
         i += 1
     return CROSSED, last, side, count

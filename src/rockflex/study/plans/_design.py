@@ -14,7 +14,7 @@ from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import GroundMotion, Suite
 from rockflex.structure.file import StructureEntry, Table
-from rockflex.study._arguments import Structure, factors_of
+from rockflex.study._arguments import WORK_LIMIT, Structure, factors_of
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._cloud import QUIET, CloudPlan
 from rockflex.study.plans._design_levels import Design, TendonLevel, designs_of, half_widths_of
@@ -188,6 +188,7 @@ def run_design(
     bouc_wen: BoucWen | None = None,
     impact: ImpactLaw | None = None,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
 
@@ -204,7 +205,7 @@ def run_design(
         B in m, positive.
     tendons
         Levels of a tendon in the axis, each with every width; `TendonLevel()` is none. Default: what the structure has.
-    models, scales, free_vibration, bouc_wen, impact, workers
+    models, scales, free_vibration, bouc_wen, impact, workers, work_limit
         As in `run_cloud`.
     base_mass_per_width
         Mass in kg/m that the base gains for each metre that 2 B grows beyond the structure's own, and loses for each
@@ -225,7 +226,7 @@ def run_design(
         `run_cloud`.
     """
     given: Any = scales
-    bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact)
+    bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
     return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)
 

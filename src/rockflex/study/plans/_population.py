@@ -15,7 +15,7 @@ from rockflex.models import LinearModel
 from rockflex.motion import GroundMotion, Suite
 from rockflex.response import Observables, Response, global_observables, respond
 from rockflex.solve import ExactEngine
-from rockflex.study._arguments import free_vibration_time
+from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study.plans._bench import record_columns, record_facts
 from rockflex.study.plans._plan import ChunkedPlan, run_plan
@@ -64,7 +64,12 @@ class PopulationStudy(Spec):
         """
         free = free_vibration_time(self.free_vibration)
         return PopulationPlan(
-            self.records.load(self._folder), self.pairs, self.seed, free, max(1, self.runs_per_chunk // 2)
+            self.records.load(self._folder),
+            self.pairs,
+            self.seed,
+            free,
+            max(1, self.runs_per_chunk // 2),
+            work_limit_of(self.work_limit),
         )
 
 
@@ -75,10 +80,16 @@ class PopulationPlan(ChunkedPlan):
     """
 
     def __init__(
-        self, motions: Suite, pairs: int, seed: int, free_vibration: float | None, pairs_per_chunk: int
+        self,
+        motions: Suite,
+        pairs: int,
+        seed: int,
+        free_vibration: float | None,
+        pairs_per_chunk: int,
+        work_limit: float | None,
     ) -> None:
         super().__init__(motions, pairs, pairs_per_chunk)
-        self.seed, self.free_vibration = seed, free_vibration
+        self.seed, self.free_vibration, self.work_limit = seed, free_vibration, work_limit
         self._facts = record_facts(motions)
 
     @property
@@ -120,7 +131,9 @@ class PopulationPlan(ChunkedPlan):
         modal[0, min(model.properties.n_modes, 2) - 1] = 1.0
         tracked = global_observables(model) + Observables(modal, modal)
         engine = ExactEngine(model, tracked.contact, tracked.rocking)
-        solution = engine.run(motion.acceleration, motion.dt, free_vibration=self.free_vibration)
+        solution = engine.run(
+            motion.acceleration, motion.dt, free_vibration=self.free_vibration, work_limit=self.work_limit
+        )
         usual = replace(solution, peaks=solution.peaks[:-1], peak_times=solution.peak_times[:-1])
         return respond(model, motion.name, usual), float(solution.peaks[-1])
 
@@ -168,6 +181,7 @@ def run_population(
     seed: int = 0,
     free_vibration: float | Literal["settle"] = 0.0,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Simulate random structures under random records with MDOF-S and 2DOF-S (Silva & Stojadinović 2024, Section 3.3).
 
@@ -183,7 +197,7 @@ def run_population(
         Number of structures.
     seed
         Zero or a positive whole number.
-    free_vibration, workers
+    free_vibration, workers, work_limit
         As in `run_cloud`.
 
     Returns
@@ -204,4 +218,5 @@ def run_population(
         If a value is out of range.
     """
     count, start = whole_number("pairs", pairs, 1), whole_number("seed", seed, 0)
-    return run_plan(PopulationPlan(motions, count, start, free_vibration_time(free_vibration), 32), workers)
+    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
+    return run_plan(PopulationPlan(motions, count, start, free, 32, limit), workers)
