@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._errors import InputError
 
 __all__ = [
+    "MOST_MODES",
+    "MOST_STORIES",
     "damping_ratios",
     "dimensions",
     "finite",
@@ -26,6 +28,9 @@ __all__ = [
 ]
 
 Float = NDArray[np.float64]
+
+MOST_STORIES, MOST_MODES = 1000, 200
+"""Most stories of a frame, and modes of a continuous structure: as many take seconds, and some 100 MB."""
 
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
 

@@ -13,7 +13,7 @@ coefficients = st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=
 
 
 def log(*peaks):
-    return Log(np.array(peaks), np.full(len(peaks), -1.0), np.zeros(3, dtype=np.int64))
+    return Log(np.array(peaks), np.full(len(peaks), -1.0), np.zeros(3, dtype=np.int64), np.full(5, np.inf))
 
 
 def raised(poly, stop, before=0.0):

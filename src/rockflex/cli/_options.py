@@ -153,7 +153,7 @@ WorkLimit = Annotated[
     typer.Option(
         "--work-limit",
         metavar="S|none",
-        help="The most computing that one run may take, in s of one core; none lifts the limit. Default: 60.",
+        help="The most computing that one run may take, in s of one core; none lifts the limit. Default: 30.",
     ),
 ]
 Units = Annotated[

@@ -8,7 +8,7 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import MOST_MODES, positive, whole_number
 from rockflex._errors import InputError
 
 __all__ = ["PinnedBeam", "pinned_beam"]
@@ -47,7 +47,7 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     spring : float
         k_r L/EI in flexure, k_r/(GA L) in shear, zero (pinned) or positive.
     n_modes : int
-        Number of vibrations.
+        Number of vibrations, 200 at most.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
         message = f'behaviour must be "flexure" or "shear", but {behaviour!r} was given.'
         raise InputError(message)
     k = positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
-    n = whole_number("n_modes", n_modes, 1)
+    n = whole_number("n_modes", n_modes, 1, MOST_MODES)
     flexure = behaviour == "flexure"
     clamp, pin = (_clamped_flexure, _pinned_flexure) if flexure else (math.cos, _pinned_shear)
     pinned, clamped = [0.0], [_bisected(clamp, 0.0, math.pi)]

@@ -7,7 +7,7 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._checks import damping_ratios, positive, whole_number
+from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
@@ -19,6 +19,7 @@ from rockflex.structure._sections import LumpedMasses, Sections, on_beam
 __all__ = ["Beam"]
 
 _N_ELEMENTS = 1000
+_MOST_ELEMENTS = 10_000
 _RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
 
 
@@ -56,9 +57,9 @@ class Beam:
     method : {"fe", "ritz"}
         Finite elements, or Rayleigh-Ritz. Rayleigh-Ritz has no deformation in shear.
     n_modes : int
-        Number of modes that the structure has.
+        Number of modes that the structure has, 200 at most.
     n_elements : int, optional
-        Equal finite elements, at least `n_modes`; cut further where needed. Default: 1000. For "fe" alone.
+        Equal finite elements, from `n_modes` to 10 000; cut further where needed. Default: 1000. For "fe" alone.
     shapes : RitzShapes, optional
         At least `n_modes` shapes. Default: those of Eq. 36, five or `n_modes`. For "ritz" alone.
     sections : Sections
@@ -88,7 +89,7 @@ class Beam:
 
     def __post_init__(self) -> None:
         height = positive("height", self.height, "m")
-        n_modes = whole_number("n_modes", self.n_modes, 1)
+        n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
             height=height,
             half_width=positive("half_width", self.half_width, "m"),
@@ -157,7 +158,7 @@ class Beam:
                 message = f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".'
                 raise InputError(message)
         if self.n_elements is not None:
-            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes))
+            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, _MOST_ELEMENTS))
         if self.shapes is not None:
             found = self.shapes.check(self.height)
             if found < self.n_modes:

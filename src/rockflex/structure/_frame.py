@@ -8,7 +8,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import in_range, positive, whole_number
+from rockflex._checks import MOST_STORIES, in_range, positive, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties
@@ -31,7 +31,7 @@ class Frame:
     Attributes
     ----------
     n_stories : int
-        Number of stories N.
+        Number of stories N, 1000 at most.
     story_height : float
         Column length L_c in m; floor i is at i L_c.
     story_mass : float
@@ -72,7 +72,7 @@ class Frame:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            n_stories=whole_number("n_stories", self.n_stories, 1),
+            n_stories=whole_number("n_stories", self.n_stories, 1, MOST_STORIES),
             story_height=positive("story_height", self.story_height, "m"),
             story_mass=positive("story_mass", self.story_mass, "kg"),
             base_mass=positive("base_mass", self.base_mass, "kg", zero=True),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import MOST_MODES, positive, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
@@ -103,7 +103,7 @@ def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
         If the height or the number is not positive.
     """
     h = positive("height", height, "m")
-    rates = (2.0 * np.arange(1, whole_number("n_shapes", n_shapes, 1) + 1) - 1.0) * math.pi / (2.0 * h)
+    rates = (2.0 * np.arange(1, whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1) - 1.0) * math.pi / (2.0 * h)
     return RitzShapes(
         lambda z: 1.0 - np.cos(np.outer(z, rates)),
         lambda z: rates * np.sin(np.outer(z, rates)),

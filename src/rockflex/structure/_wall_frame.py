@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from rockflex._checks import damping_ratios, positive, whole_number
+from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
@@ -47,7 +47,7 @@ class WallFrame:
     damping_ratio : float or ndarray, shape (n_modes,)
         Damping ratio of every mode, or of each, in [0, 1).
     n_modes : int
-        Number of modes that the structure has.
+        Number of modes that the structure has, 200 at most.
 
     Raises
     ------
@@ -65,7 +65,7 @@ class WallFrame:
     n_modes: int = 5
 
     def __post_init__(self) -> None:
-        n_modes = whole_number("n_modes", self.n_modes, 1)
+        n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
             height=positive("height", self.height, "m"),
             mass=positive("mass", self.mass, "kg"),

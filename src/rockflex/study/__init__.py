@@ -7,7 +7,7 @@ from rockflex.study._initial import InitialState
 from rockflex.study._modal_combination import CombinedPeaks, SecondMode, modal_combination
 from rockflex.study._overturning import OverturningScales, overturning_scales, overturning_spectrum
 from rockflex.study._rocking_spectrum import rocking_spectrum
-from rockflex.study._simulate import simulate
+from rockflex.study._simulate import make_engine, simulate
 from rockflex.study._simulate_many import simulate_many
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "Structure",
     "estimate_time",
     "frequency_ratios",
+    "make_engine",
     "modal_combination",
     "overturning_scales",
     "overturning_spectrum",

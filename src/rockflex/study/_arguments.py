@@ -35,7 +35,7 @@ Output = Literal["history", "peaks"]
 
 LONGEST = 1e9  # s of free vibration
 
-WORK_LIMIT = 60.0
+WORK_LIMIT = 30.0
 """Most work of one run, in s of computing on one core, unless another limit is given."""
 
 

@@ -1,7 +1,7 @@
 """Structures, records and models made ready for runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from rockflex._errors import InputError, SolverError
@@ -69,6 +69,11 @@ class Bench:
 
     def __getstate__(self) -> dict[str, Any]:
         return vars(self) | {"_engines": {}, "_measures": {}}
+
+    def limited(self, work_limit: float | None) -> "Bench":
+        """Return the same with another limit of the work of each run."""
+        given = dict(zip(self.names, self.structures, strict=True))
+        return Bench(given, self.motions, replace(self.assumptions, work_limit=work_limit))
 
     @property
     def columns(self) -> Columns:
