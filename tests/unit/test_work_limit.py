@@ -17,10 +17,20 @@ EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
 
 
+FRAME = {
+    "n_stories": 5,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 40e3,
+    "stiffness_ratio": math.inf,
+    "period": 1.0,
+    "aspect_ratio": 10.0,
+    "damping_ratio": 0.02,
+}
+
+
 def frame(**given):
-    usual = {"n_stories": 5, "period": 1.0, "aspect_ratio": 10.0, "damping_ratio": 0.02}
-    fixed = {"story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": math.inf}
-    return rf.Frame(**(usual | fixed | given))
+    return rf.Frame(**(FRAME | given))
 
 
 def task(label="MDOF-S", structure=None, motion=EL_CENTRO, free=0.0, bouc_wen=None, output="peaks"):
@@ -185,10 +195,9 @@ def test_in_a_study_too(run) -> None:
 
 def test_a_study_file_has_a_limit() -> None:
     content = {
-        "structures": [{"frame": dict(n_stories=2, story_height=3.0, story_mass=1e4, base_mass=1e4, stiffness_ratio=1.0,
-                                      period=1.0, aspect_ratio=5.0, damping_ratio=0.02)}],
+        "structures": [{"frame": FRAME}],
         "records": {"suites": ["el-centro-1940"]},
-    }  # fmt: skip
+    }
     study = rf.CloudStudy(**content)
     assert study.document()["work_limit"] == WORK_LIMIT
     assert study.plan().bench.assumptions.work_limit == WORK_LIMIT
