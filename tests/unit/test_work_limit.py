@@ -189,6 +189,7 @@ def test_in_a_study_too(run) -> None:
     failed = table["error"].notna()
     assert set(table["structure"][failed]) == {"stiff"}
     assert set(table["structure"][~failed]) == {"usual"}
+    assert list(table["sa_t1"][failed]) == list(table["pga"][failed])  # stiff as it is, it moves with the ground
     with pytest.raises(InputError, match="work_limit is 30 s"):
         run(frame(period=1e-6), EL_CENTRO, "MDOF-S", **options)
 
