@@ -1,19 +1,20 @@
 """What is asked of a run, whether it is too much, and what is said where it is."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
 from rockflex.models import NonlinearModel, RockingModel
-from rockflex.solve._pace import Pace, Work
+from rockflex.solve._pace import Pace, Work, pace_of
 from rockflex.solve.exact.history import HEADER
 
 __all__ = ["Task", "WorkLimitError"]
 
 HISTORY = 4e9  # bytes
+SWIFT = 10.0  # rad in a time step, from which on it matters whether the fastest vibration swings
 UNITS = (("years", 3.2e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 0.0))
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
 
@@ -52,7 +53,23 @@ class Task:
     def work(self) -> Work:
         """Estimate the work of the run; one that is to settle is taken to need the slowest period for it."""
         speed = float(np.abs(np.cumsum(self.record)).mean()) * self.dt if self.pace.flow else 0.0
-        return self.pace.work(self.record.size + self._free / self.dt, self.dt, speed, history=self.history)
+        samples = self.record.size + self._free / self.dt
+        tables = self.pace.work(0.0, self.dt, history=self.history).vibration
+        found = replace(self.pace, fastest=self.fastest, dense=False).work(
+            samples, self.dt, speed, history=self.history
+        )
+        return replace(found, vibration=found.vibration + tables)
+
+    @property
+    def fastest(self) -> float:
+        """Circular frequency in rad/s of the fastest vibration that swings.
+
+        On a very narrow base the fastest root is that of a motion damped far beyond swinging, which is no work.
+        """
+        known = self.pace.fastest
+        if self.pace.integrated or known * self.dt < SWIFT:
+            return known
+        return min(known, pace_of(self.model, self.pace.rows).fastest)
 
     def check(self, limit: float | None) -> None:
         """Raise `WorkLimitError` if the run is about more work than `limit` s (None: any), or its history too large."""
@@ -96,7 +113,7 @@ class Task:
                 "time step under so strong a motion. Give a weaker motion (scale), or a larger yield_displacement."
             )
         if work.vibration > work.samples:
-            fastest = self.pace.fastest
+            fastest = self.fastest
             return (
                 f"its fastest vibration, {fastest:.3g} rad/s, turns by {fastest * self.dt:.3g} rad in every time step "
                 f"of {self.dt:g} s. Give fewer modes, a longer period, or a wider base (half_width, or aspect_ratio): "
