@@ -14,6 +14,7 @@ from rockflex._shown import shown
 
 __all__ = [
     "MOST_MODES",
+    "MOST_STORIES",
     "damping_ratios",
     "dimensions",
     "finite",
@@ -35,7 +36,8 @@ Float = NDArray[np.float64]
 
 T = TypeVar("T")
 
-MOST_MODES = 1000  # of a beam, which has as many as one asks for
+MOST_STORIES, MOST_MODES = 1000, 200
+"""Most stories of a frame, and modes of a continuous structure: as many take seconds, and some 100 MB."""
 
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
 

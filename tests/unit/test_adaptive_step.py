@@ -28,6 +28,7 @@ FRAME = {
 }
 START = np.array([0.02, 0.01, -0.2, 0.3, 0.05, 0.4])  # [D, D', θ, θ']
 A, SLOPE = 1.5, -20.0
+ENDLESS = np.array([np.inf, 0.0, 0.0, 0.0, 0.0])  # work
 
 
 def flow(tolerance=1e30):
@@ -48,7 +49,7 @@ def exact(time):
 
 def stepped(step, given=None):
     """Room after one step of this length."""
-    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1)
+    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1, ENDLESS)
     room.step[0] = step
     taken = take_step(given or flow(), 1.0, A, SLOPE, step, room)
     assert taken == step
@@ -158,7 +159,7 @@ def test_steps_follow_one_another():
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_the_error_control_keeps_its_tolerance(tolerance):
     given = flow(tolerance)
-    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1)
+    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1, ENDLESS)
     time, taken = 0.0, []
     while time < 0.4:
         step = take_step(given, 1.0, A + SLOPE * time, SLOPE, 0.4 - time, room)
@@ -173,10 +174,10 @@ def test_the_error_control_keeps_its_tolerance(tolerance):
 
 def test_a_motion_that_leaves_all_numbers_cannot_be_followed():
     given = flow(1e-10)
-    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1)
+    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1, ENDLESS)
     room.motion[0] = np.nan
     assert take_step(given, 1.0, A, SLOPE, 0.1, room) == FAILED
-    room = stages(np.concatenate((np.full(6, 1e200), np.zeros(EXTRA))), 1)
+    room = stages(np.concatenate((np.full(6, 1e200), np.zeros(EXTRA))), 1, ENDLESS)
     assert take_step(given, 1.0, A, SLOPE, 0.1, room) == FAILED
 
 
@@ -188,6 +189,6 @@ def test_the_branch_of_the_hysteresis(velocity):
     for a in (-2.0, 2.0):
         motion = np.zeros(4 + EXTRA)
         motion[1] = velocity
-        room = stages(motion, 1)
+        room = stages(motion, 1, ENDLESS)
         take_step(given, 0.0, a, 0.0, 0.001, room)
         assert room.branch[0] == (np.sign(velocity) or -np.sign(a))

@@ -14,8 +14,8 @@ SHEAR, FLEXURE = math.inf, 0.0
 NO_LIMIT = {"base_moment": math.inf, "first_frequency": math.inf, "second_frequency": math.inf, "base_shear": math.inf}
 
 LEFT_OUT = (
-    "What the ground must hold, ΣF_x, leaves no mass out: that of missing modes moves with the base there, as it does in "
-    "the base shear of models that end in -R."
+    "What the ground must hold, ΣF_x, leaves no mass out: that of missing modes moves with the base there, as it does "
+    "in the base shear of models that end in -R."
 )
 
 

@@ -192,7 +192,7 @@ def test_pinned_beam_from_beam_elements():
     [
         (("bending",), 'behaviour must be "flexure" or "shear", but \'bending\' was given'),
         (("shear", -1.0), r"spring must be a zero or positive, finite number in k_r L/EI \(flexure\) or"),
-        (("shear", 0.0, 0), "n_modes must be a whole number from 1 to 1000, but 0 was given"),
+        (("shear", 0.0, 0), "n_modes must be a whole number from 1 to 200, but 0 was given"),
     ],
 )
 def test_pinned_beam_refused(arguments, words):

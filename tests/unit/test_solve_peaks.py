@@ -14,7 +14,8 @@ coefficients = st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=
 
 def log(*peaks):
     """Peaks of rows, and of the loss of support, which is the last."""
-    return Log(np.array([*peaks, -np.inf]), np.full(len(peaks) + 1, -1.0), np.zeros(3, dtype=np.int64))
+    times, work = np.full(len(peaks) + 1, -1.0), np.full(5, np.inf)
+    return Log(np.array([*peaks, -np.inf]), times, np.zeros(3, dtype=np.int64), work)
 
 
 def raised(poly, stop, before=0.0):

@@ -175,9 +175,9 @@ def test_frames_are_values():
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"n_stories": 0}, r"n_stories must be a whole number from 1 to 2000, but 0 was given"),
-        ({"n_stories": 5.0}, r"n_stories must be a whole number from 1 to 2000, but 5.0 was given"),
-        ({"n_stories": True}, r"n_stories must be a whole number from 1 to 2000, but True was given"),
+        ({"n_stories": 0}, r"n_stories must be a whole number from 1 to 1000, but 0 was given"),
+        ({"n_stories": 5.0}, r"n_stories must be a whole number from 1 to 1000, but 5.0 was given"),
+        ({"n_stories": True}, r"n_stories must be a whole number from 1 to 1000, but True was given"),
         ({"story_height": 0.0}, r"story_height must be a positive, finite number in m, but 0.0"),
         ({"story_mass": -1.0}, r"story_mass must be a positive, finite number in kg, but -1.0"),
         ({"base_mass": -1.0}, r"base_mass must be a zero or positive, finite number in kg, but -1.0"),

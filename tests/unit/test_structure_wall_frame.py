@@ -102,7 +102,7 @@ def test_scaled_to_period_and_width():
         ({"mass": 0.0}, "mass must be a positive, finite number in kg, but 0.0 was given"),
         ({"period": -1.0}, "period must be a positive, finite number in s"),
         ({"aspect_ratio": 0.0}, "aspect_ratio must be a positive, finite number"),
-        ({"n_modes": 0}, "n_modes must be a whole number from 1 to 1000"),
+        ({"n_modes": 0}, "n_modes must be a whole number from 1 to 200"),
     ],
 )
 def test_refused(changes, words):

@@ -16,7 +16,6 @@ import rockflex as rf
 from rockflex._errors import InputError
 from rockflex.cli import app
 from rockflex.web import make_app, serve
-from rockflex.web._limits import pace
 from rockflex.web._presets import PRESETS
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
@@ -187,18 +186,6 @@ def test_energies_that_take_long_are_left_out(client) -> None:
     assert answer["models"][0]["peaks"]["n_impacts"] >= 0
     assert answer["energy"]["note"].startswith("The energy of so many modes, or of such fast ones")
     assert "is left out here" in client.refused("/api/download/energy", state)["energy"]
-
-
-def test_the_work_of_a_run_counts_the_frequencies_of_the_uplifted_structure() -> None:
-    motion = rf.GroundMotion(np.zeros(1001), 0.01)
-    for lifted, label in ((True, "MDOF-S"), (False, "fixed")):
-        p = FRAME.rocking()
-        turned = 0.01 * (rf.uplifted_modes(p).omega[-1] if lifted else p.omega[-1])
-        known = pace(p, label)
-        assert known.history(motion, 0.0) == pytest.approx(1001 * (20 + 25 / 7 + 35 * turned))
-        assert known.peaks(motion, 10.0) == pytest.approx(2001 * (5 + 5 / 2 + 12 * turned))
-        energy = 1001 * (15 + 25 + turned * (35 + 4 * turned) * 1.5)
-        assert known.energy(motion, 0.0) == pytest.approx(energy)
 
 
 def test_many_stories_are_judged_in_time(client) -> None:

@@ -10,7 +10,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, parse_model
-from rockflex.study import InitialState
+from rockflex.study import WORK_LIMIT, InitialState
 from rockflex.study.assumed import LAWS, impact_law
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "parse_coefficient",
     "parse_free_vibration",
     "parse_scales",
+    "parse_work_limit",
 ]
 
 USUAL = ("2DOF-S", "MDOF-S", "fixed")
@@ -163,6 +164,28 @@ def parse_free_vibration(given: str, models: Sequence[str]) -> float | Literal["
         seconds = math.nan
     if not (seconds >= 0.0 and math.isfinite(seconds)):
         message = f"--free-vibration must be zero or more seconds, or settle, but {shown(given)} was given."
+        raise InputError(message)
+    return seconds
+
+
+def parse_work_limit(given: str | None) -> float | None:
+    """Read seconds of computing, or "none" for no limit; the usual limit where nothing is given.
+
+    Raises
+    ------
+    InputError
+        If the text is neither.
+    """
+    if given is None:
+        return WORK_LIMIT
+    if given == "none":
+        return None
+    try:
+        seconds = float(given)
+    except ValueError:
+        seconds = math.nan
+    if not seconds > 0.0:
+        message = f"--work-limit must be a positive number of seconds, or none, but {given!r} was given."
         raise InputError(message)
     return seconds
 

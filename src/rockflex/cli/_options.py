@@ -31,6 +31,7 @@ __all__ = [
     "StoryMass",
     "StructureFile",
     "Units",
+    "WorkLimit",
     "YieldDisplacement",
     "frame_arguments",
 ]
@@ -146,6 +147,14 @@ Friction = Annotated[
         metavar="MU",
         help="Print the friction that each run needs (Eqs. 20-22), and when sliding would start with this coefficient.",
         rich_help_panel=ASSUMPTIONS,
+    ),
+]
+WorkLimit = Annotated[
+    str | None,
+    typer.Option(
+        "--work-limit",
+        metavar="S|none",
+        help="The most computing that one run may take, in s of one core; none lifts the limit. Default: 30.",
     ),
 ]
 Units = Annotated[

@@ -65,6 +65,7 @@ def run(
         int | None,
         typer.Option(min=1, metavar="N", help="Threads. Default: one a core; one alone for 64 runs or fewer."),
     ] = None,
+    work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,
     json: options.Json = False,
     out: options.Out = None,
@@ -103,6 +104,7 @@ def run(
         parse_coefficient,
         parse_free_vibration,
         parse_scales,
+        parse_work_limit,
     )
     from rockflex.cli._console import note
     from rockflex.cli._motions import find_motions, quiet_ground
@@ -146,6 +148,7 @@ def run(
         workers=workers,
         assumptions=assumptions,
         friction=parse_coefficient(friction),
+        work_limit=parse_work_limit(work_limit),
     )
     warm_up(plan)
     start = perf_counter()

@@ -15,7 +15,8 @@ from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.parallel import map_threads
 from rockflex.response import PEAKS, Response
-from rockflex.study import simulate, simulate_many
+from rockflex.solve import WorkLimitError
+from rockflex.study import WORK_LIMIT, simulate, simulate_many
 
 __all__ = ["SLIDING", "Plan", "Run", "perform", "warm_up"]
 
@@ -37,6 +38,8 @@ class Plan:
     assumptions: Assumptions = field(default_factory=Assumptions)
     friction: float | None = None
     """Coefficient of friction, or None where sliding is not asked about."""
+    work_limit: float | None = WORK_LIMIT
+    """The most computing of one run in s, or None."""
 
     @property
     def output(self) -> Literal["history", "peaks"]:
@@ -70,6 +73,8 @@ class Run:
     response: Response | None = None
     friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
     """Required friction and when sliding would start, by their names; empty where not asked for."""
+    refused: bool = False
+    """Whether it was not begun, since it is more work than it may be."""
 
     def row(self) -> dict[str, Any]:
         """Return everything but the run time and the history, in the columns of `simulate_many`."""
@@ -87,7 +92,7 @@ def perform(plan: Plan) -> list[Run]:
     Raises
     ------
     InputError
-        If a value of the plan is out of range.
+        If a value of the plan is out of range, or every run is more work than it may be.
     SolverError
         If not one run could be solved.
     """
@@ -95,6 +100,8 @@ def perform(plan: Plan) -> list[Run]:
     failed = [run for run in runs if run.error is not None]
     if len(failed) == len(runs):
         first = failed[0]
+        if first.error is not None and all(run.refused for run in runs):
+            raise WorkLimitError(first.error)
         message = f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
         raise SolverError(message)
     return runs
@@ -104,8 +111,8 @@ def warm_up(plan: Plan) -> None:
     """Load the kernels, or compile them where that was never done, so that no run is charged with it."""
     with progress("Loading the kernels (compiling them, the first time)"):
         for model in plan.models:
-            with suppress(SolverError):
-                options = plan.assumptions.options(model)
+            with suppress(SolverError, WorkLimitError):
+                options: dict[str, Any] = {"work_limit": plan.work_limit, **plan.assumptions.options(model)}
                 response = simulate(plan.properties, plan.motions[0], model, output=plan.output, **options)
                 _friction(plan, response)
 
@@ -121,11 +128,14 @@ def _one_by_one(plan: Plan) -> list[Run]:
                 model,
                 output=plan.output,
                 free_vibration=plan.free_vibration,
+                work_limit=plan.work_limit,
                 **plan.assumptions.options(model),
             )
-        except SolverError as error:
+        except (SolverError, WorkLimitError) as error:
             lost: dict[str, float | None] = {} if plan.friction is None else dict.fromkeys(SLIDING, None)
-            return place, Run(motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost)
+            refused = isinstance(error, WorkLimitError)
+            nothing = dict.fromkeys(COLUMNS)
+            return place, Run(motion.name, scale, model, None, str(error), nothing, friction=lost, refused=refused)
         elapsed = None if many else perf_counter() - start
         peaks = {name: getattr(response, name) for name in COLUMNS}
         kept = response if plan.history else None
@@ -165,16 +175,23 @@ def _in_batches(plan: Plan) -> list[Run]:
             # Elastic and yielding models differ in their options.
             for _, group in groupby(sorted(plan.models, key=_yields), key=_yields):
                 models = list(group)
-                table = simulate_many(
-                    plan.properties,
-                    motions,
-                    models,
-                    scales=plan.scales,
-                    free_vibration=plan.free_vibration,
-                    workers=plan.workers,
-                    **plan.assumptions.options(models[0]),
-                )
-                found |= {(run.motion, run.scale, run.model): run for run in _rows(table)}
+                try:
+                    table = simulate_many(
+                        plan.properties,
+                        motions,
+                        models,
+                        scales=plan.scales,
+                        free_vibration=plan.free_vibration,
+                        workers=plan.workers,
+                        work_limit=plan.work_limit,
+                        **plan.assumptions.options(models[0]),
+                    )
+                    rows = list(_rows(table))
+                except WorkLimitError as error:  # all of these; others may be made
+                    said, places = str(error), product([motion.name for motion in motions], plan.scales, models)
+                    nothing = dict.fromkeys(COLUMNS)
+                    rows = [Run(*place, None, said, nothing, refused=True) for place in places]
+                found |= {(run.motion, run.scale, run.model): run for run in rows}
             names = [motion.name for motion in motions]
             runs += [found[place] for place in product(names, plan.scales, plan.models)]
             advance(len(found))

@@ -66,10 +66,11 @@ def _command(name: str, kind: str, summary: str) -> Callable[..., None]:
         dask: Dask = None,
         workers: Workers = None,
         any_version: AnyVersion = False,
+        work_limit: options.WorkLimit = None,
         json: options.Json = False,
         strict: Strict = False,
     ) -> None:
-        _study(kind, file, out, dry_run, dask, workers, any_version, json, strict)
+        _study(kind, file, out, dry_run, dask, workers, any_version, work_limit, json, strict)
 
     command.__name__, command.__doc__ = name, summary
     return command
@@ -108,6 +109,7 @@ def _study(
     dask: str | None,
     workers: int | None,
     any_version: bool,
+    work_limit: str | None,
     json: bool,
     strict: bool,
 ) -> None:
@@ -117,6 +119,10 @@ def _study(
     if study.study != kind:
         message = f'{file} says study = "{study.study}". Use rockflex {COMMANDS[study.study]} {file}.'
         raise InputError(message)
+    if work_limit is not None:
+        from rockflex.cli._choices import parse_work_limit
+
+        study = study.model_copy(update={"work_limit": parse_work_limit(work_limit) or "none"})
     if dry_run:
         _announce(study, file, workers, json=json)
         return

@@ -49,7 +49,7 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     spring : float
         k_r L/EI in flexure, k_r/(GA L) in shear, zero (pinned) or positive.
     n_modes : int
-        Number of vibrations.
+        Number of vibrations, 200 at most.
 
     Returns
     -------

@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from contextlib import AbstractContextManager
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +13,19 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.models import LinearModel, NonlinearModel
+from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
+from rockflex.solve._task import Task
 from rockflex.solve.adaptive.cross import STALLED
 from rockflex.solve.exact.history import HEADER
-from rockflex.solve.exact.layout import Array, Log
+from rockflex.solve.exact.layout import LEFT, Array, Log
 from rockflex.solve.exact.run import SETTLED, UNSETTLED
-from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURNED, UPLIFTS
+from rockflex.solve.exact.unit import BROKEN, CHATTER, GAINED, IMPACTS, OVERTURNED, SPENT, UPLIFTS
 
 __all__ = ["QUIET", "Engine", "preparing"]
 
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
+MOST_SAMPLES = 2.0**62  # of free vibration: more than any machine will live to see
 EVENTS = 512  # nodes of a history between samples; if there are more, the run is done once more
 
 
@@ -53,6 +57,17 @@ class Engine(ABC):
         self._n_rows = n_rows
         self._failures = failures
 
+    @cached_property
+    def pace(self) -> Pace:
+        """What the work of its runs grows with."""
+        return pace_of(self.model, self._n_rows)
+
+    def task(
+        self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None = 0.0, *, history: bool = False
+    ) -> Task:
+        """What `run` is asked with these arguments, to estimate its work by."""
+        return Task(self.model, self.pace, acceleration, dt, free_vibration, history)
+
     @abstractmethod
     def _motion(self, start: Array) -> Array:
         """What the kernels carry, from the state [D.., D'.., θ, θ']."""
@@ -79,32 +94,45 @@ class Engine(ABC):
         free_vibration: float | None = 0.0,
         state: Array | None = None,
         history: bool = False,
+        work_limit: float | None = None,
     ) -> Solution:
         """Run one record, then `free_vibration` seconds (None: until settled), from a state [D.., D'.., θ, θ'].
 
+        `work_limit` is the most work in s, see `Pace`, that the run may be and do; None sets no limit.
+
         Raises
         ------
+        WorkLimitError
+            If the run is estimated to be more work than that.
         InputError
             If the time step is absurd, or the user's impact law fails.
         SolverError
-            If impacts accumulate without end, the motion does not settle, or an impact would gain energy.
+            If impacts accumulate without end, the motion does not settle, an impact would gain energy, or the run has
+            done all the work that it may.
         """
+        task = self.task(acceleration, dt, free_vibration, history=history)
+        task.check(work_limit)
         start = np.zeros(2 * self.model.properties.n_modes + 2) if state is None else state
         side = float(np.sign(start[-2]) or np.sign(start[-1]))
         settle = free_vibration is None
-        free = math.ceil((self._patience() if free_vibration is None else free_vibration) / dt - 1e-9)
+        after = self._patience() if free_vibration is None else free_vibration
+        free = math.ceil(min(after / dt, MOST_SAMPLES) - 1e-9)
         record = np.require(acceleration, dtype=np.float64, requirements=("C", "W"))  # the type compiled for
         room_for = record.size + EVENTS + (0 if settle else free) if history else 0
+        work = np.concatenate(([math.inf if work_limit is None else work_limit], self.pace.prices(history=history)))
         while True:
-            log = Log(np.zeros(self._n_rows), np.zeros(self._n_rows), np.zeros(3, dtype=np.int64))
+            log = Log(np.zeros(self._n_rows), np.zeros(self._n_rows), np.zeros(3, dtype=np.int64), work.copy())
             log.peaks[-1] = -np.inf
             motion = self._motion(start)
             nodes = np.zeros((room_for, HEADER + motion.size))
             status, samples, count = self._carry(motion, record, dt, free, settle, side, log, nodes)
             if not history or count <= room_for:
                 break
+            task.check_room(count)
             room_for = count
-        self._complain(status, samples * dt, motion[: start.size])
+        if log.work[LEFT] < 0.0 and status != BROKEN:
+            status = SPENT
+        self._complain(status, samples * dt, motion[: start.size], task, work_limit)
         end = samples * dt if status != OVERTURNED else float(log.times[0])
         return Solution(
             overturned=status == OVERTURNED,
@@ -125,7 +153,7 @@ class Engine(ABC):
         slowest = float(p.omega.min(initial=math.inf))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
-    def _complain(self, status: int, time: float, state: Array) -> None:
+    def _complain(self, status: int, time: float, state: Array, task: Task, work_limit: float | None) -> None:
         """Raise if the run could not be solved."""
         if status == BROKEN:
             failure = self._failures.pop()
@@ -143,6 +171,8 @@ class Engine(ABC):
                 f"The motion of {label} cannot be followed in the sample before {time:.6g} s: no step is short enough."
             )
             mend = "Check the parameters."
+        elif status == SPENT:
+            what, mend = task.stopped(time, work_limit)
         elif status == UNSETTLED:
             what = f"The free vibration of {label} has not settled {time:.6g} s after the start."
             mend = "Give free_vibration in seconds, or more damping."

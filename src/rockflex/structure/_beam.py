@@ -21,7 +21,7 @@ from rockflex.structure._sections import LumpedMasses, Sections, on_beam
 __all__ = ["Beam"]
 
 _N_ELEMENTS = 1000
-MOST_ELEMENTS = 100_000
+_MOST_ELEMENTS = 10_000
 _RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
 
 
@@ -59,9 +59,9 @@ class Beam(Value):
     method : {"fe", "ritz"}
         Finite elements, or Rayleigh-Ritz. Rayleigh-Ritz has no deformation in shear.
     n_modes : int
-        Number of modes that the structure has.
+        Number of modes that the structure has, 200 at most.
     n_elements : int, optional
-        Equal finite elements, at least `n_modes`; cut further where needed. Default: 1000. For "fe" alone.
+        Equal finite elements, from `n_modes` to 10 000; cut further where needed. Default: 1000. For "fe" alone.
     shapes : RitzShapes, optional
         At least `n_modes` shapes. Default: those of Eq. 36, five or `n_modes`. For "ritz" alone.
     sections : Sections
@@ -166,7 +166,7 @@ class Beam(Value):
                 message = f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".'
                 raise InputError(message)
         if self.n_elements is not None:
-            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, MOST_ELEMENTS))
+            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, _MOST_ELEMENTS))
         if self.shapes is not None:
             found = instance("shapes", self.shapes, RitzShapes).check(self.height)
             if found < self.n_modes:

@@ -8,7 +8,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import in_range, positive, real_or_nan, whole_number
+from rockflex._checks import MOST_STORIES, in_range, positive, real_or_nan, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -19,9 +19,6 @@ from rockflex.structure._lumped import LumpedStructure
 __all__ = ["Frame"]
 
 Float = NDArray[np.float64]
-
-
-MOST_STORIES = 2000  # of which every matrix takes 32 MB
 
 
 @dataclass(frozen=True)
@@ -35,7 +32,7 @@ class Frame:
     Attributes
     ----------
     n_stories : int
-        Number of stories N.
+        Number of stories N, 1000 at most.
     story_height : float
         Column length L_c in m; floor i is at i L_c.
     story_mass : float

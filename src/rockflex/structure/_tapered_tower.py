@@ -44,7 +44,7 @@ class TaperedTower(Value):
     method : {"ritz", "fe"}
         Rayleigh-Ritz with the shapes of Eq. 36 (five, or `n_modes` if more), or 2000 finite elements.
     n_modes : int
-        Number of modes that the structure has.
+        Number of modes that the structure has, 200 at most.
 
     Raises
     ------

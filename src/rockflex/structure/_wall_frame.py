@@ -48,7 +48,7 @@ class WallFrame(Value):
     damping_ratio : float or ndarray, shape (n_modes,)
         Damping ratio of every mode, or of each, in [0, 1).
     n_modes : int
-        Number of modes that the structure has.
+        Number of modes that the structure has, 200 at most.
 
     Raises
     ------

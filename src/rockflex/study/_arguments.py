@@ -14,6 +14,7 @@ from rockflex.motion import GroundMotion
 from rockflex.study._initial import InitialState
 
 __all__ = [
+    "WORK_LIMIT",
     "Output",
     "Structure",
     "check_initial",
@@ -28,11 +29,15 @@ __all__ = [
     "positive_numbers",
     "properties_of",
     "sequence_of",
+    "work_limit_of",
 ]
 
 Output = Literal["history", "peaks"]
 
 LONGEST = 1e9  # s of free vibration
+
+WORK_LIMIT = 30.0
+"""Most work of one run, in s of computing on one core, unless another limit is given."""
 
 
 class Structure(Protocol):
@@ -97,6 +102,26 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
         )
         raise InputError(message)
     return seconds
+
+
+def work_limit_of(value: float | Literal["none"] | None) -> float | None:
+    """Seconds of computing that one run may take; None without a limit, which files call "none".
+
+    Raises
+    ------
+    InputError
+        If the value is not a positive number (or infinite), another word, or no number.
+    """
+    if value is None or (isinstance(value, str) and value == "none"):
+        return None
+    seconds = real_or_nan(value)
+    if not seconds > 0.0:
+        message = (
+            f"work_limit must be a positive number of seconds of computing for one run, or None for no limit ("
+            f'"none" in a file and on the command line), but {value!r} was given.'
+        )
+        raise InputError(message)
+    return seconds if math.isfinite(seconds) else None
 
 
 def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:

@@ -87,6 +87,7 @@ def run_study(
         message = f"workers is for threads here, but {shown(workers)} was given together with the cluster at {dask}."
         raise InputError(message)
     plan = spec.plan()
+    plan.check_work()
     if folder is None:
         tables: dict[int, pa.Table] = {}
         _compute(plan, range(plan.n_chunks), tables.__setitem__, workers, dask, progress)
@@ -145,6 +146,7 @@ def estimate_time(study: "Study", workers: SupportsIndex | None = None) -> float
         Time in s, the compilation of a first call aside.
     """
     plan = study.plan()
+    plan.check_work()
     threads = core_count() if workers is None else whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_units - 1) / max(SAMPLE - 1, 1)) for place in range(SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # compile, and fill caches that the study will fill once

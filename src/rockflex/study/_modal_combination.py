@@ -8,7 +8,7 @@ from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
 from rockflex.response import Response
-from rockflex.study._arguments import Structure, properties_of
+from rockflex.study._arguments import WORK_LIMIT, Structure, properties_of
 from rockflex.study._simulate import simulate
 
 __all__ = ["CombinedPeaks", "SecondMode", "combine", "modal_combination", "second_mode"]
@@ -91,7 +91,10 @@ def combine(rocking: Response, second: SecondMode) -> CombinedPeaks:
 
 
 def modal_combination(
-    structure: Structure | RockingProperties, motion: GroundMotion, free_vibration: float | Literal["settle"] = 0.0
+    structure: Structure | RockingProperties,
+    motion: GroundMotion,
+    free_vibration: float | Literal["settle"] = 0.0,
+    work_limit: float | None = WORK_LIMIT,
 ) -> CombinedPeaks:
     """Estimate peaks of a structure from 2DOF-S and its second mode on a fixed base, by SRSS.
 
@@ -104,7 +107,7 @@ def modal_combination(
         A structure with at least two modes, or its `RockingProperties`.
     motion
         The ground motion.
-    free_vibration
+    free_vibration, work_limit
         As in `simulate`.
 
     Returns
@@ -119,5 +122,7 @@ def modal_combination(
         If the run cannot be solved.
     """
     properties = properties_of(structure)
-    rocking = simulate(properties, motion, "2DOF-S", output="peaks", free_vibration=free_vibration)
+    rocking = simulate(
+        properties, motion, "2DOF-S", output="peaks", free_vibration=free_vibration, work_limit=work_limit
+    )
     return combine(rocking, second_mode(properties, motion))

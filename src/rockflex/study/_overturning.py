@@ -18,7 +18,15 @@ from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.parallel import map_threads
 from rockflex.response import Response, respond
-from rockflex.study._arguments import Structure, check_options, described, positive_numbers, properties_of
+from rockflex.study._arguments import (
+    WORK_LIMIT,
+    Structure,
+    check_options,
+    described,
+    positive_numbers,
+    properties_of,
+    work_limit_of,
+)
 from rockflex.study._simulate import make_engine
 
 if TYPE_CHECKING:
@@ -56,6 +64,7 @@ def overturning_scales(
     model: str | Model = "rigid",
     impact: ImpactLaw | None = None,
     tolerance: float = 1e-6,
+    work_limit: float | None = WORK_LIMIT,
 ) -> OverturningScales:
     """Find the scales at which a motion begins to overturn a structure.
 
@@ -74,6 +83,8 @@ def overturning_scales(
         Scales to try, positive and rising, two at least.
     tolerance
         Relative width of the boundaries, from 1e-12 to below 0.1.
+    work_limit
+        Most work of each run, as in `simulate`.
 
     Raises
     ------
@@ -88,7 +99,7 @@ def overturning_scales(
         message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
         raise InputError(message)
     check_horizontal(motion)
-    return _search(_runner(structure, model, impact), motion, tried, width)
+    return _search(_runner(structure, model, impact, work_limit), motion, tried, width)
 
 
 def overturning_spectrum(
@@ -100,6 +111,7 @@ def overturning_spectrum(
     relative_amplitudes: Sequence[float] = SCAN,
     tolerance: float = 1e-6,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Smallest amplitude at which a pulse overturns a structure, over the pulse's frequency.
 
@@ -122,6 +134,8 @@ def overturning_spectrum(
         Relative width of the boundaries.
     workers
         Number of threads; None for one a core.
+    work_limit
+        Most work of each run, as in `simulate`.
 
     Returns
     -------
@@ -142,7 +156,7 @@ def overturning_spectrum(
     properties = properties_of(structure)
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
     unit = properties.resisting_moment / properties.l0r  # g α
-    run = _runner(properties, model, impact)
+    run = _runner(properties, model, impact, work_limit)
     periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
     if not callable(pulse):
         message = f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given."
@@ -180,8 +194,11 @@ def overturning_spectrum(
 Run = Callable[[GroundMotion, float], Response]
 
 
-def _runner(structure: Structure | RockingProperties, model: str | Model, impact: ImpactLaw | None) -> Run:
+def _runner(
+    structure: Structure | RockingProperties, model: str | Model, impact: ImpactLaw | None, work_limit: float | None
+) -> Run:
     check_options(None, impact)
+    limit = work_limit_of(work_limit)
     tied = parse_model(model).of(properties_of(structure), impact)
     if not tied.lifts:
         message = f"{tied.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks."
@@ -189,7 +206,7 @@ def _runner(structure: Structure | RockingProperties, model: str | Model, impact
     engine = make_engine(tied, "peaks")
 
     def run(motion: GroundMotion, scale: float) -> Response:
-        solution = engine.run(motion.acceleration * scale, motion.dt, free_vibration=None, state=None, history=False)
+        solution = engine.run(motion.acceleration * scale, motion.dt, free_vibration=None, work_limit=limit)
         return respond(tied, motion.name, solution)
 
     return run

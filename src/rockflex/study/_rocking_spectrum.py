@@ -11,7 +11,7 @@ from rockflex._errors import InputError
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.structure import rigid_block
-from rockflex.study._arguments import positive_numbers
+from rockflex.study._arguments import WORK_LIMIT, positive_numbers
 from rockflex.study._simulate_many import simulate_many
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def rocking_spectrum(
     impact: ImpactLaw | None = None,
     free_vibration: float | Literal["settle"] = "settle",
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Largest rotation of homogeneous rigid blocks under one motion, over slenderness and size.
 
@@ -51,6 +52,8 @@ def rocking_spectrum(
         As in `simulate`. Blocks may overturn after the record.
     workers
         Number of threads; None for one a core.
+    work_limit
+        Most work of each run, as in `simulate_many`.
 
     Returns
     -------
@@ -73,7 +76,7 @@ def rocking_spectrum(
     blocks = [rigid_block(alpha, radius) for alpha in alphas for radius in radii]
     chosen.of(blocks[int(np.argmax(alphas)) * len(radii)], impact)  # the squattest, before any work
     table = simulate_many(
-        blocks, motion, chosen, free_vibration=free_vibration, impact=impact, workers=workers
+        blocks, motion, chosen, free_vibration=free_vibration, impact=impact, workers=workers, work_limit=work_limit
     ).reset_index(drop=True)
     slenderness, period = np.repeat(alphas, len(times)), np.tile(times, len(alphas))
     import pandas as pd

@@ -9,6 +9,7 @@ from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.response import Response, elastic_observables, floor_observables, global_observables, respond
 from rockflex.solve import AdaptiveEngine, Engine, ExactEngine, preparing
 from rockflex.study._arguments import (
+    WORK_LIMIT,
     Output,
     Structure,
     check_initial,
@@ -18,6 +19,7 @@ from rockflex.study._arguments import (
     described,
     free_vibration_time,
     properties_of,
+    work_limit_of,
 )
 from rockflex.study._initial import InitialState
 
@@ -33,6 +35,7 @@ def simulate(
     bouc_wen: BoucWen | None = None,
     impact: ImpactLaw | None = None,
     initial: InitialState | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> Response:
     """Simulate one structure under one ground motion.
 
@@ -66,6 +69,10 @@ def simulate(
         is an `ImpactLaw`.
     initial
         The state at t = 0; at rest if None.
+    work_limit
+        Most work that the run may be, in s of computing on one core; None for no limit. A run is refused that is
+        estimated to take longer, and stopped once it has taken so long. The work is counted, not timed, so it is the
+        same on every machine; on a slow one it takes longer. The runs of a paper take milliseconds.
 
     Returns
     -------
@@ -76,9 +83,9 @@ def simulate(
     ------
     InputError
         If the model's label is unknown, a value is out of range, an argument is of the wrong kind, or the motion is a
-        vertical component.
+        vertical component; if the run is more work than `work_limit`, or its history more than memory holds.
     SolverError
-        If the run cannot be solved; the message names the time and the state.
+        If the run cannot be solved, or has done the work of `work_limit`; the message names the time and the state.
     """
     check_output(output)
     check_options(bouc_wen, impact)
@@ -88,7 +95,7 @@ def simulate(
         raise InputError(message)
     check_horizontal(motion)
     check_initial(initial)
-    free = free_vibration_time(free_vibration)
+    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
     check_settling(tied, free)
     engine = make_engine(tied, output)
     solution = engine.run(
@@ -97,6 +104,7 @@ def simulate(
         free_vibration=free,
         state=None if initial is None else initial.state(tied),
         history=output == "history",
+        work_limit=limit,
     )
     return respond(tied, motion.name, solution)
 

@@ -9,8 +9,9 @@ from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
 from rockflex.motion import check_horizontal
 from rockflex.parallel import map_threads
 from rockflex.response import respond
-from rockflex.solve import Engine
+from rockflex.solve import Engine, WorkLimitError
 from rockflex.study._arguments import (
+    WORK_LIMIT,
     Output,
     Structure,
     check_initial,
@@ -21,6 +22,7 @@ from rockflex.study._arguments import (
     free_vibration_time,
     hysteresis_of,
     properties_of,
+    work_limit_of,
 )
 from rockflex.study._initial import InitialState
 from rockflex.study._simulate import make_engine
@@ -48,6 +50,7 @@ def simulate_many(
     impact: ImpactLaw | None = None,
     initial: InitialState | None = None,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
@@ -71,6 +74,8 @@ def simulate_many(
         cannot be solved.
     workers
         Number of threads; None for one a core.
+    work_limit
+        Most work of each run, as in `simulate`. A run that is more has its message in `error`.
 
     Returns
     -------
@@ -85,7 +90,7 @@ def simulate_many(
     ------
     InputError
         If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, a motion is a
-        vertical component, or a scaled motion would overflow.
+        vertical component, a scaled motion would overflow, or every run is more work than `work_limit`.
     """
     check_output(output)
     check_options(bouc_wen, impact)
@@ -96,7 +101,8 @@ def simulate_many(
     chosen = models_of(models)
     yielding = hysteresis_of(chosen, bouc_wen)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
-    free = free_vibration_time(free_vibration)
+    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
+    refused: list[WorkLimitError] = []
     shape = (len(everything), len(records), len(chosen), len(factors))
     inner = len(chosen) * len(factors)  # runs of one structure under one motion
     each = len(records) * inner
@@ -130,14 +136,19 @@ def simulate_many(
                     free_vibration=free,
                     state=state,
                     history=output == "history",
+                    work_limit=limit,
                 )
             except (SolverError, InputError) as error:
                 table.errors[row] = str(error)
+                if isinstance(error, WorkLimitError):
+                    refused.append(error)
                 continue
             table.enter(row, respond(model, motion.name, solution))
 
     for _ in map_threads(work, tasks(), workers):
         pass
+    if len(refused) == table.status.size:
+        raise refused[0]
     return table.frame(shape, names, [motion.name for motion in records], factors, [model.label for model in chosen])
 
 

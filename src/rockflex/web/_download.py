@@ -78,8 +78,8 @@ def _figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
 def _energy(state: State, uploads: Uploads) -> tuple[str, bytes]:
     from rockflex.plot import plot_energy
 
-    built, motion, found = responses(state, uploads)
-    check_energy(built, motion, found[0].model, state)
+    _, motion, found = responses(state, uploads)
+    check_energy(found[0], motion, state)
     return "energy.svg", svg(plot_energy(found[0]))
 
 

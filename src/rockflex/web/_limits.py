@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import parse_model
+from rockflex.models import RockingModel, parse_model
 from rockflex.motion import GroundMotion
+from rockflex.solve import Task
+from rockflex.study import make_engine
 from rockflex.web._refusal import Refusal
 
 if TYPE_CHECKING:
@@ -23,13 +22,13 @@ __all__ = [
     "INFINITE",
     "MODELS",
     "RANGES",
+    "RUN",
     "RUNS",
     "check_motion",
     "check_numbers",
     "check_runs",
     "check_together",
     "errors_of_numbers",
-    "pace",
 ]
 
 FILE = 5_000_000  # bytes of an upload
@@ -39,9 +38,9 @@ SAMPLES = 200_000
 DURATION = 300.0  # s of a record
 MODELS = 4  # side by side
 RUNS = 20_000  # of a study
-EFFORT = 5e7  # of one run, see `Pace`: some seconds
-TOGETHER = 8e7  # of the runs of one answer
-STUDY_EFFORT = 6e9  # of all runs of a study: some ten minutes
+RUN = 1.5  # s of computing that one run may take, see `rockflex.solve.Pace`; a hard one takes three times as long
+TOGETHER = 2.5  # s of the runs of one answer
+STUDY = 180.0  # s of all runs of a study: some minutes
 
 INFINITE = frozenset({"stiffness_ratio", "stiffness_parameter", "beam_stiffness"})
 LARGEST = 1e15
@@ -133,91 +132,27 @@ def check_motion(motion: GroundMotion, path: str) -> None:
         raise Refusal({path: message})
 
 
-@dataclass(frozen=True)
-class Pace:
-    """What the work of a model grows with.
-
-    Attributes
-    ----------
-    label
-        Model.
-    modes
-        How many it has of the structure's.
-    fastest
-        Its highest circular frequency in rad/s, on the ground or uplifted: on a very narrow base far above ω_k.
-    """
-
-    label: str
-    modes: int
-    fastest: float
-
-    def history(self, motion: GroundMotion, free_vibration: float) -> float:
-        """Return about how much work a run with its history is, in some 1e-7 s; as the others, from measurements."""
-        return self._work(motion, free_vibration, 20.0 + self.modes**2 / 7.0, 120.0 if self._integrated else 35.0)
-
-    def peaks(self, motion: GroundMotion, free_vibration: float) -> float:
-        """Return about how much work a run of which only peaks are kept is."""
-        return self._work(motion, free_vibration, 5.0 + self.modes / 2.0, 60.0 if self._integrated else 12.0)
-
-    def energy(self, motion: GroundMotion, free_vibration: float) -> float:
-        """Return about how much work the energies of a run are, after the run."""
-        turned = (35.0 + 4.0 * self.fastest * motion.dt) * (1.0 + self.modes / 10.0)
-        return self._work(motion, free_vibration, 15.0 + 5.0 * self.modes, turned)
-
-    @property
-    def _integrated(self) -> bool:
-        model = parse_model(self.label)
-        return model.complete or model.yields
-
-    def _work(self, motion: GroundMotion, free_vibration: float, each: float, turned: float) -> float:
-        """Work of all samples, of which each takes so much, and so much more for each radian of the fastest motion."""
-        samples = motion.acceleration.size + free_vibration / motion.dt
-        return samples * (each + turned * self.fastest * motion.dt)
-
-    def check(self, work: float, motion: GroundMotion, path: str) -> None:
-        """Refuse a run whose work would keep the page busy for long."""
-        if work > EFFORT:
-            message = (
-                f"{self.label} with {self.modes} modes over {motion.acceleration.size} samples takes too long for a "
-                "page. Choose a model with fewer modes, a wider base or a shorter record, or use the library."
-            )
-            raise Refusal({path: message})
-
-
-def pace(properties: RockingProperties, label: str) -> Pace:
-    """Return the pace of a model of a structure."""
-    count = parse_model(label).n_modes
-    modes = properties.n_modes if count is None else min(count, properties.n_modes)
-    if not modes:
-        return Pace(label, 0, 0.0)
-    p = properties.truncated(modes)
-    highest = float(p.omega[-1])
-    if not parse_model(label).lifts:
-        return Pace(label, modes, highest)
-    mass = np.eye(modes + 1)
-    mass[0, 0] = p.i_theta
-    mass[0, 1:] = mass[1:, 0] = np.sqrt(p.effective_mass) * p.effective_height
-    stiffness = np.diag(np.concatenate(([p.rocking_stiffness], p.omega**2)))
-    try:
-        from scipy.linalg import eigh
-
-        squares = eigh(stiffness, mass, eigvals_only=True)
-    except np.linalg.LinAlgError:  # the inertia that is left to rotate is rounding
-        return Pace(label, modes, math.inf)
-    return Pace(label, modes, max(math.sqrt(max(float(squares[-1]), 0.0)), highest))
-
-
-def check_together(properties: RockingProperties, labels: Sequence[str], motion: GroundMotion, free: float) -> None:
+def check_together(models: Sequence[RockingModel], motion: GroundMotion, free: float) -> None:
     """Refuse runs with their histories that take too long, one by one or together."""
     together = 0.0
-    for label in labels:
-        known = pace(properties, label)
-        work = known.history(motion, free)
-        known.check(work, motion, "models")
-        together += work
+    for model in models:
+        task = make_engine(model, "history").task(motion.acceleration, motion.dt, free, history=True)
+        together += _checked_work(task, "models")
     if together > TOGETHER:
         message = "these models take too long together for a page. Choose fewer of them, or a shorter record."
         raise Refusal({"models": message})
+
+
+def _checked_work(task: Task, path: str) -> float:
+    """The work of a run in s; refuse one that would keep the page busy for long."""
+    work = task.work().total
+    if work > RUN:
+        message = (
+            f"{task.model.label} with {task.pace.modes} modes over {task.record.size} samples takes too long for a "
+            "page. Choose a model with fewer modes, a wider base or a shorter record, or use the library."
+        )
+        raise Refusal({path: message})
+    return work
 
 
 def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
@@ -235,17 +170,15 @@ def check_runs(plan: "CloudPlan", path: str) -> None:
         message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use the command line."
         raise Refusal({path: message})
     bench = plan.bench
-    each = plan.n_runs / (len(bench.structures) * len(bench.labels) * len(bench.motions))
-    free = bench.assumptions.free_vibration or 0.0
+    largest = max(plan.scales, key=abs)
     work = 0.0
-    for properties in bench.structures:
-        for label in bench.labels:
+    for structure, properties in enumerate(bench.structures):
+        for model, label in enumerate(bench.labels):
             _check_model(plan, properties, label, path)
-            known = pace(properties, label)
-            for motion in bench.motions:
-                one = known.peaks(motion, free)
-                known.check(one, motion, path)
-                work += each * one
-    if work > STUDY_EFFORT:
+            for record in range(len(bench.motions)):
+                task = bench.task(structure, record, model, largest)
+                if task is not None:
+                    work += len(plan.scales) * _checked_work(task, path)
+    if work > STUDY:
         message = "it takes too long for a page. Choose models with fewer modes, or use the command line."
         raise Refusal({path: message})

@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
-from rockflex.models import parse_model
+from rockflex.models import RockingModel, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
+from rockflex.solve import pace_of
 from rockflex.study import simulate
-from rockflex.web._limits import check_together, pace
+from rockflex.web._limits import RUN, check_together
 from rockflex.web._packing import envelope, pack, plain
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
@@ -25,7 +26,7 @@ Array = NDArray[np.float64]
 
 POINTS = 1600  # of a history, events aside
 EVENTS = 600  # nodes of events kept, at most
-LEDGER = 1e7  # work of the energies, see `Pace`: about a second
+LEDGER = 1.0  # s of computing that the energies may take, see `rockflex.solve.Pace`
 
 PEAK_ROWS = (
     ("max_rotation", "θ_max", "rad"),
@@ -47,11 +48,18 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     motion = motion_of(state.record, uploads).scaled(state.scale)
     found: list[Response] = []
     free, law = state.free_vibration, state.law()
-    check_together(built.properties, state.models, motion, free)
-    for label in state.models:
-        yielding = state.hysteresis() if parse_model(label).yields else None
+    yielding = {label: state.hysteresis() if parse_model(label).yields else None for label in state.models}
+    tied: list[RockingModel] = []
+    for label, spring in yielding.items():
         try:
-            found.append(simulate(built.structure, motion, label, free_vibration=free, bouc_wen=yielding, impact=law))
+            tied.append(parse_model(label).of(built.properties, law, spring))
+        except InputError as error:
+            raise Refusal({"models": f"{label}: {error}"}) from error
+    check_together(tied, motion, free)
+    for label, spring in yielding.items():
+        options: dict[str, Any] = {"free_vibration": free, "bouc_wen": spring, "impact": law, "work_limit": RUN}
+        try:
+            found.append(simulate(built.structure, motion, label, **options))
         except (InputError, SolverError) as error:
             raise Refusal({"models": f"{label}: {error}"}) from error
     return built, motion, found
@@ -74,7 +82,7 @@ def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[st
             "nominal": p.nominal_overturning_rotation,
             "models": [_curves(built, response) for response in found],
             "suggested_yield": _suggested_yield(p, motion),
-            "energy": _energy(built, motion, main, state),
+            "energy": _energy(motion, main, state),
         }
     )
 
@@ -133,19 +141,21 @@ def _fall_time(history: History) -> float | None:
     return float(history.time[inside[-1] + 1])
 
 
-def check_energy(built: Built, motion: GroundMotion, label: str, state: State) -> None:
+def check_energy(response: Response, motion: GroundMotion, state: State) -> None:
     """Refuse energies that would take long to compute."""
-    if pace(built.properties, label).energy(motion, state.free_vibration) > LEDGER:
+    assert response.history is not None  # asked for in `responses`
+    samples = motion.acceleration.size + state.free_vibration / motion.dt
+    if pace_of(response.history.model, 1).energy(samples, motion.dt) > LEDGER:
         message = "the energy of so many modes, or of such fast ones, over so long a time is left out here."
         raise Refusal({"energy": message})
 
 
-def _energy(built: Built, motion: GroundMotion, response: Response, state: State) -> dict[str, Any]:
+def _energy(motion: GroundMotion, response: Response, state: State) -> dict[str, Any]:
     """Energies over time, stacked in the browser; a note in their place where they cannot be had."""
     history = response.history
     assert history is not None  # asked for in `responses`
     try:
-        check_energy(built, motion, response.model, state)
+        check_energy(response, motion, state)
         ledger = history.energy
     except (Refusal, InputError) as error:
         said = error.errors["energy"].capitalize() if isinstance(error, Refusal) else str(error)

@@ -7,7 +7,7 @@ from rockflex._errors import InputError
 from rockflex.models import parse_model
 from rockflex.study.plans import CloudPlan, CloudStudy, DesignStudy, to_frame
 from rockflex.web._jobs import Job
-from rockflex.web._limits import check_runs
+from rockflex.web._limits import RUN, check_runs
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import CloudChoice, DesignChoice, State
 
@@ -67,6 +67,7 @@ def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
         plan = study.plan()
     except InputError as error:
         raise Refusal({path: str(error)}) from error
+    plan.bench = plan.bench.limited(RUN)
     check_runs(plan, path)
     return plan
 

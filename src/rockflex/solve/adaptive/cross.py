@@ -14,7 +14,7 @@ from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
 from rockflex.solve.adaptive.step import FAILED, expand_nested, extend, row_poly, settle_on, step_over, take_step
 from rockflex.solve.exact.exits import contact_exit, overturning, rocking_exit
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, LEFT, ROCKING, SERIES, Array, Log, Scratch, System
 from rockflex.solve.exact.peaks import raise_peak
 from rockflex.solve.exact.probe import QUARTER_TURN
 from rockflex.solve.exact.series import advance, evaluate, expand, first_descent, row_series
@@ -34,6 +34,7 @@ from rockflex.solve.exact.unit import (
     PASSING,
     RESUME,
     SNAP,
+    SPENT,
     TOUCHED,
     UPLIFTS,
 )
@@ -73,6 +74,9 @@ def cross(
     done, resume, lift, start = begun, 0.0, 0.0, INSIDE
     log.tally[EVENTS] = 0
     while done < dt:
+        log.work[LEFT] -= log.work[SERIES]
+        if log.work[LEFT] < 0.0:
+            return SPENT, side, count
         phase = ROCKING if side != 0.0 else CONTACT
         here = acceleration + slope * done
         now = min(time + done, until)
@@ -87,7 +91,7 @@ def cross(
         else:
             step = take_step(flow, side, here, slope, longest, stages)
             if step == FAILED:
-                return STALLED, side, count
+                return (SPENT if log.work[LEFT] < 0.0 else STALLED), side, count
             plain = start == INSIDE and resume == 0.0
             if plain and nothing_hides(flow, side, here, slope, step, now, log, stages):
                 step_over(stages)

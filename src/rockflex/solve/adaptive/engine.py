@@ -81,7 +81,7 @@ class AdaptiveEngine(Engine):
     ) -> tuple[int, int, int]:
         system = self.system(dt)
         room = scratch(motion[:-EXTRA], self._n_rows, system.order)
-        work = stages(motion, self._n_rows)
+        work = stages(motion, self._n_rows, log.work)
         return compiled_run(
             system, self._flow, self._impact, record, QUIET, dt, free, settle, side, log, room, work, nodes
         )

@@ -55,10 +55,11 @@ class Stages(NamedTuple):
     values: Array  # (F,): within it
     told: NDArray[np.bool_]  # (1,): whether `starts` is filled in
     doubt: NDArray[np.bool_]  # (F,): curved rows that may hide a peak
+    work: Array  # (5,): `Log.work`
 
 
-def stages(motion: Array, rows: int) -> Stages:
-    """Room for one run that starts from `motion`."""
+def stages(motion: Array, rows: int, work: Array) -> Stages:
+    """Room for one run that starts from `motion`; `work` is that of its log."""
     n = motion.size
     return Stages(
         motion,
@@ -81,4 +82,5 @@ def stages(motion: Array, rows: int) -> Stages:
         np.zeros(rows),
         np.zeros(1, dtype=np.bool_),
         np.zeros(rows, dtype=np.bool_),
+        work,
     )

@@ -10,13 +10,13 @@ from rockflex.solve.adaptive.glide import glide
 from rockflex.solve.adaptive.layout import Flow, Stages
 from rockflex.solve.adaptive.step import choose_branch
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CARRY, CONTACT, LEFT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.peaks import raise_row
 from rockflex.solve.exact.probe import EVENT
 from rockflex.solve.exact.run import SETTLED, UNSETTLED, settled
 from rockflex.solve.exact.sample import cross_sample
-from rockflex.solve.exact.unit import CROSSED
+from rockflex.solve.exact.unit import CROSSED, SPENT
 
 __all__ = ["run"]
 
@@ -57,6 +57,9 @@ def run(
             system, flow, impact, piece, dt, offset, side, log, room, stages, nodes, count
         )
         offset += reached
+        log.work[LEFT] -= reached * log.work[CARRY]
+        if status == CROSSED and log.work[LEFT] < 0.0:
+            status = SPENT
         if status != CROSSED:
             return status, offset, count
         last = piece[piece.size - 1]
@@ -126,7 +129,7 @@ def cross_piece(
             if status != CROSSED:
                 return status, i + 1, side, count
         else:
-            _, side, _, count = cross_sample(
+            status, side, _, count = cross_sample(
                 system,
                 impact,
                 side,
@@ -142,6 +145,8 @@ def cross_piece(
                 nodes,
                 count,
             )
+            if status != CROSSED:
+                return status, i + 1, side, count
             to_state(system, IN_CONTACT, piece[i + 1], slope, side, room)
         i += 1
     return CROSSED, last, side, count

@@ -7,7 +7,7 @@ from rockflex.models import field_rates
 from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
 from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
-from rockflex.solve.exact.layout import Array
+from rockflex.solve.exact.layout import LEFT, STEP, Array
 
 __all__ = [
     "FAILED",
@@ -28,7 +28,7 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 @kernel
 def take_step(flow: Flow, side: float, acceleration: float, slope: float, longest: float, room: Stages) -> float:
-    """Try steps of at most `longest` until one is accurate; return its length, or `FAILED`.
+    """Try steps of at most `longest` until one is accurate; return its length, or `FAILED`, also where no work is left.
 
     `room.trial` holds the end of the step, `room.rates` the stages up to it.
     """
@@ -41,6 +41,9 @@ def take_step(flow: Flow, side: float, acceleration: float, slope: float, longes
     room.known[0] = True
     most = MOST
     while True:
+        room.work[LEFT] -= room.work[STEP]
+        if room.work[LEFT] < 0.0:
+            return FAILED
         for stage in range(1, LAST + 1):
             place_stage(stage, step, room.motion, room.rates, room.trial)
             field_rates(

@@ -1,6 +1,7 @@
 """The exact engine's door: a model is prepared once, then once a time step, and records run through it."""
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from rockflex._kernel import Entry
 from rockflex.models import LinearModel, impact_of, lost_support_row
 from rockflex.solve._engine import QUIET, Engine, preparing
 from rockflex.solve._observables import Observables
+from rockflex.solve._pace import Pace
 from rockflex.solve.exact.basis import contact_basis, rocking_basis
 from rockflex.solve.exact.history import HEADER
 from rockflex.solve.exact.layout import Array, Log, Physics, System, scratch
@@ -67,6 +69,11 @@ class ExactEngine(Engine):
         system = self.system(dt)
         room = scratch(motion, self._n_rows, system.order)
         return compiled_run(system, self._impact, record, QUIET, dt, free, settle, side, log, room, nodes)
+
+    @cached_property
+    def pace(self) -> Pace:
+        """What the work of its runs grows with."""
+        return Pace(self.model.properties.n_modes, self._n_rows, self.fastest, dense=self._rocking.dense)
 
     @property
     def fastest(self) -> float:

@@ -15,9 +15,27 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CONTACT", "ROCKING", "ZERO", "Array", "Log", "Physics", "Scratch", "System", "scratch"]
+__all__ = [
+    "CARRY",
+    "CONTACT",
+    "LEFT",
+    "LOOK",
+    "ROCKING",
+    "SERIES",
+    "STEP",
+    "ZERO",
+    "Array",
+    "Log",
+    "Physics",
+    "Scratch",
+    "System",
+    "scratch",
+]
 
 CONTACT, ROCKING = 0, 1  # the phases, which lead the arrays of `System`
+
+# Places in `Log.work`: what is left of the limit, and what each kind of work takes, in s of `solve.pace`.
+LEFT, CARRY, LOOK, SERIES, STEP = 0, 1, 2, 3, 4
 
 # A bare 0 has a type of its own in numba, for which every callee would be compiled once more.
 ZERO = cast("int", np.int64(0))
@@ -60,11 +78,12 @@ class System(NamedTuple):
 
 
 class Log(NamedTuple):
-    """What every run leaves: the peak of each row (row 0: of the rotation), when, and the count of events."""
+    """What every run leaves: the peak of each row (row 0: of the rotation), when, and counts of events and of work."""
 
     peaks: Array  # (F,): largest magnitudes, but of the last row
     times: Array  # (F,)
     tally: NDArray[np.int64]  # uplifts, impacts, events within the present sample
+    work: Array  # (5,): the work that is left, and that of a sample, a look into one, a power series, a tried step
 
 
 class Scratch(NamedTuple):

@@ -7,11 +7,11 @@ import numpy as np
 from rockflex._kernel import kernel
 from rockflex.models import Impact
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CARRY, CONTACT, LEFT, ROCKING, ZERO, Array, Log, Scratch, System
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.peaks import raise_to_state
 from rockflex.solve.exact.sample import cross_sample
-from rockflex.solve.exact.unit import CROSSED
+from rockflex.solve.exact.unit import CROSSED, SPENT
 
 __all__ = ["SETTLED", "UNSETTLED", "run"]
 
@@ -59,6 +59,9 @@ def run(
             raise_to_state(system, side, piece[0], offset * dt, log, room)
         status, reached, side, count = cross_piece(system, impact, piece, dt, offset, side, log, room, nodes, count)
         offset += reached
+        log.work[LEFT] -= reached * log.work[CARRY]
+        if status == CROSSED and log.work[LEFT] < 0.0:
+            status = SPENT
         if status != CROSSED:
             return status, offset, count
         last = piece[piece.size - 1]

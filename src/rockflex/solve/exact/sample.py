@@ -4,12 +4,12 @@ from rockflex._kernel import kernel
 from rockflex.models import Impact
 from rockflex.solve.exact.grid import largest_step
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, LEFT, LOOK, ROCKING, Array, Log, Scratch, System
 from rockflex.solve.exact.march import to_coordinates, to_state
 from rockflex.solve.exact.peaks import raise_peaks
 from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe, set_limits
 from rockflex.solve.exact.survey import survey
-from rockflex.solve.exact.unit import CROSSED, EVENTS, cross_unit
+from rockflex.solve.exact.unit import CROSSED, EVENTS, SPENT, cross_unit
 
 __all__ = ["cross_sample"]
 
@@ -50,6 +50,11 @@ def cross_sample(
         phase = ROCKING if side != 0.0 else CONTACT
         here = acceleration + slope * unit * place
         now = time + unit * place
+        log.work[LEFT] -= log.work[LOOK]
+        if log.work[LEFT] < 0.0:
+            if not fresh:
+                to_state(system, phase, here, slope, side, room)
+            return SPENT, side, True, count
         if not probed:
             if not tuned:
                 to_coordinates(system, phase, here, slope, side, room)

@@ -4,7 +4,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.solve.exact.grid import largest_step
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Log, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, LEFT, LOOK, ROCKING, SERIES, Log, Scratch, System
 from rockflex.solve.exact.march import to_state
 from rockflex.solve.exact.peaks import raise_peak, raise_row
 from rockflex.solve.exact.probe import examine, probe, set_limits
@@ -32,7 +32,8 @@ def survey(
     for f in range(room.clear.size):
         room.clear[f] = 0 if room.doubt[f] else grid
     place, depth, probed = 0, level, True
-    while place < grid:
+    while place < grid and log.work[LEFT] >= 0.0:
+        log.work[LEFT] -= log.work[LOOK]
         stride = 1 << (levels - depth)
         start = here + slope * unit * place
         clear = False
@@ -54,6 +55,7 @@ def survey(
             probed = False
             continue
         if not clear:
+            log.work[LEFT] -= log.work[SERIES]
             to_state(system, phase, start, slope, side, room)
             survey_unit(system, side, start, slope, unit, time + unit * place, log, room)
         for k in range(room.w.size):

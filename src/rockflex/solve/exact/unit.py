@@ -10,14 +10,25 @@ from rockflex._kernel import kernel
 from rockflex.models import Impact, kinetic_energy, stick, strike
 from rockflex.solve.exact.exits import contact_exit, overturning, rocking_exit
 from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Physics, Scratch, System
+from rockflex.solve.exact.layout import CONTACT, LEFT, ROCKING, SERIES, ZERO, Array, Log, Physics, Scratch, System
 from rockflex.solve.exact.peaks import raise_peak, raise_to
 from rockflex.solve.exact.probe import QUARTER_TURN
 from rockflex.solve.exact.series import advance, evaluate, expand, row_series
 
-__all__ = ["BROKEN", "CHATTER", "CROSSED", "EVENTS", "GAINED", "IMPACTS", "OVERTURNED", "UPLIFTS", "cross_unit"]
+__all__ = [
+    "BROKEN",
+    "CHATTER",
+    "CROSSED",
+    "EVENTS",
+    "GAINED",
+    "IMPACTS",
+    "OVERTURNED",
+    "SPENT",
+    "UPLIFTS",
+    "cross_unit",
+]
 
-CROSSED, OVERTURNED, CHATTER, GAINED, BROKEN = 0, 1, -1, -3, -4
+CROSSED, OVERTURNED, CHATTER, GAINED, BROKEN, SPENT = 0, 1, -1, -3, -4, -6
 UPLIFTS, IMPACTS, EVENTS = 0, 1, 2  # places in the tally; EVENTS counts those of the present sample
 MOST_EVENTS = 20_000  # in one sample
 
@@ -54,6 +65,7 @@ def cross_unit(
     u, resume, lift, start = 0.0, 0.0, np.nan, INSIDE
     probed = True  # `room.doubt` speaks of the motion up to the first event only
     while True:
+        log.work[LEFT] -= log.work[SERIES]
         phase = ROCKING if side != 0.0 else CONTACT
         span = 1.0 - u
         here = acceleration + slope * step * u

@@ -1,7 +1,7 @@
 """Structures, records and models made ready for runs."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from rockflex._checks import instance
@@ -11,12 +11,14 @@ from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
 from rockflex.motion import Suite
 from rockflex.response import Response, respond
-from rockflex.solve import Engine
+from rockflex.solve import Engine, Task, WorkLimitError
 from rockflex.study._arguments import (
+    WORK_LIMIT,
     check_options,
     free_vibration_time,
     hysteresis_of,
     properties_of,
+    work_limit_of,
 )
 from rockflex.study._simulate import make_engine
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
@@ -32,7 +34,7 @@ class Assumptions:
     """What all runs of a study share.
 
     None of `free_vibration` is until settled; `bouc_wen` is that of the models whose label ends in "-BW", or of all
-    where none does.
+    where none does; `work_limit` is the most work of each run in s, None for no limit.
     """
 
     models: tuple[Model, ...]
@@ -40,6 +42,7 @@ class Assumptions:
     impact: ImpactLaw | None = None
     bouc_wen: BoucWen | None = None
     friction: bool = False
+    work_limit: float | None = WORK_LIMIT
 
 
 class Bench:
@@ -67,6 +70,11 @@ class Bench:
     def __getstate__(self) -> dict[str, Any]:
         return vars(self) | {"_engines": {}, "_measures": {}}
 
+    def limited(self, work_limit: float | None) -> "Bench":
+        """Return the same with another limit of the work of each run."""
+        given = dict(zip(self.names, self.structures, strict=True))
+        return Bench(given, self.motions, replace(self.assumptions, work_limit=work_limit))
+
     @property
     def columns(self) -> Columns:
         """Columns of a run."""
@@ -91,9 +99,7 @@ class Bench:
         """Simulate one run; of one that cannot be solved the row holds the message, and no result."""
         row: Row = {"structure": structure, **self._facts[record], "model": model, "scale": scale}
         row |= scaled_measures(self.measures(structure, record), scale)
-        prepared = self._engines.get((structure, model))
-        if prepared is None:
-            prepared = self._engines[structure, model] = self._prepare(structure, model)
+        prepared = self._prepared(structure, model)
         if isinstance(prepared, str):
             return row | {"error": prepared}
         tied, engine = prepared
@@ -104,6 +110,7 @@ class Bench:
                 motion.dt,
                 free_vibration=self.assumptions.free_vibration,
                 history=friction,
+                work_limit=self.assumptions.work_limit,
             )
         except (SolverError, InputError) as error:
             return row | {"error": str(error)}
@@ -112,8 +119,39 @@ class Bench:
         row["nominal_limit"] = tied.properties.nominal_overturning_rotation
         return row | _friction(response) if friction else row
 
+    def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
+        """What a run is asked, to estimate its work by; None if there is no such model."""
+        prepared = self._prepared(structure, model)
+        if isinstance(prepared, str):
+            return None
+        given, motion = self.assumptions, self.motions[record]
+        acceleration = motion.acceleration * scale
+        return prepared[1].task(acceleration, motion.dt, given.free_vibration, history=given.friction)
+
+    def check_work(self, runs: Iterable[tuple[int, int, int, float]]) -> None:
+        """Raise the error of the first of these runs if every one of them is more work than it may be."""
+        first: WorkLimitError | None = None
+        for run in runs:
+            task = self.task(*run)
+            if task is None:
+                return
+            try:
+                task.check(self.assumptions.work_limit)
+            except WorkLimitError as error:
+                first = first or error
+            else:
+                return
+        if first is not None:
+            raise first
+
+    def _prepared(self, structure: int, model: int) -> tuple[RockingModel, Engine] | str:
+        """A model tied to a structure and its engine, made once, or why there is none."""
+        found = self._engines.get((structure, model))
+        if found is None:
+            found = self._engines[structure, model] = self._prepare(structure, model)
+        return found
+
     def _prepare(self, structure: int, model: int) -> tuple[RockingModel, Engine] | str:
-        """A model tied to a structure and its engine, or why there is none."""
         given = self.assumptions
         try:
             tied = given.models[model].of(self.structures[structure], given.impact, self._yielding[model])
@@ -169,6 +207,7 @@ def bench_of(
     impact: ImpactLaw | None,
     *,
     friction: bool = False,
+    work_limit: float | None = WORK_LIMIT,
 ) -> Bench:
     """Check the arguments of a study in Python, and make them ready; structures without names are "S1", "S2", ...
 
@@ -186,4 +225,5 @@ def bench_of(
     listed, names = structures_of(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
     named = {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
-    return Bench(named, suite, Assumptions(chosen, free, impact, bouc_wen, friction))
+    assumptions = Assumptions(chosen, free, impact, bouc_wen, friction, work_limit_of(work_limit))
+    return Bench(named, suite, assumptions)

@@ -8,7 +8,7 @@ from pydantic import Field, field_validator
 
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion
-from rockflex.study._arguments import factors_of
+from rockflex.study._arguments import WORK_LIMIT, factors_of
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._plan import ChunkedPlan, run_plan
@@ -74,10 +74,24 @@ class CloudPlan(ChunkedPlan):
 
     def rows(self, unit: int) -> Iterator[Row]:
         """Simulate one run."""
+        yield self.bench.run(*self._run(unit))
+
+    def check_work(self) -> None:
+        """Refuse a study of which every run is more work than it may be.
+
+        Raises
+        ------
+        InputError
+            If there is no run that may be made.
+        """
+        self.bench.check_work(map(self._run, range(self.n_units)))
+
+    def _run(self, unit: int) -> tuple[int, int, int, float]:
+        """Structure, record and model of a run by their places, and its scale."""
         rest, scale = divmod(unit, len(self.scales))
         rest, model = divmod(rest, len(self.bench.labels))
         structure, record = divmod(rest, len(self.bench.motions))
-        yield self.bench.run(structure, record, model, self.scales[scale])
+        return structure, record, model, self.scales[scale]
 
 
 def run_cloud(
@@ -90,6 +104,7 @@ def run_cloud(
     impact: ImpactLaw | None = None,
     friction: bool = False,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale, with intensity measures.
 
@@ -105,6 +120,8 @@ def run_cloud(
         Whether to find the friction that keeps the base from sliding (Eqs. 20-22), which needs every run's history.
     workers
         Number of threads; None for one a core.
+    work_limit
+        Most work of each run, as in `simulate`. A run that is more has its message in `error`.
 
     Returns
     -------
@@ -120,8 +137,11 @@ def run_cloud(
     Raises
     ------
     InputError
-        If a label is unknown, a sequence is empty, two motions have the same name, or an argument is out of range.
+        If a label is unknown, a sequence is empty, two motions have the same name, an argument is out of range, or
+        every run is more work than `work_limit`.
     """
     given: Any = scales
-    bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, friction=friction)
+    bench = bench_of(
+        structures, motions, models, free_vibration, bouc_wen, impact, friction=friction, work_limit=work_limit
+    )
     return run_plan(CloudPlan(bench, given, per_chunk=64), workers)

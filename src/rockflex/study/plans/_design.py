@@ -13,7 +13,7 @@ from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, Table
-from rockflex.study._arguments import Structure, described, factors_of
+from rockflex.study._arguments import WORK_LIMIT, Structure, described, factors_of
 from rockflex.study._subjects import Models, Motions
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._cloud import QUIET, CloudPlan
@@ -188,6 +188,7 @@ def run_design(
     bouc_wen: BoucWen | None = None,
     impact: ImpactLaw | None = None,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
 
@@ -204,7 +205,7 @@ def run_design(
         B in m, positive.
     tendons
         Levels of a tendon in the axis, each with every width; `TendonLevel()` is none. Default: what the structure has.
-    models, scales, free_vibration, bouc_wen, impact, workers
+    models, scales, free_vibration, bouc_wen, impact, workers, work_limit
         As in `run_cloud`.
     base_mass_per_width
         Mass in kg/m that the base gains for each metre that 2 B grows beyond the structure's own, and loses for each
@@ -228,7 +229,7 @@ def run_design(
     if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
         message = f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given."
         raise InputError(message)
-    bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact)
+    bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
     return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)
 

@@ -9,6 +9,7 @@ from rockflex._checks import in_range, one_of, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.models import BoucWen, ImpactLaw
+from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._intensity import check_measure
@@ -107,8 +108,7 @@ class IncrementalPlan(ChunkedPlan):
 
     def rows(self, unit: int) -> list[Row]:
         """Run one ladder."""
-        rest, model = divmod(unit, len(self.bench.labels))
-        structure, record = divmod(rest, len(self.bench.motions))
+        structure, record, model = self._ladder(unit)
         flag = "nominal_overturning" if self.limit == "nominal" else None
 
         def run(scale: float) -> Row:
@@ -118,6 +118,21 @@ class IncrementalPlan(ChunkedPlan):
             return row | {"overturned": row["status"] == "overturned" or (flag is not None and row[flag])}
 
         return Ladder(run, self.scales, self.growth, self.tolerance).climb()
+
+    def check_work(self) -> None:
+        """Refuse a study of which every ladder's first run is more work than it may be.
+
+        Raises
+        ------
+        InputError
+            If there is no run that may be made.
+        """
+        self.bench.check_work((*self._ladder(unit), self.scales[0]) for unit in range(self.n_units))
+
+    def _ladder(self, unit: int) -> tuple[int, int, int]:
+        """Structure, record and model of a ladder, by their places."""
+        rest, model = divmod(unit, len(self.bench.labels))
+        return (*divmod(rest, len(self.bench.motions)), model)
 
 
 def check_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
@@ -150,6 +165,7 @@ def run_incremental(
     bouc_wen: BoucWen | None = None,
     impact: ImpactLaw | None = None,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Scale every motion until it overturns the structure, and beyond, and keep every run.
 
@@ -159,7 +175,7 @@ def run_incremental(
 
     Parameters
     ----------
-    structures, motions, models, free_vibration, bouc_wen, impact, workers
+    structures, motions, models, free_vibration, bouc_wen, impact, workers, work_limit
         As in `run_cloud`.
     smallest_scale, largest_scale, growth
         The grid: its ends, and each scale over the one before.
@@ -182,7 +198,7 @@ def run_incremental(
     InputError
         If the scales make no grid, a model's base cannot lift, or as in `run_cloud`.
     """
-    bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact)
+    bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     if not one_of(limit, ("overturning", "nominal")):
         message = f'limit must be "overturning" or "nominal", but {shown(limit)} was given.'
         raise InputError(message)

@@ -12,6 +12,7 @@ from rockflex.motion import GroundMotion
 __all__ = ["MEASURES", "check_measure", "factor_to", "intensity_measures", "scaled_measures"]
 
 MEASURES = ("pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "relative_pga", "relative_pgv")
+STIFF = 1e-6  # s
 SQUARED = frozenset({"arias"})  # of the acceleration; all others are linear in it
 
 
@@ -26,7 +27,9 @@ def intensity_measures(properties: RockingProperties, motion: GroundMotion) -> d
     sd, omega = math.nan, math.nan
     if properties.n_modes:
         omega = float(properties.omega[0])
-        sd = motion.sd(2.0 * math.pi / omega, float(properties.zeta[0]))
+        period = 2.0 * math.pi / omega
+        # A structure so stiff moves with the ground, and no spectrum has its period.
+        sd = motion.sd(period, float(properties.zeta[0])) if period >= STIFF else motion.pga / omega**2
     lifting = properties.resisting_moment / properties.l0r
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
     measures |= {"sd_t1": sd, "sa_t1": omega**2 * sd}

@@ -34,6 +34,10 @@ class Plan(Protocol):
         """SHA-256 of each record's step and samples, by its name."""
         ...
 
+    def check_work(self) -> None:
+        """Refuse a study of which every run is more work than it may be."""
+        ...
+
     def chunk(self, number: int) -> Table:
         """Compute a chunk: the same table, to the last bit, whenever and wherever it is computed."""
         ...
@@ -64,6 +68,16 @@ class ChunkedPlan(ABC):
     @abstractmethod
     def rows(self, unit: int) -> Iterable[Row]:
         """Compute the rows of one unit."""
+
+    def check_work(self) -> None:
+        """Refuse a study of which every run is more work than it may be, if its runs are known beforehand.
+
+        Raises
+        ------
+        InputError
+            If there is no run that may be made.
+        """
+        return
 
     @property
     def n_chunks(self) -> int:
@@ -103,6 +117,7 @@ def run_plan(plan: Plan, workers: SupportsIndex | None = None) -> "pd.DataFrame"
     pandas.DataFrame
         The rows of all chunks; see the study for its columns.
     """
+    plan.check_work()
     tables: dict[int, Table] = {}
 
     def work(number: int) -> None:

@@ -15,7 +15,7 @@ from rockflex.models import LinearModel
 from rockflex.motion import GroundMotion, Suite
 from rockflex.response import Response, global_observables, respond
 from rockflex.solve import ExactEngine, Observables
-from rockflex.study._arguments import free_vibration_time
+from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study._subjects import Motions, motions_of
 from rockflex.study.plans._bench import record_columns, record_facts
@@ -70,7 +70,12 @@ class PopulationStudy(Spec):
         """
         free = free_vibration_time(self.free_vibration)
         return PopulationPlan(
-            self.records.load(self._folder), self.pairs, self.seed, free, max(1, self.runs_per_chunk // 2)
+            self.records.load(self._folder),
+            self.pairs,
+            self.seed,
+            free,
+            max(1, self.runs_per_chunk // 2),
+            work_limit_of(self.work_limit),
         )
 
 
@@ -81,10 +86,16 @@ class PopulationPlan(ChunkedPlan):
     """
 
     def __init__(
-        self, motions: Suite, pairs: int, seed: int, free_vibration: float | None, pairs_per_chunk: int
+        self,
+        motions: Suite,
+        pairs: int,
+        seed: int,
+        free_vibration: float | None,
+        pairs_per_chunk: int,
+        work_limit: float | None,
     ) -> None:
         super().__init__(motions, pairs, pairs_per_chunk)
-        self.seed, self.free_vibration = seed, free_vibration
+        self.seed, self.free_vibration, self.work_limit = seed, free_vibration, work_limit
         self._facts = record_facts(motions)
 
     @property
@@ -126,7 +137,9 @@ class PopulationPlan(ChunkedPlan):
         modal[0, min(model.properties.n_modes, 2) - 1] = 1.0
         tracked = global_observables(model) + Observables(modal, modal)
         engine = ExactEngine(model, tracked)
-        solution = engine.run(motion.acceleration, motion.dt, free_vibration=self.free_vibration)
+        solution = engine.run(
+            motion.acceleration, motion.dt, free_vibration=self.free_vibration, work_limit=self.work_limit
+        )
         usual = replace(solution, peaks=solution.peaks[:-1], peak_times=solution.peak_times[:-1])
         return respond(model, motion.name, usual), float(solution.peaks[-1])
 
@@ -174,6 +187,7 @@ def run_population(
     seed: int = 0,
     free_vibration: float | Literal["settle"] = 0.0,
     workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
     """Simulate random structures under random records with MDOF-S and 2DOF-S (Silva & Stojadinović 2024, Section 3.3).
 
@@ -189,7 +203,7 @@ def run_population(
         Number of structures.
     seed
         Zero or a positive whole number.
-    free_vibration, workers
+    free_vibration, workers, work_limit
         As in `run_cloud`.
 
     Returns
@@ -211,4 +225,5 @@ def run_population(
     """
     count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
-    return run_plan(PopulationPlan(suite, count, start, free_vibration_time(free_vibration), 32), workers)
+    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
+    return run_plan(PopulationPlan(suite, count, start, free, 32, limit), workers)

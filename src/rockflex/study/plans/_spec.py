@@ -11,7 +11,7 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, problems
-from rockflex.study._arguments import free_vibration_time, properties_of
+from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, properties_of, work_limit_of
 from rockflex.study.assumed import Assumed
 from rockflex.study.plans._bench import Assumptions, Bench, check_different
 from rockflex.study.plans._own_law import law_checksum, law_document
@@ -34,6 +34,9 @@ class Spec(Table):
     runs_per_chunk: int = Field(
         256, ge=1, description="about how many runs to compute and store together, a whole number of at least 1"
     )
+    work_limit: float | Literal["none"] = Field(
+        WORK_LIMIT, description='the most computing that one run may take, a number in s or "none"'
+    )
 
     _folder: Path = PrivateAttr(default_factory=Path)
 
@@ -43,6 +46,12 @@ class Spec(Table):
         except ValidationError as error:
             message = " ".join(problems(error, content, type(self)))
             raise InputError(message) from error
+
+    @field_validator("work_limit")
+    @classmethod
+    def _limit(cls, value: float | Literal["none"]) -> float | Literal["none"]:
+        work_limit_of(value)
+        return value
 
     def document(self) -> dict[str, Any]:
         """Everything that determines the study, as JSON has it: infinite numbers as "inf", what is None left out."""
@@ -126,7 +135,8 @@ class StructuresSpec(Assumed, Spec):
                 raise InputError(message) from error
         free = free_vibration_time(self.free_vibration)
         models = tuple(map(parse_model, self.models))
-        assumptions = Assumptions(models, free, self.law(), self.hysteresis(), friction)
+        limit = work_limit_of(self.work_limit)
+        assumptions = Assumptions(models, free, self.law(), self.hysteresis(), friction, limit)
         return Bench(properties, self.records.load(self._folder), assumptions)
 
 

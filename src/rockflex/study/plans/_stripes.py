@@ -73,12 +73,25 @@ class StripePlan(ChunkedPlan):
 
     def rows(self, unit: int) -> Iterator[Row]:
         """Simulate one run."""
+        yield self.bench.run(*self._run(unit)) | {"level": self.levels[unit % len(self.levels)]}
+
+    def check_work(self) -> None:
+        """Refuse a study of which every run is more work than it may be.
+
+        Raises
+        ------
+        InputError
+            If there is no run that may be made.
+        """
+        self.bench.check_work(map(self._run, range(self.n_units)))
+
+    def _run(self, unit: int) -> tuple[int, int, int, float]:
+        """Structure, record and model of a run by their places, and its scale."""
         rest, place = divmod(unit, len(self.levels))
         rest, model = divmod(rest, len(self.bench.labels))
         structure, record = divmod(rest, len(self.bench.motions))
-        level = self.levels[place]
-        scale = factor_to(self.bench.measures(structure, record), self.measure, level)
-        yield self.bench.run(structure, record, model, scale) | {"level": level}
+        scale = factor_to(self.bench.measures(structure, record), self.measure, self.levels[place])
+        return structure, record, model, scale
 
 
 def stripe_counts(

@@ -1,0 +1,138 @@
+"""The work of a run, estimated before it and counted while it goes on.
+
+Work is told in seconds of one core. It is counted, not timed: so many samples, looks into a sample, power series and
+tried steps, each at its price below. So the same run is refused, or stopped, on every machine and under every load.
+The prices were measured; on a common processor of 2024 a run takes between a third and three times its work.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rockflex.models import LinearModel, NonlinearModel, RockingModel
+from rockflex.solve.exact.layout import Array
+
+__all__ = ["Pace", "Work", "pace_of"]
+
+LOOKS = 0.8  # into a sample, for each radian beyond the first by which the fastest vibration turns in it
+SEARCH = 0.1  # looks into a sample whatever turns in it
+TURN = 1.0  # rad of the fastest vibration in a tried step
+RELAXING = 6.0  # e-folds of a hysteresis that flows, in a tried step
+MICRO = 1e-6
+
+
+@dataclass(frozen=True)
+class Work:
+    """About how much work a run is, in s of one core, by what makes it so much.
+
+    Attributes
+    ----------
+    samples
+        What every sample takes, fast vibrations aside.
+    vibration
+        What the fastest vibration takes.
+    yielding
+        What a spring takes that yields fast.
+    """
+
+    samples: float
+    vibration: float
+    yielding: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """The work of the run in s; infinite where no number holds it."""
+        found = self.samples + self.vibration + self.yielding
+        return math.inf if math.isnan(found) else found
+
+
+@dataclass(frozen=True)
+class Pace:
+    """What the work of a model grows with.
+
+    Attributes
+    ----------
+    modes
+        Number of modes.
+    rows
+        Number of responses whose peaks are wanted.
+    fastest
+        Its highest circular frequency in rad/s, on the ground or uplifted: on a very narrow base far above ω_N.
+    integrated
+        Whether it is integrated in steps while it rocks.
+    flow
+        Rate in 1/s at which the hysteresis relaxes while it flows, for each m/s of the spring's velocity.
+    dense
+        Whether its rocking phase does not uncouple, so that its bounds are computed point by point.
+    """
+
+    modes: int
+    rows: int
+    fastest: float
+    integrated: bool = False
+    flow: float = 0.0
+    dense: bool = False
+
+    def prices(self, *, history: bool) -> Array:
+        """Return what one sample, one look, one power series and one tried step take, in s, as `Log.work` has them."""
+        pairs, rows = self.modes + 1, self.rows
+        both = rows * pairs
+        sample = 0.04 + 0.01 * pairs + 0.0005 * both
+        if history:
+            sample += 0.02 + 0.002 * pairs**2
+        look = 0.05 + 0.08 * rows + 0.0015 * both
+        series = 0.5 + 0.15 * rows + 0.003 * both
+        step = 1.1 + 0.12 * self.modes + 0.02 * rows
+        return MICRO * np.array([sample, look, series, step])
+
+    def work(self, samples: float, dt: float, velocity: float = 0.0, *, history: bool) -> Work:
+        """Estimate the work of a run over `samples` steps of `dt` s, rocking all along.
+
+        `velocity` is the mean speed of the ground in m/s, which matters where a spring yields.
+        """
+        sample, look, _, step = self.prices(history=history).tolist()
+        turned = self.fastest * dt
+        if self.integrated:
+            flowing = step * velocity * self.flow * dt / RELAXING if self.flow else 0.0
+            return Work(samples * (sample + step), samples * step * turned / TURN, samples * flowing)
+        looks = look * LOOKS * max(turned - 1.0, 0.0)
+        return Work(samples * (sample + look * SEARCH), samples * looks + self._tables(turned))
+
+    def energy(self, samples: float, dt: float) -> float:
+        """Return about how much work the energies of a run are, after the run, in s."""
+        turned = self.fastest * dt
+        each = 1.5 + 0.5 * self.modes + turned * (3.5 + 0.4 * turned) * (1.0 + self.modes / 10.0)
+        return MICRO * samples * each
+
+    def _tables(self, turned: float) -> float:
+        """Work of the bounds of a phase that does not uncouple: one product of matrices a point of the finest grid."""
+        pairs = self.modes + 1
+        return MICRO * 2.0 * max(turned, 1.0) * (8.0 + 0.01 * self.rows * pairs**2) if self.dense else 0.0
+
+
+def pace_of(model: RockingModel, rows: int) -> Pace:
+    """Return the pace of a model of which the peaks of so many rows are wanted, the rotation included."""
+    linear = model if isinstance(model, LinearModel) else model.linear
+    known = Pace(model.properties.n_modes, rows, _fastest(linear), isinstance(model, NonlinearModel))
+    if isinstance(model, NonlinearModel) and model.bouc_wen is not None:
+        b = model.bouc_wen
+        # z' = (1 - (γ + β) |z|^n) D'/D_y relaxes at this rate about its limit (γ + β)^(-1/n).
+        flow = b.exponent * (b.gamma + b.beta) ** (1.0 / b.exponent) / b.yield_displacement
+        return replace(known, flow=flow)
+    return known
+
+
+def _fastest(model: LinearModel) -> float:
+    """Highest circular frequency of the undamped model, in contact or rocking."""
+    n = model.properties.n_modes
+    highest = float(model.properties.omega.max(initial=0.0))
+    if not model.lifts:
+        return highest
+    rows = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
+    places = [*range(n), 2 * n]
+    try:
+        squares = np.abs(np.linalg.eigvals(rows[:, places]))
+    except np.linalg.LinAlgError:  # numbers that are not finite: the inertia that is left to rotate is rounding
+        return math.inf
+    return max(highest, math.sqrt(float(squares.max())))

@@ -1,0 +1,149 @@
+"""What is asked of a run, whether it is too much, and what is said where it is."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._errors import InputError
+from rockflex.models import NonlinearModel, RockingModel
+from rockflex.solve._pace import Pace, Work, pace_of
+from rockflex.solve.exact.history import HEADER
+
+__all__ = ["Task", "WorkLimitError"]
+
+HISTORY = 4e9  # bytes
+SWIFT = 10.0  # rad in a time step, from which on it matters whether the fastest vibration swings
+UNITS = (("years", 3.2e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 0.0))
+LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
+
+
+class WorkLimitError(InputError):
+    """A run that would take longer than it may, or whose history would not fit in memory."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run, as far as its work depends on it.
+
+    Attributes
+    ----------
+    model
+        The model.
+    pace
+        What its work grows with.
+    record
+        Samples of the ground acceleration in m/s², shape (n,).
+    dt
+        Their distance in s.
+    free_vibration
+        Seconds after the record; None until settled.
+    history
+        Whether every state is kept.
+    """
+
+    model: RockingModel
+    pace: Pace
+    record: NDArray[np.float64]
+    dt: float
+    free_vibration: float | None = 0.0
+    history: bool = False
+
+    def work(self) -> Work:
+        """Estimate the work of the run; one that is to settle is taken to need the slowest period for it."""
+        speed = float(np.abs(np.cumsum(self.record)).mean()) * self.dt if self.pace.flow else 0.0
+        samples = self.record.size + self._free / self.dt
+        tables = self.pace.work(0.0, self.dt, history=self.history).vibration
+        found = replace(self.pace, fastest=self.fastest, dense=False).work(
+            samples, self.dt, speed, history=self.history
+        )
+        return replace(found, vibration=found.vibration + tables)
+
+    @property
+    def fastest(self) -> float:
+        """Circular frequency in rad/s of the fastest vibration that swings.
+
+        On a very narrow base the fastest root is that of a motion damped far beyond swinging, which is no work.
+        """
+        known = self.pace.fastest
+        if self.pace.integrated or known * self.dt < SWIFT:
+            return known
+        return min(known, pace_of(self.model, self.pace.rows).fastest)
+
+    def check(self, limit: float | None) -> None:
+        """Raise `WorkLimitError` if the run is about more work than `limit` s (None: any), or its history too large."""
+        if limit is not None:
+            work = self.work()
+            if work.total > limit:
+                message = (
+                    f"{self.model.label} would take about {_lasting(work.total)} of computing, but work_limit is "
+                    f"{limit:g} s: {self.reason(work)} {LIFT}"
+                )
+                raise WorkLimitError(message)
+        if self.history:
+            self.check_room(self.record.size + (0.0 if self.free_vibration is None else self.free_vibration / self.dt))
+
+    def check_room(self, nodes: float) -> None:
+        """Raise `WorkLimitError` if a history of so many nodes takes too much memory."""
+        size = 8.0 * nodes * (HEADER + 2 * self.model.properties.n_modes + 2)
+        if size > HISTORY:
+            message = (
+                f"The history of {self.model.label} would have {nodes:.3g} states and take {size / 1e9:.3g} GB, but "
+                f'{HISTORY / 1e9:g} GB is the most. Give output="peaks", less free_vibration, or a longer time step.'
+            )
+            raise WorkLimitError(message)
+
+    def stopped(self, time: float, limit: float | None) -> tuple[str, str]:
+        """What is said of a run that has done all the work that it may, at `time`, and how to mend it."""
+        end = self.record.size * self.dt + (self.free_vibration or 0.0)
+        aim = "until it settles" if self.free_vibration is None else f"to {end:.6g} s"
+        what = (
+            f"{self.model.label} was stopped at {time:.6g} s of a run {aim}: work_limit = {limit:g} s of computing is "
+            "used up."
+        )
+        return what, f"What makes it long: {self.reason(self.work())} {LIFT}"
+
+    def reason(self, work: Work) -> str:
+        """Say what makes the run long, and how to make it shorter."""
+        spring = self.model.bouc_wen if isinstance(self.model, NonlinearModel) else None
+        if spring is not None and work.yielding > max(work.vibration, work.samples):
+            return (
+                f"its spring, with yield_displacement = {spring.yield_displacement:g} m, yields over and over in every "
+                "time step under so strong a motion. Give a weaker motion (scale), or a larger yield_displacement."
+            )
+        if work.vibration > work.samples:
+            fastest = self.fastest
+            return (
+                f"its fastest vibration, {fastest:.3g} rad/s, turns by {fastest * self.dt:.3g} rad in every time step "
+                f"of {self.dt:g} s. Give fewer modes, a longer period, or a wider base (half_width, or aspect_ratio): "
+                "the narrower the base, the faster it vibrates while it rocks."
+            )
+        if self._free > self.record.size * self.dt:
+            asked = f"free_vibration = {self.free_vibration:g} s" if self.free_vibration is not None else (
+                f'free_vibration="settle", with a slowest period of {self._free:.3g} s,'
+            )  # fmt: skip
+            return (
+                f"{asked} is {self._free / self.dt:.3g} time steps of {self.dt:g} s. Give less free_vibration, or a "
+                "motion with a longer time step."
+            )
+        return (
+            f"the motion has {self.record.size} samples. Give a shorter motion, or one with a longer time step, or a "
+            "model with fewer modes."
+        )
+
+    @property
+    def _free(self) -> float:
+        """Seconds of free vibration that are counted on."""
+        if self.free_vibration is not None:
+            return self.free_vibration
+        slowest = float(self.model.properties.omega.min(initial=math.inf))
+        return 2.0 * math.pi / slowest
+
+
+def _lasting(seconds: float) -> str:
+    """Seconds, in a unit that suits them."""
+    if not math.isfinite(seconds):
+        return "endless time"
+    unit, size = next(each for each in UNITS if seconds >= 2.0 * each[1])
+    return f"{seconds / (size or 1.0):.2g} {unit}"
