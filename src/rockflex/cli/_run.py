@@ -48,7 +48,8 @@ def run(
             metavar="LABEL",
             help="Several by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, MDOF-C, "
             "3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; base held: fixed, 5DOF-fixed; one mode that "
-            "yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW. Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
+            "yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of modes left out in V_b and M_b: 2DOF-S-R, "
+            "5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
             "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation those of them that rock.",
             show_default=False,
         ),
@@ -107,7 +108,7 @@ def run(
     from rockflex.cli._motions import find_motions, quiet_ground
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._run_output import UNITS, write_runs
-    from rockflex.cli._run_tables import print_failures, print_runs
+    from rockflex.cli._run_tables import print_failures, print_runs, print_warnings
     from rockflex.cli._simulations import Plan, perform, warm_up
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
@@ -158,7 +159,7 @@ def run(
         "options": plan.describe(),
         "units": UNITS,
         "elapsed": elapsed,
-        "runs": [{**item.row(), "run_time": item.run_time} for item in runs],
+        "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
         write_runs(out, document, plan, runs, force=force)
@@ -166,5 +167,6 @@ def run(
         typer.echo(to_json(document))
     else:
         print_runs(loaded.title, plan, runs, elapsed, times=times)
+    print_warnings(runs)
     if print_failures(runs) and strict:
         raise typer.Exit(1)
