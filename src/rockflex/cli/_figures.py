@@ -83,6 +83,8 @@ def _figures(study: str, spec: dict[str, Any], table: "pd.DataFrame", measure: s
         yield "fragility", plot.plot_fragility(table, measure)
         yield "rotation", plot.plot_clouds(table, "max_rotation", measure)
         yield "top_displacement", plot.plot_clouds(table, "max_top_displacement", measure)
+        if table["max_total_top_displacement"].notna().any():
+            yield "total_top_displacement", plot.plot_clouds(table, "max_total_top_displacement", measure)
     elif study == "incremental":
         yield "capacities", plot.plot_ida(table, measure)
     elif study == "stripes":

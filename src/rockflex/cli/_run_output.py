@@ -1,5 +1,6 @@
 """What ``rockflex run --out`` writes."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -89,4 +90,6 @@ def _series(plan: Plan, responses: Sequence[Response]) -> "Iterator[pd.DataFrame
     if plan.friction is not None:
         names.append("friction_demand")
     for response in responses:
-        yield pd.DataFrame({"model": response.model, **{name: getattr(response, name) for name in names}})
+        # Where the height of the top is not known, its total displacement is missing.
+        values = {name: getattr(response, name, math.nan) for name in names}
+        yield pd.DataFrame({"model": response.model, **values})

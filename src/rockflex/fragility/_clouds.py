@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rockflex._errors import InputError
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
@@ -11,6 +14,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["CloudFits", "fit_clouds"]
+
+DISPLACEMENTS = ("max_top_displacement", "max_total_top_displacement")
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +31,11 @@ class CloudFits:
     outcomes : OutcomeFragility
         No rocking, rocking and overturning, and the rotations of the runs that rocked and stand.
     top_displacement : CloudFit or None
-        log u_top,max on log IM of the same runs, as in Figure 7. None where these cannot be fitted.
+        log u_top,max, relative to the base, on log IM of the same runs, as in Figure 7. None where these cannot be
+        fitted.
+    total_top_displacement : CloudFit or None
+        The same of the largest displacement of the top relative to the ground. None also where the height of the top
+        is not known.
     n_failed : int
         Runs that could not be solved, which are in no fit.
     """
@@ -36,6 +45,7 @@ class CloudFits:
     measure: str
     outcomes: OutcomeFragility
     top_displacement: CloudFit | None
+    total_top_displacement: CloudFit | None
     n_failed: int
 
 
@@ -60,7 +70,7 @@ def fit_clouds(
     InputError
         If `runs` lacks a column, a structure has no solved run with a model, or its measures are not positive.
     """
-    needed = ["structure", "model", "status", "max_rotation", "max_top_displacement", "nominal_overturning", measure]
+    needed = ["structure", "model", "status", "max_rotation", *DISPLACEMENTS, "nominal_overturning", measure]
     lacking = [name for name in needed if name not in runs]
     if lacking:
         message = f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}."
@@ -72,15 +82,18 @@ def fit_clouds(
             message = f"No run of {structure!r} with {model} was solved. See the column error of the table."
             raise InputError(message)
         fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
-        im, rotation, top = (
-            solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation", "max_top_displacement")
-        )
+        im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
         rocked = ~fallen & (rotation > threshold)
         outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)
-        try:
-            displacement = fit_cloud(im[rocked], top[rocked])
-        except InputError:
-            displacement = None
+        lines = [_line(im[rocked], solved[name].to_numpy(dtype=float)[rocked]) for name in DISPLACEMENTS]
         failed = len(group) - len(solved)
-        found.append(CloudFits(str(structure), str(model), measure, outcomes, displacement, failed))
+        found.append(CloudFits(str(structure), str(model), measure, outcomes, *lines, failed))
     return found
+
+
+def _line(im: NDArray[np.float64], values: NDArray[np.float64]) -> CloudFit | None:
+    """The fit, or None where there is none."""
+    try:
+        return fit_cloud(im, values)
+    except InputError:
+        return None
