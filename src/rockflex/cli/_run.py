@@ -127,7 +127,7 @@ def run(
     assumptions = make_assumptions(file, loaded.assumed, flags, initial_rotation)
     by_flag = any(value is not None for value in hysteresis.values())
     models = choose_models(model, loaded.properties, assumptions, by_flag=by_flag)
-    if assumptions.bouc_wen is not None and not any(label.endswith("-BW") for label in models):
+    if assumptions.bouc_wen is not None and not any("-BW" in label for label in models):
         note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was asked for")
     free = parse_free_vibration(free_vibration, models)
     names += motion or []
