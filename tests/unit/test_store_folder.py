@@ -231,9 +231,21 @@ def test_changed_files_are_seen(done: Path) -> None:
         manifest.write_text(content)
         with pytest.raises(InputError, match=r"damaged \(.*Restore both from a copy"):
             StudyFolder.load(done)
-    manifest.write_text(kept[1].replace("study-1", "study-9"))
+    manifest.write_text(kept[1].replace("study-2", "study-9"))
     with pytest.raises(InputError, match=r"has the format 'rockflex-study-9', but .* reads 'rockflex-study-2'"):
         opened(str(done), PLAN)
+    # A folder from before the runs had total displacements: refused whole, and nothing of it is touched.
+    manifest.write_text(kept[1].replace("study-2", "study-1"))
+    before = {path: path.read_bytes() for path in (done / "parts").iterdir()}
+    for attempt in (StudyFolder.load, lambda path: opened(str(path), PLAN)):
+        with pytest.raises(InputError) as refused:
+            attempt(done)
+        assert str(refused.value) == (
+            f"{manifest} has the format 'rockflex-study-1', but this version of rockflex reads 'rockflex-study-2'. Use "
+            "the version that wrote it, or run the study again in another folder; the results in "
+            f"{done / 'parts'} can still be read as Parquet."
+        )
+    assert {path: path.read_bytes() for path in (done / "parts").iterdir()} == before
     manifest.write_text(kept[1])
     (done / "parts" / "part-00004.parquet").write_bytes(b"")
     for attempt in (StudyFolder.load, lambda path: opened(str(path), PLAN)):

@@ -15,9 +15,9 @@ __all__ = ["print_failures", "print_runs", "print_warnings"]
 
 MAX_LISTED = 5
 LEGEND = (
-    "u_top: relative to the base, which turns; in total: relative to the ground, what the rotation adds included\n"
-    "V_b, M_b: of the elastic forces; ΣF_x: what the ground must hold across, the base's mass and damping included; "
-    "N_min: least vertical force between base and ground"
+    "u_top: relative to the base, which turns; total: relative to the ground\n"
+    "V_b, M_b: of the elastic forces; ΣF_x: what the ground must hold across, with\n"
+    "the base's mass and the damping; N_min: least force between base and ground"
 )
 NOMINAL = "† θ passed 0.7 atan(B/h*_1), the nominal limit of overturning"
 FRICTION = (

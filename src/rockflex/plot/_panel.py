@@ -36,9 +36,7 @@ class Quantity:
 _QUANTITIES = (
     Quantity("θ", "rotation", "rad", False, lambda h: h.rotation),
     Quantity(r"$u_{\mathrm{top}}$, relative", "top_displacement", "m", False, lambda h: h.top_displacement),
-    Quantity(
-        r"$u_{\mathrm{top}}$, total", "total_top_displacement", "m", False, lambda h: h.total_top_displacement
-    ),
+    Quantity(r"$u_{\mathrm{top}}$, total", "total_top_displacement", "m", False, lambda h: h.total_top_displacement),
     Quantity(r"$M_b$", "base_moment", "N m", True, lambda h: h.base_moment),
     Quantity(r"$V_b$", "base_shear", "N", True, lambda h: h.base_shear),
     Quantity(r"$ΣF_x$", "horizontal_reaction", "N", True, lambda h: h.horizontal_reaction),
