@@ -46,6 +46,10 @@ def test_the_numbers_are_the_librarys(client) -> None:
         assert np.interp(time, response.time, response.top_displacement) == pytest.approx(
             unpack(shown["top_displacement"]), abs=2e-3 * response.max_top_displacement
         )
+        assert np.abs(unpack(shown["total_top_displacement"])).max() == np.float32(
+            np.abs(response.total_top_displacement).max()
+        )
+        assert shown["warnings"] == list(response.warnings)
         assert np.abs(rotation).max() == np.float32(np.abs(response.rotation).max())
         assert shown["impact_times"] == response.impact_times[:600].tolist()
         floors = FRAME.rocking().floors

@@ -85,9 +85,9 @@ def fit_clouds(
         im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
         rocked = ~fallen & (rotation > threshold)
         outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)
-        lines = [_line(im[rocked], solved[name].to_numpy(dtype=float)[rocked]) for name in DISPLACEMENTS]
+        relative, total = (_line(im[rocked], solved[name].to_numpy(dtype=float)[rocked]) for name in DISPLACEMENTS)
         failed = len(group) - len(solved)
-        found.append(CloudFits(str(structure), str(model), measure, outcomes, *lines, failed))
+        found.append(CloudFits(str(structure), str(model), measure, outcomes, relative, total, failed))
     return found
 
 
