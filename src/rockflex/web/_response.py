@@ -23,7 +23,7 @@ __all__ = ["check_energy", "response_view", "responses"]
 
 Array = NDArray[np.float64]
 
-POINTS = 1600  # of a history, events aside
+POINTS = 2000  # of a history, events aside
 EVENTS = 600  # nodes of events kept, at most
 LEDGER = 1e7  # work of the energies, see `Pace`: about a second
 
