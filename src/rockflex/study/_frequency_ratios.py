@@ -111,6 +111,6 @@ def on_base(properties: RockingProperties, half_width: float, added_mass: float 
         If a tendon does not stand within the base, or less mass is left than the modes have.
     """
     wider = properties.m_tot * (half_width**2 - properties.half_width**2) + added_mass * half_width**2
-    return replace(
-        properties, half_width=half_width, i_theta=properties.i_theta + wider, m_tot=properties.m_tot + added_mass
-    )
+    base_mass = None if properties.base_mass is None else properties.base_mass + added_mass
+    m_tot, i_theta = properties.m_tot + added_mass, properties.i_theta + wider
+    return replace(properties, half_width=half_width, i_theta=i_theta, m_tot=m_tot, base_mass=base_mass)
