@@ -20,17 +20,13 @@ if TYPE_CHECKING:
 __all__ = ["summarise"]
 
 Rows = list[dict[str, Any]]
-LEAST = "min_vertical_reaction"
 PEAK_VELOCITY, PEAK_ACCELERATION = "pgv", "pga"
-LIFTS = (
-    "{structure}, {model}: in {lifting} of {rocking} runs that rock and stand the model pulls the base down "
-    "(min_vertical_reaction below zero), which no ground can: the pivot would lift. Read what follows in such a run "
-    "with care."
-)
 
 
 def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bool) -> int:
     """Print what a study found; return how many runs could not be solved."""
+    from rockflex.study.plans import pivot_lifts
+
     findings: dict[str, Callable[[Any, pd.DataFrame], Iterator[tuple[str, Rows]]]] = {
         "cloud": _cloud,
         "incremental": _incremental,
@@ -39,17 +35,17 @@ def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bo
         "design": _design,
     }
     tables = dict(findings[study.study](study, table))
-    lifts = _pivot_lifts(table)
+    lifts = pivot_lifts(table)
     failed = int(table["error"].notna().sum())
     document = {"versions": versions(), "study": study.document(), "rows": len(table), "failed": failed}
-    document |= {"elapsed": seconds, "pivot_lifts": lifts, **tables}
+    document |= {"elapsed": seconds, "pivot_lifts": [each._asdict() for each in lifts], **tables}
     if json:
         typer.echo(to_json(document))
     else:
         _print(tables)
         for each in lifts:
-            if each["lifting"]:
-                typer.echo("\n" + LIFTS.format(**each))
+            if each.lifting:
+                typer.echo(f"\n{each}")
         typer.echo(f"\n{len(table)} rows in {duration(seconds)}")
     if failed:
         first = table.loc[table["error"].notna(), "error"].iloc[0]
@@ -109,31 +105,6 @@ def _cloud(_: "Study", runs: "pd.DataFrame") -> Iterator[tuple[str, Rows]]:
         ]
     yield "Outcomes, and P(θ_max > 1e-4 rad) by logistic regression on log PGV", _words_first(outcomes)
     yield "log y = c1 + c2 log PGV of runs that rocked and stand (rad, m, m/s)", lines
-
-
-def _pivot_lifts(table: "pd.DataFrame") -> Rows:
-    """Of each structure and model, how many runs rock and stand, and in how many of them the pivot would lift."""
-    import pandas as pd
-
-    if "status" in table:
-        runs = table
-        keys = [name for name in ("structure", "tendon", "model") if name in table]
-    else:  # one row a pair of runs
-        parts = [
-            pd.DataFrame({"model": model, "status": table[f"status_{key}"], LEAST: table[f"{LEAST}_{key}"]})
-            for key, model in (("mdof", "MDOF-S"), ("2dof", "2DOF-S"))
-        ]
-        runs, keys = pd.concat(parts), ["model"]
-    standing = runs[runs["status"] == "rocking"]
-    return [
-        {
-            "structure": ", ".join(map(str, key[:-1])) or "Population",
-            "model": str(key[-1]),
-            "rocking": len(each),
-            "lifting": int((each[LEAST] < 0.0).sum()),
-        }
-        for key, each in standing.groupby(keys, observed=True, sort=False)
-    ]
 
 
 def _line(fit: "CloudFit | None") -> dict[str, Any]:
