@@ -89,7 +89,7 @@ export function words(view) {
     if (p.nominal_overturning) text += " That is past the nominal limit 0.7 atan(B/h*₁), though it did not fall.";
     if (p.max_total_top_displacement !== null) {
       text += ` The top moves by up to ${number(p.max_total_top_displacement, 3)} m relative to the ground`;
-      text += fixed ? `, ${named(fixed)} by ${number(fixed.peaks.max_total_top_displacement, 3)} m.` : ".";
+      text += fixed ? `; that of ${named(fixed)} by ${number(fixed.peaks.max_total_top_displacement, 3)} m.` : ".";
     }
     if (fixed && fixed.peaks.max_base_moment > 0) {
       const change = 100 * (p.max_base_moment / fixed.peaks.max_base_moment - 1);

@@ -14,12 +14,13 @@ import { bracket } from "../stage.js";
 
 const PANELS = [
   ["rotation", "θ [mrad]", 1000, "Rotation"],
-  ["displacement", "u_top [m]", 1, "Displacement of the top"],
+  ["displacement", "", 1, "Displacement of the top"],
   ["base_moment", "M_b [kN m]", 1e-3, "Base moment"],
   ["base_shear", "V_b [kN]", 1e-3, "Base shear"],
 ];
 const DISPLACEMENTS = [
-  ["total_top_displacement", "relative to the ground"], ["top_displacement", "relative to the base, which turns"],
+  ["total_top_displacement", "relative to the ground", "u_top total [m]"],
+  ["top_displacement", "relative to the base, which turns", "u_top relative [m]"],
 ];
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear"];
 const FILES = [
@@ -108,6 +109,8 @@ export default function responseTab(app) {
     seen.hidden = !known;
     const key = known ? seen.querySelector("select").value : "top_displacement";
     for (const m of answer.models) m.scaled.displacement = m.scaled[key];
+    const [, chart] = panels.find(([name]) => name === "displacement");
+    chart.options.yLabel = DISPLACEMENTS.find(([name]) => name === key)[2];
   }
 
   // The charts follow the time of the animation.
