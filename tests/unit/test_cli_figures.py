@@ -15,7 +15,10 @@ frame = {n_stories = 5, story_height = 3.0, story_mass = 40e3, base_mass = 40e3,
 """.replace(",\n        ", ",")
 RECORDS = 'records = {suites = ["fema-p695-far-field"], include = ["FF-1*"]}\n'
 STUDIES = {
-    "cloud": ("scales = [0.2, 1.0]\n" + RECORDS + FRAME, ["fragility", "rotation", "top_displacement"]),
+    "cloud": (
+        "scales = [0.2, 1.0]\n" + RECORDS + FRAME,
+        ["fragility", "rotation", "top_displacement", "total_top_displacement"],
+    ),
     "incremental": ('models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n' + RECORDS + FRAME, ["capacities"]),
     "stripes": ('levels = [0.5, 1.0, 2.0]\nmeasure = "pgv"\n' + RECORDS + FRAME, ["stripes"]),
     "population": ("pairs = 12\n" + RECORDS, ["agreement", "modal_combination", "population"]),

@@ -124,10 +124,17 @@ def test_file_with_units_and_step(tmp_path):
 def test_table_on_a_wide_terminal():
     lines = invoke(STRUCTURE, "el-centro-1940", "--model", "MDOF-S").stdout.splitlines()
     assert lines[0] == "Structure 1 of Table 1: 5 modes, T_1 = 1 s, h*_1/B = 10, ζ_1 = 0.02"
-    assert lines[2].split() == ["θ_max", "u_top", "M_b", "V_b", "time"]
-    assert lines[3].split() == ["motion", "model", "status", "[rad]", "[m]", "[kN", "m]", "[kN]", "impacts", "[ms]"]
-    peaks = ["0.01648", "0.05371", "3141", "502.1", "25"]
-    assert lines[5].split()[:8] == ["EL-CENTRO-1940-NS", "MDOF-S", "rocking", *peaks]
+    assert lines[2].split() == ["u_top", "u_top"]
+    assert lines[3].split() == ["θ_max", "relative", "total", "M_b", "V_b", "time", "ΣF_x", "N_min"]
+    units = ["[rad]", "[m]", "[m]", "[kN", "m]", "[kN]", "impacts", "[ms]", "[kN]", "[kN]"]
+    assert lines[4].split() == ["motion", "model", "status", *units]
+    response = rf.simulate(FRAME, EL_CENTRO, "MDOF-S", output="peaks")
+    row = lines[6].split()
+    peaks = ["0.01648", "0.05371", f"{response.max_total_top_displacement:.4f}", "3141", "502.1", "25"]
+    assert row[:9] == ["EL-CENTRO-1940-NS", "MDOF-S", "rocking", *peaks]
+    ground = (response.max_horizontal_reaction, response.min_vertical_reaction)
+    assert list(map(float, row[10:])) == pytest.approx([each / 1e3 for each in ground], rel=1e-3)
+    assert "u_top: relative to the base, which turns; total: relative to the ground" in lines
 
 
 def test_chimney_in_larger_units_reproduces_section_4_1_1():
@@ -137,7 +144,7 @@ def test_chimney_in_larger_units_reproduces_section_4_1_1():
     rows = [line.split() for line in result.stdout.splitlines() if line.startswith("EL-CENTRO")]
     assert "[MN m]" in result.stdout
     assert rows[0][4] == "0.003152"
-    assert 1.0 - float(rows[0][6]) / float(rows[1][7]) == pytest.approx(0.44, abs=0.005)
+    assert 1.0 - float(rows[0][7]) / float(rows[1][8]) == pytest.approx(0.44, abs=0.005)
 
 
 def test_narrow_terminal_gets_a_table_a_motion_and_nothing_is_cut():
@@ -156,8 +163,9 @@ def test_times_are_those_of_the_peaks():
     response = rf.simulate(FRAME, EL_CENTRO, "MDOF-S", output="peaks")
     result = invoke(STRUCTURE, "el-centro-1940", "--model", "MDOF-S", "--times")
     last = [line for line in result.stdout.splitlines() if line.startswith("EL-CENTRO")][-1].split()
-    names = ("rotation", "top_displacement", "base_moment", "base_shear")
-    times = [getattr(response, f"time_of_max_{name}") for name in names]
+    names = ("rotation", "top_displacement", "total_top_displacement", "base_moment", "base_shear")
+    times = [getattr(response, f"time_of_max_{name}") for name in (*names, "horizontal_reaction")]
+    times.append(response.time_of_min_vertical_reaction)
     assert list(map(float, last[2:])) == pytest.approx([*times, response.end_time], abs=1e-3)
 
 
@@ -182,10 +190,65 @@ def test_folder_of_results(tmp_path):
     response = rf.simulate(FRAME, FF["FF-2-a"].scaled(2.0), "2DOF-S")
     with (folder / names[2]).open(newline="") as file:
         history = [row for row in csv.DictReader(file) if row["model"] == "2DOF-S"]
-    for name in ("time", "rotation", "top_displacement", "base_moment", "base_shear", "ground_acceleration"):
+    names_of = ("time", "rotation", "top_displacement", "total_top_displacement", "base_moment", "base_shear")
+    for name in (*names_of, "ground_acceleration", "horizontal_reaction", "vertical_reaction"):
         np.testing.assert_array_equal([float(row[name]) for row in history], getattr(response, name))
     for name in (names[1], names[3]):
         assert (folder / name).read_bytes().startswith(b"\x89PNG")
+
+
+SLENDER = [*FLAGS[:-8], "--stiffness-ratio", "0", "--period", "0.5", "--aspect-ratio", "10", "--damping-ratio", "0.02"]
+
+
+def test_a_base_that_is_pulled_down_is_told_in_words():
+    frame = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 0.5, 10.0, 0.02)
+    response = rf.simulate(frame, FF["FF-1-a"].scaled(2.0), "MDOF-S", output="peaks")
+    assert response.min_vertical_reaction < 0.0
+    arguments = (*SLENDER, "fema-p695-far-field/FF-1-a", "--scale", 2, "--model", "MDOF-S,fixed")
+    (warning,) = response.warnings
+    assert warning == (
+        f"The vertical reaction falls to {response.min_vertical_reaction:.4g} N at "
+        f"{response.time_of_min_vertical_reaction:.4g} s: MDOF-S pulls the base down there, which no ground can. The "
+        "pivot would lift, and what follows is to be read with care."
+    )
+    assert invoke(*arguments).stderr == f"Warning: FF-1-a × 2: {warning}\n"
+    assert [row["warnings"] for row in document(*arguments)["runs"]] == [[warning], []]
+
+
+def test_a_long_list_of_warnings_is_cut():
+    scales = [item for k in range(7) for item in ("--scale", 2 + k / 100)]
+    said = invoke(*SLENDER, "fema-p695-far-field/FF-1-a", *scales, "--model", "MDOF-S").stderr
+    assert said.count("Warning: FF-1-a × 2") == 5
+    assert said.endswith("and 2 more warnings; --json holds them all\n")
+
+
+def test_a_tendon_beyond_its_yield_force_is_told_in_words():
+    arguments = (EXAMPLES / "restrained_pier.toml", "el-centro-1940", "--scale", 3, "--model", "MDOF-S")
+    row = document(*arguments)["runs"][0]
+    assert row["tendon_utilisation"] > 1.0
+    assert (
+        f"Warning: EL-CENTRO-1940-NS × 3: A tendon carries {row['tendon_utilisation']:.4g} times its yield force. "
+        "Tendons stay elastic in the model, so the run is not to be used."
+    ) in invoke(*arguments).stderr
+
+
+def test_unknown_height_of_the_top_leaves_its_total_displacement_out(tmp_path):
+    content = (EXAMPLES / "structure_properties.toml").read_text("utf-8")
+    file = tmp_path / "structure.toml"
+    file.write_text("".join(line for line in content.splitlines(True) if not line.startswith("top_height")), "utf-8")
+    result = invoke(file, "el-centro-1940", "--model", "2DOF-S", "--out", tmp_path / "out", "--json")
+    assert result.exit_code == 0, result.stderr
+    assert json.loads(result.stdout)["runs"][0]["max_total_top_displacement"] is None
+    with (tmp_path / "out" / "history-EL-CENTRO-1940-NS.csv").open(newline="") as table:
+        assert {row["total_top_displacement"] for row in csv.DictReader(table)} == {""}
+
+
+def test_a_model_with_the_mass_left_out_moves_as_the_one_without():
+    plain, corrected = document(STRUCTURE, "el-centro-1940", "--model", "2DOF-S,2DOF-S-R")["runs"]
+    assert (plain["model"], corrected["model"]) == ("2DOF-S", "2DOF-S-R")
+    for name in ("max_rotation", "max_total_top_displacement", "max_horizontal_reaction", "n_impacts"):
+        assert corrected[name] == plain[name]
+    assert corrected["max_base_shear"] != plain["max_base_shear"]
 
 
 def test_no_histories_beyond_the_limit(tmp_path):
@@ -242,7 +305,7 @@ def test_failed_runs_are_told_and_the_others_go_on(monkeypatch, more, code):
     assert "1 of 3 runs could not be solved:" in result.stderr
     assert "MDOF-S under EL-CENTRO-1940-NS × 1: The motion is not finite at 1 s." in result.stderr
     row = next(line.split() for line in result.stdout.splitlines() if "MDOF-S" in line)
-    assert row[2:] == ["failed", *"------"]
+    assert row[2:] == ["failed", *"---------"]
     assert "fixed" in result.stdout
 
 
@@ -318,7 +381,7 @@ def test_bad_usage():
 
 def test_units_cover_every_number_of_a_run():
     dimensionless = {"scale", "n_uplifts", "n_impacts", "tendon_utilisation"}
-    named = {name.replace("time_of_max_*", "time_of_max_") for name in _run_output.UNITS}
+    named = {name.removesuffix("*") for name in _run_output.UNITS}
     row = document(STRUCTURE, "el-centro-1940", "--model", "fixed")["runs"][0]
     for name, value in row.items():
         if isinstance(value, int | float) and not isinstance(value, bool) and name not in dimensionless:

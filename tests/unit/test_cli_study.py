@@ -77,10 +77,46 @@ def test_numbers_are_those_of_the_library(study):
     assert document["study"]["scales"] == [0.5, 1.0, 2.0]
     fits = rf.fit_clouds(rf.run_study(file))
     (outcomes, lines) = (document[key] for key in document if key.startswith(("Outcomes", "log y")))
-    for fit, row, line in zip(fits, outcomes, lines, strict=True):
+    for k, (fit, row) in enumerate(zip(fits, outcomes, strict=True)):
         assert (row["model"], row["overturned"]) == (fit.model, fit.outcomes.n_overturned)
-        assert line["θ_max c2"] == fit.outcomes.rotation.c2
-        assert line["u_top c1"] == fit.top_displacement.c1
+        rotation, relative, total = lines[3 * k : 3 * k + 3]
+        assert rotation["c2"] == fit.outcomes.rotation.c2
+        assert (relative["y"], relative["c1"]) == ("u_top relative to the base", fit.top_displacement.c1)
+        assert (total["y"], total["c1"]) == ("u_top in total", fit.total_top_displacement.c1)
+
+
+SLENDER = FRAME.replace("stories = 2", "stories = 5").replace("ratio = inf", "ratio = 0.0").replace("8.0", "10.0")
+
+
+def test_runs_in_which_the_pivot_would_lift_are_counted_in_words(study, monkeypatch):
+    monkeypatch.setattr("test_cli_study.FRAME", SLENDER)
+    file = study("cloud", 'models = ["MDOF-S", "2DOF-S"]\nscales = [2.0]\n')
+    runs = rf.run_study(file)
+    document = json.loads(invoke("cloud", file, "--json").stdout)
+    told = invoke("cloud", file).stdout
+    assert len(document["pivot_lifts"]) == 2
+    for each in document["pivot_lifts"]:
+        mine = runs[(runs["model"] == each["model"]) & (runs["status"] == "rocking")]
+        below = int((mine["min_vertical_reaction"] < 0.0).sum())
+        assert (each["structure"], each["rocking"], each["lifting"]) == ("S", len(mine), below)
+        sentence = (
+            f"S, {each['model']}: in {below} of {len(mine)} runs that rock and stand the model pulls the base down "
+            "(min_vertical_reaction below zero), which no ground can: the pivot would lift. Read what follows in such "
+            "a run with care."
+        )
+        assert (sentence in told) == (below > 0)
+    assert any(each["lifting"] for each in document["pivot_lifts"])
+
+
+def test_pairs_of_a_population_are_counted_by_model(study):
+    file = study("population")
+    pairs = rf.run_study(file)
+    found = json.loads(invoke("population", file, "--json").stdout)["pivot_lifts"]
+    assert [(each["structure"], each["model"]) for each in found] == [("Population", m) for m in ("MDOF-S", "2DOF-S")]
+    for each, key in zip(found, ("mdof", "2dof"), strict=True):
+        rocking = pairs[f"status_{key}"] == "rocking"
+        assert each["rocking"] == rocking.sum()
+        assert each["lifting"] == (pairs.loc[rocking, f"min_vertical_reaction_{key}"] < 0.0).sum()
 
 
 def test_a_dry_run_counts_and_runs_nothing(study, tmp_path):

@@ -44,16 +44,18 @@ def curve(axes, index):
     return [line for line in axes.get_lines() if not line.get_label().startswith("_")][index]
 
 
-def test_four_panels_hold_a_line_for_every_response(figure, four):
+def test_panels_hold_a_line_for_every_response(figure, four):
     assert [axes.get_ylabel() for axes in figure.axes] == [
         "θ [rad]",
-        r"$u_{\mathrm{top}}$ [m]",
+        r"$u_{\mathrm{top}}$, relative [m]",
+        r"$u_{\mathrm{top}}$, total [m]",
         "$M_b$ [MN m]",
         "$V_b$ [MN]",
     ]
     values = (
         lambda r: r.rotation,
         lambda r: r.top_displacement,
+        lambda r: r.total_top_displacement,
         lambda r: r.base_moment / 1e6,
         lambda r: r.base_shear / 1e6,
     )
@@ -61,7 +63,7 @@ def test_four_panels_hold_a_line_for_every_response(figure, four):
         for i, response in enumerate(four):
             np.testing.assert_array_equal(curve(axes, i).get_xdata(), response.time)
             np.testing.assert_allclose(curve(axes, i).get_ydata(), of(response), rtol=1e-14)
-    assert [notes(axes)[0] for axes in figure.axes] == ["A", "B", "C", "D"]
+    assert [notes(axes)[0] for axes in figure.axes] == ["A", "B", "C", "D", "E"]
 
 
 def test_models_look_as_in_the_paper_and_the_legend_shows_those_looks(figure):
@@ -99,12 +101,18 @@ def test_bars_at_the_foot_are_the_uplifts_of_each_rocking_model(figure, four):
 
 def test_one_rocking_model_needs_no_bars(four):
     panels = plot_history(four[2:]).axes
-    assert [len(axes.collections) for axes in panels] == [1, 1, 1, 1]
+    assert [len(axes.collections) for axes in panels] == [1] * 5
 
 
 @pytest.mark.parametrize(
     ("panel", "name", "factor"),
-    [(0, "rotation", 1.0), (1, "top_displacement", 1.0), (2, "base_moment", 1e6), (3, "base_shear", 1e6)],
+    [
+        (0, "rotation", 1.0),
+        (1, "top_displacement", 1.0),
+        (2, "total_top_displacement", 1.0),
+        (3, "base_moment", 1e6),
+        (4, "base_shear", 1e6),
+    ],
 )
 def test_true_peaks_are_marked_written_and_within_the_axes(figure, four, panel, name, factor):
     axes = figure.axes[panel]
@@ -124,7 +132,7 @@ def test_true_peaks_are_marked_written_and_within_the_axes(figure, four, panel, 
         k = int(np.argmin(np.abs(response.time - when)))
         assert value == pytest.approx(getattr(response, name)[k] / factor, rel=0.1)
         assert any(text == f"{peak:.3g} at {when:.2f} s" for text in notes(axes))
-    assert figure.axes[3].get_xlim() == (0.0, four[0].end_time)
+    assert figure.axes[4].get_xlim() == (0.0, four[0].end_time)
 
 
 def test_nothing_outside_the_panels_touches_them_or_leaves_the_figure(four):
@@ -152,7 +160,7 @@ def test_a_run_without_uplift_says_so_and_keeps_an_open_axis():
     assert "no uplift" in notes(panels[0])
     assert panels[0].get_ylim() == (-1e-3, 1e-3)
     assert all(len(axes.collections) == 0 for axes in panels)
-    assert panels[3].get_ylabel() == "$V_b$ [kN]"
+    assert panels[4].get_ylabel() == "$V_b$ [kN]"
     assert "fixed base" in notes(plot_history(rf.simulate(FRAME, weak, "fixed")).axes[0])
 
 
@@ -171,7 +179,7 @@ def test_labels_and_titles(four):
 
 def test_takes_one_response_any_iterable_and_the_column_of_a_table(four):
     table = rf.simulate_many(FRAME, RECORD, ["2DOF-S", "fixed"], output="history")
-    assert len(plot_history(four[0]).axes) == 4
+    assert len(plot_history(four[0]).axes) == 5
     assert len(plot_history(iter(four)).legends[0].get_texts()) == 5
     assert len(plot_history(table["response"]).legends[0].get_texts()) == 3
 
@@ -233,7 +241,7 @@ def test_matplotlib_is_imported_late_and_pyplot_never():
 
 def test_panels_are_chosen_and_lettered_from_the_top(four):
     figure = plot_history(four, panels=("top_displacement", "rotation"), title="")
-    assert [axes.get_ylabel() for axes in figure.axes] == [r"$u_{\mathrm{top}}$ [m]", "θ [rad]"]
+    assert [axes.get_ylabel() for axes in figure.axes] == [r"$u_{\mathrm{top}}$, relative [m]", "θ [rad]"]
     assert [notes(axes)[0] for axes in figure.axes] == ["A", "B"]
     np.testing.assert_array_equal(curve(figure.axes[0], 2).get_ydata(), four[2].top_displacement)
     assert figure.axes[1].get_xlabel() == "time [s]"
@@ -243,13 +251,33 @@ def test_panels_are_chosen_and_lettered_from_the_top(four):
     assert alone.get_ylabel() == "$V_b$ [kN]"
 
 
+def test_what_the_ground_must_hold_is_a_panel_of_its_own(four):
+    (axes,) = plot_history(four[2], panels=["horizontal_reaction"]).axes
+    assert axes.get_ylabel() == "$ΣF_x$ [kN]"
+    np.testing.assert_allclose(curve(axes, 0).get_ydata(), four[2].horizontal_reaction / 1e3, rtol=1e-14)
+
+
+def test_without_a_known_height_there_is_no_panel_of_the_total_displacement():
+    p = FRAME.rocking(1)
+    names = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width")
+    bare = rf.RockingProperties(**{name: getattr(p, name) for name in names}, zeta=p.zeta)
+    response = rf.simulate(bare, RECORD, "2DOF-S")
+    assert math.isnan(response.max_total_top_displacement)
+    labels = [axes.get_ylabel() for axes in plot_history(response).axes]
+    assert labels == ["θ [rad]", r"$u_{\mathrm{top}}$, relative [m]", "$M_b$ [MN m]", "$V_b$ [kN]"]
+    with pytest.raises(
+        rf.InputError, match=r"^The height of the top is not known, so there is no total displacement\."
+    ):
+        plot_history(response, panels=["total_top_displacement"])
+
+
 @pytest.mark.parametrize("panels", [(), ("rotation", "rotation"), ("theta",)])
 def test_panels_that_are_none_are_named(four, panels):
     with pytest.raises(rf.InputError) as caught:
         plot_history(four, panels=panels)
     assert str(caught.value) == (
-        "panels must be one or more of rotation, top_displacement, base_moment, base_shear, each once, "
-        f"but {panels!r} was given."
+        "panels must be one or more of rotation, top_displacement, total_top_displacement, base_moment, base_shear, "
+        f"horizontal_reaction, each once, but {panels!r} was given."
     )
 
 

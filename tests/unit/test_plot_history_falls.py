@@ -38,7 +38,7 @@ def returned():
 def test_overturning_squashes_no_other_curve(fallen, returned):
     assert (fallen.status, returned.status) == ("overturned", "rocking")
     figure = plot_history([fallen, returned])
-    rotation, displacement, moment, _ = figure.axes
+    rotation, displacement, total, moment, _ = figure.axes
     high = rotation.get_ylim()[1]
     assert high == pytest.approx(1.12 * returned.max_rotation)
     (triangle,) = (line for line in rotation.get_lines() if line.get_marker() in "^v")
@@ -53,6 +53,7 @@ def test_overturning_squashes_no_other_curve(fallen, returned):
     before = fallen.time < np.min(fallen.time[np.abs(fallen.rotation) > BALANCE])
     for axes, values, factor, name in (
         (displacement, fallen.top_displacement, 1.0, "top_displacement"),
+        (total, fallen.total_top_displacement, 1.0, "total_top_displacement"),
         (moment, fallen.base_moment, 1e6, "base_moment"),
     ):
         largest = max(np.abs(values[before]).max(), getattr(returned, f"max_{name}")) / factor

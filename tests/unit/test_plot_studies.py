@@ -40,7 +40,8 @@ def renamed(table, column, count):
         ),
         (
             lambda cloud, *_: rf.plot_clouds(cloud, "max_base_shear"),
-            "quantity must be one of max_rotation, max_top_displacement, but 'max_base_shear' was given.",
+            "quantity must be one of max_rotation, max_top_displacement, max_total_top_displacement, but "
+            "'max_base_shear' was given.",
         ),
         (
             lambda cloud, *_: rf.plot_clouds(cloud, measure="pgw"),

@@ -32,7 +32,7 @@ def test_a_new_folder_says_what_it_is(tmp_path: Path) -> None:
         assert folder.missing() == [0, 1, 2, 3]
         assert not folder.finished
     manifest = json.loads((folder.path / "manifest.json").read_text())
-    assert manifest["format"] == "rockflex-study-1"
+    assert manifest["format"] == "rockflex-study-2"
     assert manifest["versions"] == VERSIONS
     assert manifest["checksums"] == {"record": "abc"}
     assert (manifest["seed"], manifest["n_chunks"]) == (7, 4)
@@ -227,13 +227,25 @@ def test_changed_files_are_seen(done: Path) -> None:
     with pytest.raises(InputError, match=r"spec.json beside it is damaged \(JSONDecodeError"):
         StudyFolder.load(done)
     spec.write_text(kept[0])
-    for content in ("", "[]", "{}", '{"format": "rockflex-study-1"}', kept[1][:50]):
+    for content in ("", "[]", "{}", '{"format": "rockflex-study-2"}', kept[1][:50]):
         manifest.write_text(content)
         with pytest.raises(InputError, match=r"damaged \(.*Restore both from a copy"):
             StudyFolder.load(done)
-    manifest.write_text(kept[1].replace("study-1", "study-9"))
-    with pytest.raises(InputError, match=r"has the format 'rockflex-study-9', but .* reads 'rockflex-study-1'"):
+    manifest.write_text(kept[1].replace("study-2", "study-9"))
+    with pytest.raises(InputError, match=r"has the format 'rockflex-study-9', but .* reads 'rockflex-study-2'"):
         opened(str(done), PLAN)
+    # A folder from before the runs had total displacements: refused whole, and nothing of it is touched.
+    manifest.write_text(kept[1].replace("study-2", "study-1"))
+    before = {path: path.read_bytes() for path in (done / "parts").iterdir()}
+    for attempt in (StudyFolder.load, lambda path: opened(str(path), PLAN)):
+        with pytest.raises(InputError) as refused:
+            attempt(done)
+        assert str(refused.value) == (
+            f"{manifest} has the format 'rockflex-study-1', but this version of rockflex reads 'rockflex-study-2'. Use "
+            "the version that wrote it, or run the study again in another folder; the results in "
+            f"{done / 'parts'} can still be read as Parquet."
+        )
+    assert {path: path.read_bytes() for path in (done / "parts").iterdir()} == before
     manifest.write_text(kept[1])
     (done / "parts" / "part-00004.parquet").write_bytes(b"")
     for attempt in (StudyFolder.load, lambda path: opened(str(path), PLAN)):

@@ -300,3 +300,41 @@ def test_ragged_shapes_are_told():
         InputError, match=r"shapes must be a sequence of numbers in any unit, but list whose rows differ"
     ):
         rf.from_modes([1.0], [[1.0], [1.0, 2.0]], [1.0], [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "its first line must name a matrix"),
+        ("%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 2.0 0.0\n", "its first line must name a matrix"),
+        ("%%MatrixMarket matrix coordinate real general\n1 1\n", "its second line must hold the numbers of rows"),
+        ("%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 2.0\n", r"it must hold 3 entries of three numbers"),
+        ("%%MatrixMarket matrix coordinate real general\n2 2 1\n3 1 2.0\n", "must stand in 2 rows and 2 columns"),
+        (
+            "%%MatrixMarket matrix array real symmetric\n2 2\n1\n2\n",
+            "it must hold 3 numbers of a matrix of 2 by 2, but",
+        ),
+        ("%%MatrixMarket matrix array real general\n1000000 1000000\n1\n", "it must hold 1000000000000 numbers"),
+    ],
+)
+def test_damaged_matrix_market(tmp_path, text, words):
+    (tmp_path / "k.mtx").write_text(text)
+    with pytest.raises(
+        InputError, match=rf"stiffness: .*k\.mtx does not hold a matrix of numbers that can be read: {words}"
+    ):
+        rf.from_matrices([1.0], tmp_path / "k.mtx", [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "%%MatrixMarket matrix coordinate real symmetric\n% a comment\n2 2 3\n1 1 3.0\n2 1 -1.0\n2 2 1.0\n",
+        "%%MatrixMarket matrix array integer symmetric\n2 2\n3\n-1\n1\n",
+        "%%MatrixMarket matrix array real general\n2 2\n3.0\n-1.0\n-1.0\n1.0\n",
+    ],
+)
+def test_forms_of_matrix_market(tmp_path, text):
+    (tmp_path / "k.mtx").write_text(text)
+    known = {"base_mass": 1.0, "half_width": 1.0, "damping_ratio": 0.02}
+    read = rf.from_matrices([1.0, 1.0], tmp_path / "k.mtx", [1.0, 2.0], **known)
+    assert read == rf.from_matrices([1.0, 1.0], [[3.0, -1.0], [-1.0, 1.0]], [1.0, 2.0], **known)

@@ -1,13 +1,20 @@
 """The Response tab in a real Chromium, used as a person would."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 
 import rockflex as rf
+from rockflex.web._presets import PRESETS
 
 pytestmark = pytest.mark.web
+
+PEAKS = (
+    "max_rotation", "max_top_displacement", "max_total_top_displacement", "max_base_moment", "max_base_shear",
+    "max_horizontal_reaction", "min_vertical_reaction",
+)  # fmt: skip
 
 
 def test_response_numbers_and_animation(visitor, frame, el_centro) -> None:
@@ -16,7 +23,7 @@ def test_response_numbers_and_animation(visitor, frame, el_centro) -> None:
     visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
     for model in ("MDOF-S", "2DOF-S", "fixed"):
         response = rf.simulate(frame, el_centro, model, free_vibration=5.0)
-        for name in ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear", "n_impacts"):
+        for name in (*PEAKS, "n_impacts"):
             assert visitor.peak(model, name) == getattr(response, name)
     response = rf.simulate(frame, el_centro, "MDOF-S", free_vibration=5.0)
     shapes = np.vstack((np.zeros(5), frame.rocking().floors.displacement))
@@ -38,6 +45,75 @@ def test_response_numbers_and_animation(visitor, frame, el_centro) -> None:
         y = heights * np.cos(turned) - dx * np.sin(turned)
         assert np.array(drawn[1]) == pytest.approx(np.column_stack((x, y)), abs=1e-4)
         assert min(drawn[2][0][1], drawn[2][1][1]) == pytest.approx(0.0, abs=1e-9)  # one edge stays on the ground
+
+
+def chosen(number: int, **more) -> dict:
+    """A state with one of the structures to begin with."""
+    structure = json.loads(json.dumps(PRESETS[number]["structure"]).replace("Infinity", '"inf"'))
+    return {"structure": structure, **more}
+
+
+def test_the_deck_of_a_pier_moves_as_far_as_it_does(visit, link) -> None:
+    """Relative to a base that turns, the deck moves a quarter of what it does; that is no reduction of anything."""
+    visitor = visit(link(chosen(7, scale=3.0)))
+    visitor.tab("response")
+    visitor.shown(3, ["MDOF-S", "2DOF-S", "fixed"])
+    pier = rf.CantileverWithTipMass(**PRESETS[7]["structure"]["cantilever"])
+    motion = rf.load_suite("el-centro-1940")[0].scaled(3.0)
+    response, fixed = (rf.simulate(pier, motion, model, free_vibration=5.0) for model in ("MDOF-S", "fixed"))
+    total = response.max_total_top_displacement
+    assert total > fixed.max_top_displacement > 3.0 * response.max_top_displacement
+    cell = '#peaks tr[data-model="MDOF-S"] [data-name="{}"]'
+    text = visitor.page.locator(cell.format("max_total_top_displacement")).inner_text()
+    assert text == f"{total:.4g} ({100 * total / fixed.max_total_top_displacement:.3g} %)"
+    assert (
+        visitor.page.locator(cell.format("max_top_displacement")).inner_text() == f"{response.max_top_displacement:.4g}"
+    )
+    assert visitor.page.get_by_role("columnheader", name="relative to the base").count() == 1
+    said = visitor.page.locator("#verdict").inner_text()
+    assert f"The top moves by up to {total:.3g} m relative to the ground" in said
+    assert f"a fixed base by {fixed.max_total_top_displacement:.3g} m." in said
+    assert visitor.page.locator("#warnings").is_hidden()
+    # The plot shows either displacement.
+    drawn = "Math.max(...rockflexStage.view().models[0].scaled.displacement.map(Math.abs))"
+    assert visitor.page.evaluate(drawn) == pytest.approx(total, rel=1e-3)
+    visitor.page.get_by_label("Displacement of the top in the plot").select_option("relative to the base, which turns")
+    assert visitor.page.evaluate(drawn) == pytest.approx(response.max_top_displacement, rel=1e-2)
+
+
+def test_a_base_that_is_pulled_down_is_told(visit, link) -> None:
+    record = {"source": "suite", "suite": "fema-p695-far-field", "name": "FF-1-a"}
+    visitor = visit(link(chosen(3, scale=2.0, record=record, models=["MDOF-S", "2DOF-S", "2DOF-S-R"])))
+    visitor.tab("response")
+    visitor.shown(2, ["MDOF-S", "2DOF-S", "2DOF-S-R"])
+    frame = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 0.5, 10.0, 0.02)
+    motion = rf.load_suite("fema-p695-far-field")["FF-1-a"].scaled(2.0)
+    response = rf.simulate(frame, motion, "MDOF-S", free_vibration=5.0)
+    (warning,) = response.warnings
+    assert visitor.page.locator("#warnings p").all_inner_texts() == [f"MDOF-S: {warning}"]
+    assert visitor.peak("MDOF-S", "min_vertical_reaction") == response.min_vertical_reaction < 0.0
+    corrected = rf.simulate(frame, motion, "2DOF-S-R", free_vibration=5.0)
+    assert visitor.peak("2DOF-S-R", "max_base_shear") == corrected.max_base_shear
+    assert visitor.peak("2DOF-S-R", "max_rotation") == visitor.peak("2DOF-S", "max_rotation")
+    visitor.fill("scale", "0.1")
+    visitor.shown(0.1, ["MDOF-S", "2DOF-S", "2DOF-S-R"])
+    assert visitor.page.locator("#warnings").is_hidden()
+
+
+def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) -> None:
+    p = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02).rocking()
+    names = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width")
+    table = {name: np.asarray(getattr(p, name)).tolist() for name in names} | {"zeta": 0.02}
+    state = client.state(structure={"name": "Bare", "properties": table}, models=["2DOF-S", "fixed"])
+    visitor = visit(link(state))
+    visitor.tab("response")
+    visitor.shown(1, ["2DOF-S", "fixed"])
+    cell = visitor.page.locator('#peaks tr[data-model="2DOF-S"] [data-name="max_total_top_displacement"]')
+    assert cell.inner_text() == "–"
+    assert visitor.page.get_by_label("Displacement of the top in the plot").is_hidden()
+    assert "relative to the ground" not in visitor.page.locator("#verdict").inner_text()
+    _, content = client.download("/api/download/histories", state)
+    assert content.decode().splitlines()[1].split(",")[6] == "nan"
 
 
 def test_play_pause_scrub_and_speed(visitor, frame, el_centro) -> None:

@@ -74,10 +74,9 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
     look: dict[str, Any] = {"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "collapse_padding": True}
     table = Table(**look)
     for place, heading in enumerate(headings):
-        # Units stand below the names, which keeps the columns narrow.
-        table.add_column(
-            Text(heading.replace(" [", "\n[")), justify="left" if place < n_left else "right", no_wrap=True
-        )
+        # Units, and which of two kinds, stand below the names, which keeps the columns narrow.
+        text = Text(heading.replace(" [", "\n[").replace("u_top ", "u_top\n"))
+        table.add_column(text, justify="left" if place < n_left else "right", no_wrap=True, vertical="bottom")
     for row in rows:
         table.add_row(*(Text(cell, style=STYLES.get(cell.rstrip(" †"), "")) for cell in row))
     return table

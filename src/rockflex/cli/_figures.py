@@ -96,6 +96,8 @@ def _figures(
         yield "fragility", lambda: plot.plot_fragility(table, measure)
         yield "rotation", lambda: plot.plot_clouds(table, "max_rotation", measure)
         yield "top_displacement", lambda: plot.plot_clouds(table, "max_top_displacement", measure)
+        if table["max_total_top_displacement"].notna().any():
+            yield "total_top_displacement", lambda: plot.plot_clouds(table, "max_total_top_displacement", measure)
     elif study == "incremental":
         yield "capacities", lambda: plot.plot_ida(table, measure)
     elif study == "stripes":

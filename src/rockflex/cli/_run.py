@@ -48,7 +48,8 @@ def run(
             metavar="LABEL",
             help="Several by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, MDOF-C, "
             "3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; base held: fixed, 5DOF-fixed; one mode that "
-            "yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW. Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
+            "yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of modes left out in V_b and M_b: 2DOF-S-R, "
+            "5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
             "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation those of them that rock.",
             show_default=False,
         ),
@@ -110,7 +111,7 @@ def run(
     from rockflex.cli._motions import find_motions, quiet_ground
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._run_output import UNITS, write_runs
-    from rockflex.cli._run_tables import print_failures, print_runs
+    from rockflex.cli._run_tables import print_failures, print_runs, print_warnings
     from rockflex.cli._simulations import Plan, perform, warm_up
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
@@ -129,7 +130,7 @@ def run(
     assumptions = make_assumptions(file, loaded.assumed, flags, initial_rotation)
     by_flag = any(value is not None for value in hysteresis.values())
     models = choose_models(model, loaded.properties, assumptions, by_flag=by_flag)
-    if assumptions.bouc_wen is not None and not any(label.endswith("-BW") for label in models):
+    if assumptions.bouc_wen is not None and not any("-BW" in label for label in models):
         note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was asked for")
     free = parse_free_vibration(free_vibration, models)
     names += motion or []
@@ -162,7 +163,7 @@ def run(
         "options": plan.describe(),
         "units": UNITS,
         "elapsed": elapsed,
-        "runs": [{**item.row(), "run_time": item.run_time} for item in runs],
+        "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
         write_runs(out, document, plan, runs, force=force)
@@ -170,5 +171,6 @@ def run(
         typer.echo(to_json(document))
     else:
         print_runs(loaded.title, plan, runs, elapsed, times=times)
+    print_warnings(runs)
     if print_failures(runs) and strict:
         raise typer.Exit(1)

@@ -1,5 +1,6 @@
 """What ``rockflex run --out`` writes."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -24,9 +25,13 @@ UNITS = {
     "end_time": "s",
     "time_of_max_*": "s",
     "max_rotation": "rad",
+    "time_of_min_*": "s",
     "max_top_displacement": "m",
+    "max_total_top_displacement": "m",
     "max_base_moment": "N m",
     "max_base_shear": "N",
+    "max_horizontal_reaction": "N",
+    "min_vertical_reaction": "N",
     "max_tendon_force": "N",
     "sliding_time": "s",
     "impact.shortest_excursion": "s",
@@ -34,11 +39,9 @@ UNITS = {
     "initial_rotation": "rad",
 }
 SERIES = (
-    "time", "side", "ground_acceleration", "rotation", "rotation_velocity", "top_displacement", "base_moment",
-    "base_shear",
+    "time", "side", "ground_acceleration", "rotation", "rotation_velocity", "top_displacement",
+    "total_top_displacement", "base_moment", "base_shear", "horizontal_reaction", "vertical_reaction",
 )  # fmt: skip
-
-FORCES = ("horizontal_reaction", "vertical_reaction", "friction_demand")
 
 
 def write_runs(folder: Path, document: dict[str, Any], plan: Plan, runs: Sequence[Run], *, force: bool) -> None:
@@ -85,6 +88,8 @@ def _series(plan: Plan, responses: Sequence[Response]) -> "Iterator[pd.DataFrame
     if plan.assumptions.bouc_wen is not None:
         names.append("yielding")
     if plan.friction is not None:
-        names += FORCES
+        names.append("friction_demand")
     for response in responses:
-        yield pd.DataFrame({"model": response.model, **{name: getattr(response, name) for name in names}})
+        # Where the height of the top is not known, its total displacement is missing.
+        values = {name: getattr(response, name, math.nan) for name in names}
+        yield pd.DataFrame({"model": response.model, **values})

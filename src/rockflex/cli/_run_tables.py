@@ -2,15 +2,23 @@
 
 from collections.abc import Sequence
 from itertools import groupby
+from typing import TYPE_CHECKING
 
 from rockflex.cli._console import fits, grid, moment_unit, note, number, output, show
 from rockflex.cli._simulations import SLIDING, Plan, Run
 from rockflex.response import IMPACT_WINDOW
 
-__all__ = ["print_failures", "print_runs"]
+if TYPE_CHECKING:
+    from rich.table import Table
+
+__all__ = ["print_failures", "print_runs", "print_warnings"]
 
 MAX_LISTED = 5
-YIELDED = "A tendon passed its yield force, and the models keep it elastic: such runs are not to be trusted"
+LEGEND = (
+    "u_top: relative to the base, which turns; total: relative to the ground\n"
+    "V_b, M_b: of the elastic forces; ΣF_x: what the ground must hold across, with\n"
+    "the base's mass and the damping; N_min: least force between base and ground"
+)
 NOMINAL = "† θ passed 0.7 atan(B/h*_1), the nominal limit of overturning"
 FRICTION = (
     "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
@@ -24,35 +32,42 @@ def print_runs(title: str, plan: Plan, runs: Sequence[Run], elapsed: float, *, t
     console = output()
     for line in (title, *plan.assumptions.remarks()):
         console.print(line, markup=False, soft_wrap=True)
-    tables = [(_peaks(runs), 1)]
+    peaks, ground = _peaks(runs), _ground(runs)
+    tables = [(peaks + ground, 1)]
+    if not fits(console, _flat(plan, runs, *tables[0])):
+        tables = [(peaks, 1), (ground, 0)]
     if times:
         tables.append((_times(runs), 0))
     if plan.friction is not None:
         tables.append((_sliding(runs), 0))
     for columns, n_words in tables:
-        headings = [heading for heading, _ in columns]
-        cells = list(zip(*(values for _, values in columns), strict=True))
-        places = [[run.motion] if plan.scales == [1.0] else [run.motion, f"{run.scale:g}"] for run in runs]
-        words = [*("motion", "scale")[: len(places[0])], "model"]
-        rows = [[*place, run.model, *row] for place, run, row in zip(places, runs, cells, strict=True)]
-        flat = grid([*words, *headings], rows, len(words) + n_words)
+        flat = _flat(plan, runs, columns, n_words)
         if fits(console, flat):
             console.print()
             show(console, flat)
             continue
-        start = len(words) - 1
-        for place, members in groupby(rows, key=lambda row: row[:start]):
+        rows = zip(runs, _cells(columns), strict=True)
+        for place, members in groupby(rows, key=lambda row: _place(plan, row[0])):
             console.print("\n" + " × ".join(place), markup=False, soft_wrap=True)
-            show(console, grid(["model", *headings], [row[start:] for row in members], 1 + n_words))
+            cells = [[run.model, *row] for run, row in members]
+            show(console, grid(["model", *(heading for heading, _ in columns)], cells, 1 + n_words))
     console.print()
     if any(run.peaks["nominal_overturning"] for run in runs):
         console.print(NOMINAL, markup=False, soft_wrap=True)
-    if any((run.peaks["tendon_utilisation"] or 0.0) > 1.0 for run in runs):
-        console.print(YIELDED, markup=False, soft_wrap=True)
+    console.print(LEGEND, markup=False, soft_wrap=True)
     if plan.friction is not None:
         console.print(FRICTION.format(window=IMPACT_WINDOW, mu=plan.friction), markup=False, soft_wrap=True)
     each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
     console.print(f"{len(runs)} run{'s' * (len(runs) > 1)} in {number(elapsed, 3)} s{each}", markup=False)
+
+
+def print_warnings(runs: Sequence[Run]) -> None:
+    """Say on stderr what runs ask of the ground or of their tendons that these cannot do."""
+    found = [(run, warning) for run in runs for warning in run.warnings]
+    for run, warning in found[:MAX_LISTED]:
+        note(f"Warning: {run.motion} × {run.scale:g}: {warning}")
+    if len(found) > MAX_LISTED:
+        note(f"and {len(found) - MAX_LISTED} more warnings; --json holds them all")
 
 
 def print_failures(runs: Sequence[Run]) -> int:
@@ -73,7 +88,8 @@ def _peaks(runs: Sequence[Run]) -> Columns:
     columns: Columns = [
         ("status", [_status(run) for run in runs]),
         ("θ_max [rad]", _column(runs, "max_rotation")),
-        ("u_top [m]", _column(runs, "max_top_displacement")),
+        ("u_top relative [m]", _column(runs, "max_top_displacement")),
+        ("u_top total [m]", _column(runs, "max_total_top_displacement")),
         (f"M_b [{unit}]", _column(runs, "max_base_moment", size)),
         ("V_b [kN]", _column(runs, "max_base_shear", 1e3)),
         ("impacts", ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]),
@@ -86,9 +102,24 @@ def _peaks(runs: Sequence[Run]) -> Columns:
     return columns
 
 
+def _ground(runs: Sequence[Run]) -> Columns:
+    return [
+        ("ΣF_x [kN]", _column(runs, "max_horizontal_reaction", 1e3)),
+        ("N_min [kN]", _column(runs, "min_vertical_reaction", 1e3)),
+    ]
+
+
 def _times(runs: Sequence[Run]) -> Columns:
-    names = {"rotation": "θ_max", "top_displacement": "u_top", "base_moment": "M_b", "base_shear": "V_b"}
-    columns = [(f"t({label}) [s]", _column(runs, f"time_of_max_{name}", digits=5)) for name, label in names.items()]
+    names = {
+        "max_rotation": "θ_max",
+        "max_top_displacement": "u_top relative",
+        "max_total_top_displacement": "u_top total",
+        "max_base_moment": "M_b",
+        "max_base_shear": "V_b",
+        "max_horizontal_reaction": "ΣF_x",
+        "min_vertical_reaction": "N_min",
+    }
+    columns = [(f"t({label}) [s]", _column(runs, f"time_of_{name}", digits=5)) for name, label in names.items()]
     return [*columns, ("end [s]", _column(runs, "end_time", digits=5))]
 
 
@@ -100,6 +131,22 @@ def _sliding(runs: Sequence[Run]) -> Columns:
     ]
     required = [[number(run.friction[name]) for run in runs] for name in SLIDING[:2]]
     return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
+
+
+def _place(plan: Plan, run: Run) -> list[str]:
+    """Motion, and the scale where there are several or one that is not 1."""
+    return [run.motion] if plan.scales == [1.0] else [run.motion, f"{run.scale:g}"]
+
+
+def _cells(columns: Columns) -> list[tuple[str, ...]]:
+    return list(zip(*(values for _, values in columns), strict=True))
+
+
+def _flat(plan: Plan, runs: Sequence[Run], columns: Columns, n_words: int) -> "Table":
+    """One table of all runs."""
+    words = [*("motion", "scale")[: len(_place(plan, runs[0]))], "model"]
+    rows = [[*_place(plan, run), run.model, *row] for run, row in zip(runs, _cells(columns), strict=True)]
+    return grid([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
 
 
 def _column(runs: Sequence[Run], name: str, size: float = 1.0, digits: int = 4) -> list[str]:

@@ -14,7 +14,7 @@ from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.parallel import map_threads
-from rockflex.response import PEAKS, Response
+from rockflex.response import PEAKS, Response, warnings_of
 from rockflex.solve import WorkLimitError
 from rockflex.study import WORK_LIMIT, simulate, simulate_many
 
@@ -80,6 +80,11 @@ class Run:
         """Return everything but the run time and the history, in the columns of `simulate_many`."""
         head = {"motion": self.motion, "scale": self.scale, "model": self.model}
         return {**head, "status": self.status, "error": self.error, **self.peaks, **self.friction}
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the run asks of the ground or of its tendons that they cannot do."""
+        return () if self.error is not None else warnings_of(self.model, self.peaks)
 
 
 COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))

@@ -26,6 +26,8 @@ ROCKING = 1e-4  # rad; up to it a run counts as one without rocking
 
 def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bool) -> tuple[int, int]:
     """Print what a study found; return how many runs could not be solved, and how many fits could not be made."""
+    from rockflex.study.plans import pivot_lifts
+
     findings: dict[str, Callable[[Any, pd.DataFrame, list[str]], Iterator[tuple[str, Rows]]]] = {
         "cloud": _cloud,
         "incremental": _incremental,
@@ -40,13 +42,18 @@ def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bo
             tables[title] = rows
     except (InputError, SolverError) as error:  # the runs are there, whatever can be made of them
         unfitted.append(str(error))
+    lifts = pivot_lifts(table)
     failed = int(table["error"].notna().sum())
     document = {"versions": versions(), "study": study.document(), "rows": len(table), "failed": failed}
-    document |= {"elapsed": seconds, "unfitted": unfitted, **tables}
+    document |= {"elapsed": seconds, "unfitted": unfitted}
+    document |= {"pivot_lifts": [each._asdict() for each in lifts], **tables}
     if json:
         typer.echo(to_json(document))
     else:
         _print(tables)
+        for each in lifts:
+            if each.lifting:
+                typer.echo(f"\n{each}")
         typer.echo(f"\n{len(table)} rows in {duration(seconds)}")
     for reason in dict.fromkeys(unfitted):
         note(f"No fit: {reason}")
@@ -102,15 +109,17 @@ def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tu
                 "fit": curve.method if fitted else "all alike" if curve else "none",
             }
         )
-        rotation, top = (fits.outcomes.rotation, fits.top_displacement) if fits else (None, None)
-        lines.append({**name, **_line("θ_max", rotation), **_line("u_top", top)})
+        rotation = fits.outcomes.rotation if fits else None
+        relative, total = (fits.top_displacement, fits.total_top_displacement) if fits else (None, None)
+        quantities = (("θ_max", rotation), ("u_top relative to the base", relative), ("u_top in total", total))
+        lines += [{**name, "y": quantity, **_line(fit)} for quantity, fit in quantities]
     yield "Outcomes, and P(θ_max > 1e-4 rad) by logistic regression on log PGV", _words_first(outcomes)
     yield "log y = c1 + c2 log PGV of runs that rocked and stand (rad, m, m/s)", lines
 
 
-def _line(name: str, fit: "CloudFit | None") -> dict[str, Any]:
+def _line(fit: "CloudFit | None") -> dict[str, Any]:
     values = (None,) * 4 if fit is None else (fit.c1, fit.c2, fit.dispersion, fit.r2)
-    return dict(zip((f"{name} c1", f"{name} c2", f"{name} spread", f"{name} R²"), values, strict=True))
+    return dict(zip(("c1", "c2", "spread", "R²"), values, strict=True))
 
 
 def _words_first(rows: Rows) -> Rows:

@@ -4,6 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -14,6 +17,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["CloudFits", "fit_clouds", "fit_each_cloud"]
+
+DISPLACEMENTS = ("max_top_displacement", "max_total_top_displacement")
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +34,11 @@ class CloudFits(Value):
     outcomes : OutcomeFragility
         No rocking, rocking and overturning, and the rotations of the runs that rocked and stand.
     top_displacement : CloudFit or None
-        log u_top,max on log IM of the same runs, as in Figure 7. None where these cannot be fitted.
+        log u_top,max, relative to the base, on log IM of the same runs, as in Figure 7. None where these cannot be
+        fitted.
+    total_top_displacement : CloudFit or None
+        The same of the largest displacement of the top relative to the ground. None also where the height of the top
+        is not known.
     n_failed : int
         Runs that could not be solved, which are in no fit.
     """
@@ -39,6 +48,7 @@ class CloudFits(Value):
     measure: str
     outcomes: OutcomeFragility
     top_displacement: CloudFit | None
+    total_top_displacement: CloudFit | None
     n_failed: int
 
 
@@ -98,7 +108,7 @@ def fit_each_cloud(
 
 def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":
     """Runs of each structure with each model."""
-    needed = ["structure", "model", "status", "max_rotation", "max_top_displacement", "nominal_overturning", measure]
+    needed = ["structure", "model", "status", "max_rotation", *DISPLACEMENTS, "nominal_overturning", measure]
     lacking = [name for name in needed if name not in runs]
     if lacking:
         message = f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}."
@@ -115,13 +125,16 @@ def _fits(
         message = f"No run of {shown(structure)} with {model} was solved. See the column error of the table."
         raise InputError(message)
     fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
-    im, rotation, top = (
-        solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation", "max_top_displacement")
-    )
+    im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
     rocked = ~fallen & (rotation > threshold)
     outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)
+    relative, total = (_line(im[rocked], solved[name].to_numpy(dtype=float)[rocked]) for name in DISPLACEMENTS)
+    return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved))
+
+
+def _line(im: NDArray[np.float64], values: NDArray[np.float64]) -> CloudFit | None:
+    """The fit, or None where there is none."""
     try:
-        displacement = fit_cloud(im[rocked], top[rocked])
+        return fit_cloud(im, values)
     except InputError:
-        displacement = None
-    return CloudFits(structure, model, measure, outcomes, displacement, len(group) - len(solved))
+        return None

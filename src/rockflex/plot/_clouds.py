@@ -1,5 +1,6 @@
 """Clouds of response over intensity, and the lines through them."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -31,7 +32,13 @@ __all__ = ["plot_clouds"]
 
 _QUANTITIES = {
     "max_rotation": r"$θ_{\mathrm{max}}$ [rad]",
-    "max_top_displacement": r"$u_{\mathrm{top,max}}$ [m]",
+    "max_top_displacement": r"$u_{\mathrm{top,max}}$, relative to the base [m]",
+    "max_total_top_displacement": r"total $u_{\mathrm{top,max}}$ [m]",
+}
+_LINES: "dict[str, Callable[[CloudFits], CloudFit | None]]" = {
+    "max_rotation": lambda fits: fits.outcomes.rotation,
+    "max_top_displacement": lambda fits: fits.top_displacement,
+    "max_total_top_displacement": lambda fits: fits.total_top_displacement,
 }
 _TINY = 5.6
 _ROW = 0.056  # of the panel, from row to row of the numbers in it
@@ -40,7 +47,7 @@ _CROSSES = 0.038  # and of the crosses
 
 def plot_clouds(
     runs: "pd.DataFrame",
-    quantity: Literal["max_rotation", "max_top_displacement"] = "max_rotation",
+    quantity: Literal["max_rotation", "max_top_displacement", "max_total_top_displacement"] = "max_rotation",
     measure: str = "pgv",
     *,
     threshold: float = 1e-4,
@@ -57,7 +64,8 @@ def plot_clouds(
     runs
         The table of a cloud study, such as `run_cloud` returns.
     quantity
-        ``"max_rotation"`` (Fig. 6) or ``"max_top_displacement"`` (Fig. 7).
+        ``"max_rotation"`` (Fig. 6), ``"max_top_displacement"`` (Fig. 7, relative to the base) or
+        ``"max_total_top_displacement"`` (relative to the ground).
     measure
         Column of the intensity measure.
     threshold
@@ -99,7 +107,7 @@ def plot_clouds(
             for fit in (fit for fit in fits if fit.structure == name):
                 look, marker = looks[fit.model]
                 mine = ((structures == name) & (models == fit.model)).to_numpy(dtype=bool)
-                line = fit.outcomes.rotation if quantity == "max_rotation" else fit.top_displacement
+                line = _LINES[quantity](fit)
                 _draw(axes, solved[mine & rocked], quantity, fit, line, look, marker)
                 _mark_fallen(
                     axes, solved[mine & fell][measure].to_numpy(dtype=float), look, list(looks).index(fit.model)

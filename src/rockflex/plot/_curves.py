@@ -170,7 +170,8 @@ def _own_look(history: "History", most: int) -> Look | None:
     if np.any(history.yielding != 0.0):
         return Look(SKY, "-")
     if "-C" in model.label:
-        return Look(ORANGE, (0, (4, 1.5))) if model.label.endswith(("-SI", "-E")) else Look(PURPLE, "-")
+        closed = model.label.removesuffix("-R").endswith(("-SI", "-E"))
+        return Look(ORANGE, (0, (4, 1.5))) if closed else Look(PURPLE, "-")
     if model.label.startswith("M") or n == most > 2:
         return Look(BLACK, "-")
     return {1: Look(RED, "-."), 2: Look(GREEN, "--")}.get(n)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from rockflex.plot._curves import Curve, curves_of, title_of
-from rockflex.plot._panel import ALL, draw_panel, quantities_of
+from rockflex.plot._panel import draw_panel, quantities_of, usual_panels
 from rockflex.plot._style import GRAY, SHADE, columns, new_figure, styled
 
 if TYPE_CHECKING:
@@ -25,12 +25,14 @@ def plot_history(
     responses: "Response | Iterable[Response]",
     labels: Sequence[str] | None = None,
     *,
-    panels: Sequence[str] = ALL,
+    panels: Sequence[str] | None = None,
     title: str | None = None,
 ) -> Figure:
-    """Plot rotation θ, top displacement u_top, base moment M_b and base shear V_b over time, a panel each.
+    """Plot rotation θ, displacements of the top, base moment M_b and base shear V_b over time, a panel each.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 15; with two panels, that of Figs. 3 and 4. The time in which
+    With ``panels=("rotation", "top_displacement", "base_moment", "base_shear")`` the figure is that of Silva &
+    Stojadinović 2024, Fig. 15; with the first two, that of Figs. 3 and 4. Their u_top is relative to the base, which
+    turns; the total one is relative to the ground, and the one to compare with a fixed base. The time in which
     the base of the most detailed model is uplifted is shaded; where several models rock, a bar for each at the foot of
     the first panel shows when. Circles mark the true peaks, which stand with their times beside each panel. The phase
     in which a structure overturns does not stretch the axes: a triangle shows where its rotation leaves its panel, and
@@ -43,14 +45,17 @@ def plot_history(
     labels
         A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
     panels
-        Which of ``"rotation"``, ``"top_displacement"``, ``"base_moment"`` and ``"base_shear"``, from the top.
+        Which of ``"rotation"``, ``"top_displacement"``, ``"total_top_displacement"``, ``"base_moment"``,
+        ``"base_shear"`` and ``"horizontal_reaction"``, from the top. Default: all but the last; without the total
+        displacement where the height of the top is not known.
     title
         Default: the name of the motion, if there is only one.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a panel over one time axis in s; θ in rad, u_top in m, M_b and V_b in the unit that suits their size.
+        One axes a panel over one time axis in s; θ in rad, displacements in m, M_b and V_b in the unit that suits their
+        size.
 
     Raises
     ------
@@ -59,7 +64,7 @@ def plot_history(
         unknown.
     """
     curves = curves_of(responses, labels)
-    quantities = quantities_of(panels)
+    quantities = quantities_of(usual_panels(curves) if panels is None else panels)
     handles: list[Artist] = []
     with styled():
         figure = new_figure(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)

@@ -18,7 +18,7 @@ from rockflex.plot._units import readable, short
 if TYPE_CHECKING:
     from rockflex.response import History
 
-__all__ = ["ALL", "Quantity", "draw_panel", "quantities_of", "scale_of"]
+__all__ = ["Quantity", "draw_panel", "quantities_of", "scale_of", "usual_panels"]
 
 _HEADROOM = 1.12
 
@@ -36,11 +36,19 @@ class Quantity:
 
 _QUANTITIES = (
     Quantity("θ", "rotation", "rad", False, lambda h: h.rotation),
-    Quantity(r"$u_{\mathrm{top}}$", "top_displacement", "m", False, lambda h: h.top_displacement),
+    Quantity(r"$u_{\mathrm{top}}$, relative", "top_displacement", "m", False, lambda h: h.top_displacement),
+    Quantity(r"$u_{\mathrm{top}}$, total", "total_top_displacement", "m", False, lambda h: h.total_top_displacement),
     Quantity(r"$M_b$", "base_moment", "N m", True, lambda h: h.base_moment),
     Quantity(r"$V_b$", "base_shear", "N", True, lambda h: h.base_shear),
+    Quantity(r"$ΣF_x$", "horizontal_reaction", "N", True, lambda h: h.horizontal_reaction),
 )
 ALL = tuple(quantity.name for quantity in _QUANTITIES)
+
+
+def usual_panels(curves: list[Curve]) -> list[str]:
+    """All but ΣF_x, and the total displacement only where the height of the top is known."""
+    known = all(curve.history.model.properties.top_height is not None for curve in curves)
+    return [name for name in ALL[:-1] if known or name != "total_top_displacement"]
 
 
 def quantities_of(panels: Sequence[str]) -> list[Quantity]:

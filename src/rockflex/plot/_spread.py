@@ -46,7 +46,7 @@ def plot_spread(
     labels
         A name for each response. Default: the models, with the motions where a model occurs twice.
     panels
-        Which of ``"rotation"``, ``"top_displacement"``, ``"base_moment"`` and ``"base_shear"``, from the left.
+        Which of the panels of `plot_history`, from the left.
     title
         Default: the name of the motion, if there is only one.
 

@@ -10,6 +10,7 @@ from rockflex.response._observables import (
     global_observables,
 )
 from rockflex.response._response import PEAKS, Response, respond
+from rockflex.response._warnings import warnings_of
 
 __all__ = [
     "IMPACT_WINDOW",
@@ -22,4 +23,5 @@ __all__ = [
     "floor_observables",
     "global_observables",
     "respond",
+    "warnings_of",
 ]

@@ -19,6 +19,7 @@ from rockflex.response._history import History
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._observables import GLOBAL
 from rockflex.response._tendons import largest_tendon_force
+from rockflex.response._warnings import warnings_of
 from rockflex.solve import Solution
 
 __all__ = ["PEAKS", "Response", "respond"]
@@ -175,19 +176,7 @@ class Response(Value):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the run asks of the ground or of its tendons that they cannot do, a sentence each."""
-        found: list[str] = []
-        if self.min_vertical_reaction < 0.0:
-            found.append(
-                f"The vertical reaction falls to {self.min_vertical_reaction:.4g} N at "
-                f"{self.time_of_min_vertical_reaction:.4g} s: {self.model} pulls the base down there, which no ground "
-                "can. The pivot would lift, and what follows is to be read with care."
-            )
-        if self.tendon_utilisation > 1.0:
-            found.append(
-                f"A tendon carries {self.tendon_utilisation:.4g} times its yield force. Tendons stay elastic in the "
-                "model, so the run is not to be used."
-            )
-        return tuple(found)
+        return warnings_of(self.model, self.peaks())
 
     def peaks(self) -> dict[str, Any]:
         """Every scalar by its name, as a row of a table or a JSON object."""

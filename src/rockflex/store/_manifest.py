@@ -16,7 +16,7 @@ from rockflex.store._spec import differences, listed, plain
 
 __all__ = ["MANIFEST", "SPEC", "Manifest"]
 
-FORMAT = "rockflex-study-1"
+FORMAT = "rockflex-study-2"  # 1: without total displacements and reactions of the ground
 MANIFEST, SPEC = "manifest.json", "spec.json"
 
 
@@ -101,7 +101,8 @@ class Manifest:
         if known != FORMAT:
             message = (
                 f"{path} has the format {shown(known)}, but this version of rockflex reads {FORMAT!r}. "
-                "Use the version that wrote it."
+                "Use the version that wrote it, or run the study again in another folder; the results in "
+                f"{folder / 'parts'} can still be read as Parquet."
             )
             raise InputError(message)
         message = f"{folder / SPEC} was changed after the study began. Undo the change, or give another folder."

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
 from rockflex._files import path_of
+from rockflex.structure._matrix_market import read_matrix_market
 
 __all__ = ["Given", "checksum", "numbers"]
 
@@ -72,11 +73,7 @@ def _from_npz(name: str, path: Path) -> Float:
 
 
 def _from_mtx(name: str, path: Path) -> Float:
-    from scipy.io import mmread
-    from scipy.sparse import issparse
-
-    matrix = mmread(path)
-    return _dense(name, path, matrix) if issparse(matrix) else np.asarray(matrix, dtype=np.float64)
+    return _dense(name, path, read_matrix_market(path))
 
 
 def _dense(name: str, path: Path, matrix: Any) -> Float:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import CloudFits, OutcomeFragility, bootstrap_band, fit_each_cloud, fit_outcomes
-from rockflex.study.plans import CloudPlan, CloudStudy
+from rockflex.study.plans import CloudPlan, CloudStudy, pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._packing import plain
 from rockflex.web._state import CloudChoice, State
@@ -64,6 +64,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
     if failed:
         first = runs["error"].dropna()
         view["notes"].append(f"{failed} runs could not be solved. {first.iloc[0] if len(first) else ''}")
+    view["notes"] += [str(each) for each in pivot_lifts(solved) if each.lifting]
     if len(solved) < FEWEST:
         return plain(view)
     im = solved[choice.measure].to_numpy(dtype=float)

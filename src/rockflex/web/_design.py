@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._errors import InputError, SolverError
-from rockflex.study.plans import CloudPlan, DesignStudy, design_table, smallest_width
+from rockflex.study.plans import CloudPlan, DesignStudy, design_table, pivot_lifts, smallest_width
 from rockflex.web._jobs import Job
 from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
@@ -100,6 +100,7 @@ def design_view(job: Job, state: State) -> dict[str, Any]:
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
         view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
+    view["notes"] += [str(each) for each in pivot_lifts(runs) if each.lifting] if runs is not None else []
     answers = smallest_width(table, choice.target)
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
         "records"

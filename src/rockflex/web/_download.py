@@ -30,6 +30,18 @@ if TYPE_CHECKING:
 __all__ = ["cloud_files", "design_files", "download", "svg"]
 
 ROWS = 250_000  # of a table of histories
+COLUMNS = {
+    "time": "s",
+    "side": "",
+    "ground_acceleration": "m/s2",
+    "rotation": "rad",
+    "top_displacement": "m",
+    "total_top_displacement": "m",
+    "base_moment": "N m",
+    "base_shear": "N",
+    "horizontal_reaction": "N",
+    "vertical_reaction": "N",
+}
 
 
 def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes]:
@@ -107,9 +119,7 @@ def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
 def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    names = ("time", "side", "ground_acceleration", "rotation", "top_displacement", "base_moment", "base_shear")
-    units = ("s", "", "m/s2", "rad", "m", "N m", "N")
-    writer.writerow(["model", *(f"{name} ({unit})" if unit else name for name, unit in zip(names, units, strict=True))])
+    writer.writerow(["model", *(f"{name} ({unit})" if unit else name for name, unit in COLUMNS.items())])
     found = responses(state, uploads)[2]
     rows = sum(response.time.size for response in found)
     if rows > ROWS:
@@ -118,7 +128,8 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
         )
         raise Refusal({"models": message})
     for response in found:
-        columns = np.column_stack([getattr(response, name) for name in names])
+        missing = np.full(response.time.size, np.nan)  # of the total displacement, where no height of the top is known
+        columns = np.column_stack([getattr(response, name, missing) for name in COLUMNS])
         writer.writerows([response.model, *(f"{value:.9g}" for value in row)] for row in columns.tolist())
     return "histories.csv", text.getvalue()
 

@@ -20,20 +20,13 @@ from rockflex.web._state import State
 from rockflex.web._structures import Built, build
 from rockflex.web._uploads import Uploads
 
-__all__ = ["PEAK_ROWS", "check_energy", "response_view", "responses"]
+__all__ = ["check_energy", "response_view", "responses"]
 
 Array = NDArray[np.float64]
 
-POINTS = 1600  # of a history, events aside
+POINTS = 2000  # of a history, events aside
 EVENTS = 600  # nodes of events kept, at most
 LEDGER = 1.0  # s of computing that the energies may take, see `rockflex.solve.Pace`
-
-PEAK_ROWS = (
-    ("max_rotation", "θ_max", "rad"),
-    ("max_top_displacement", "u_top,max", "m"),
-    ("max_base_moment", "M_b,max", "N m"),
-    ("max_base_shear", "V_b,max", "N"),
-)
 
 
 def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list[Response]]:
@@ -103,10 +96,12 @@ def _curves(built: Built, response: Response) -> dict[str, Any]:
     kept = _kept(history)
     modal = history.modal_displacement[kept]
     points = modal @ built.shapes[:, : modal.shape[1]].T
+    known = history.model.properties.top_height is not None
     return {
         "label": response.model,
         "status": response.status,
         "peaks": response.peaks(),
+        "warnings": response.warnings,
         "lifts": history.model.lifts,
         "fall_time": _fall_time(history),
         "uplift_times": history.uplift_times[:EVENTS],
@@ -115,6 +110,7 @@ def _curves(built: Built, response: Response) -> dict[str, Any]:
         "side": pack(history.side[kept]),
         "rotation": pack(history.rotation[kept]),
         "top_displacement": pack(history.top_displacement[kept]),
+        "total_top_displacement": pack(history.total_top_displacement[kept]) if known else None,
         "base_moment": pack(history.base_moment[kept]),
         "base_shear": pack(history.base_shear[kept]),
         "points": pack(points),
@@ -124,6 +120,8 @@ def _curves(built: Built, response: Response) -> dict[str, Any]:
 def _kept(history: History) -> NDArray[np.intp]:
     """Nodes that are sent: the extremes of every stretch, and both sides of the events."""
     curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear]
+    if history.model.properties.top_height is not None:
+        curves.append(history.total_top_displacement)
     kept = envelope(curves, POINTS)
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: EVENTS // 2]
     return np.unique(np.concatenate((kept, events, events + 1)))

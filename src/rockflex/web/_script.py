@@ -23,7 +23,7 @@ def response_script(state: State, upload_name: str = "record") -> str:
     """Return a program that simulates what the Response tab shows, in `responses` by model."""
     extra = f", free_vibration={state.free_vibration!r}{_law(state)}"
     if yields := _yields(state.models):
-        extra += ', bouc_wen=yielding if model.endswith("-BW") else None'
+        extra += ', bouc_wen=yielding if "-BW" in model else None'
     return "\n".join(
         [
             "import numpy as np",
@@ -38,9 +38,13 @@ def response_script(state: State, upload_name: str = "record") -> str:
             "for model, response in responses.items():",
             "    print(model, response.status)",
             '    print(f"  largest rotation {response.max_rotation:.6g} rad at {response.time_of_max_rotation:.4f} s")',
-            '    print(f"  largest top displacement {response.max_top_displacement:.6g} m")',
+            '    print(f"  largest top displacement {response.max_top_displacement:.6g} m relative to the base,")',
+            '    print(f"  {response.max_total_top_displacement:.6g} m relative to the ground")',
             '    print(f"  largest base moment {response.max_base_moment:.6g} N m")',
             '    print(f"  largest base shear {response.max_base_shear:.6g} N")',
+            '    print(f"  the ground must hold {response.max_horizontal_reaction:.6g} N across")',
+            "    for warning in response.warnings:",
+            '        print(f"  {warning}")',
             'rf.save_figure(rf.plot_history(responses.values()), "response.svg")',
             "",
         ]

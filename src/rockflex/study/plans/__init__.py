@@ -13,6 +13,7 @@ from rockflex.study.plans._incremental import (
     run_incremental,
 )
 from rockflex.study.plans._load import Study, load_study
+from rockflex.study.plans._pivot_lifts import PivotLifts, pivot_lifts
 from rockflex.study.plans._plan import ChunkedPlan, Plan, run_plan
 from rockflex.study.plans._population import PopulationPlan, PopulationStudy, run_population
 from rockflex.study.plans._prototypes import Prototype, draw_prototype
@@ -28,6 +29,7 @@ __all__ = [
     "DesignStudy",
     "IncrementalPlan",
     "IncrementalStudy",
+    "PivotLifts",
     "Plan",
     "PopulationPlan",
     "PopulationStatistics",
@@ -43,6 +45,7 @@ __all__ = [
     "draw_prototype",
     "incremental_capacities",
     "load_study",
+    "pivot_lifts",
     "population_statistics",
     "record_group",
     "run_cloud",

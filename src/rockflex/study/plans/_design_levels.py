@@ -131,7 +131,8 @@ def _on_base(properties: RockingProperties, half_width: float, per_width: float)
     """
     based = properties.with_half_width(half_width)
     added = 2.0 * per_width * (half_width - properties.half_width)
-    return replace(based, m_tot=based.m_tot + added, i_theta=based.i_theta + added * half_width**2)
+    base = None if based.base_mass is None else based.base_mass + added
+    return replace(based, m_tot=based.m_tot + added, i_theta=based.i_theta + added * half_width**2, base_mass=base)
 
 
 def half_widths_of(given: Any) -> list[float]:

@@ -7,6 +7,7 @@ const MODELS = [
   ["MDOF-S", "Simplified, all modes"],
   ["2DOF-S", "Simplified, one mode"],
   ["3DOF-S", "Simplified, two modes"],
+  ["2DOF-S-R", "As 2DOF-S; base shear and base moment also count the mass of the modes that are left out"],
   ["2DOF-C", "Complete, one mode: large rotations"],
   ["MDOF-C-SI", "Complete, all modes"],
   ["rigid", "Rigid block"],
@@ -18,14 +19,14 @@ const YIELDING = [
   ["1DOF-fixed-BW", "One mode, which yields, on a base that cannot lift"],
 ];
 
-export const yields = (label) => label.endsWith("-BW");
+export const yields = (label) => label.includes("-BW");
 
 export function models(path, chosen, most, change) {
   let now = clone(chosen);
   let offered = MODELS;
   const chips = h("div", { class: "chips", role: "group", "aria-label": "Models" });
   const other = h("input", {
-    type: "text", placeholder: "another, such as 4DOF-S", "aria-label": "Another model", maxlength: 30,
+    type: "text", placeholder: "another, such as 4DOF-S or 3DOF-S-R", "aria-label": "Another model", maxlength: 30,
     onchange: () => {
       const label = other.value.trim();
       other.value = "";

@@ -33,7 +33,7 @@ export function assumptions(app, suggested) {
   const fields = h("div");
   const yielding = h("div", { "data-path": "bouc_wen" },
     h("label", { class: "check" }, tick, "The superstructure yields (Bouc–Wen)"),
-    h("p", { class: "hint" }, "Only models whose label ends in -BW yield; all others stay elastic."),
+    h("p", { class: "hint" }, "Only models with -BW in their label yield; all others stay elastic."),
     fields, trouble());
   let drawn = false;
 

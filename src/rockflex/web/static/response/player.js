@@ -114,7 +114,8 @@ function suited(view) {
   let largest = 1e-9;
   for (const model of view.models) {
     if (model.status === "overturned") return 1;
-    largest = Math.max(largest, model.peaks.max_rotation * top + model.peaks.max_top_displacement);
+    const { peaks } = model;
+    largest = Math.max(largest, peaks.max_total_top_displacement ?? peaks.max_rotation * top + peaks.max_top_displacement);
   }
   return Math.min(200, Math.max(1, Number(((0.2 * top) / largest).toPrecision(2))));
 }

@@ -3,12 +3,19 @@
 import { h, number, symbol } from "../dom.js";
 import { yields } from "../models.js";
 
+// Name, heading, factor, and whether it may be held against a fixed base. A displacement relative to the base may not:
+// what the base turns is missing from it.
 const PEAKS = [
-  ["max_rotation", "θ_max [mrad]", 1000],
-  ["max_top_displacement", "u_top,max [m]", 1],
-  ["max_base_moment", "M_b,max [kN m]", 1e-3],
-  ["max_base_shear", "V_b,max [kN]", 1e-3],
+  ["max_rotation", "θ_max [mrad]", 1000, false],
+  ["max_top_displacement", "u_top,max relative to the base [m]", 1, false],
+  ["max_total_top_displacement", "u_top,max in total [m]", 1, true],
+  ["max_base_moment", "M_b,max [kN m]", 1e-3, true],
+  ["max_base_shear", "V_b,max [kN]", 1e-3, true],
+  ["max_horizontal_reaction", "ΣF_x,max [kN]", 1e-3, true],
+  ["min_vertical_reaction", "N_min [kN]", 1e-3, false],
 ];
+const MEANT = "In total: relative to the ground, what the turn of the base adds to it included. ΣF_x: what the ground must hold "
+  + "across, the mass of the base and the damping included, which V_b leaves out. N_min: least force between base and ground.";
 
 // What a model is held against: one on a fixed base, if there is, that yields as it does, if there is.
 function reference(view, model) {
@@ -31,7 +38,7 @@ export function table(view) {
     h("table", {},
       h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, symbol(text))))),
       h("tbody", {}, view.models.map((m) => row(m, view, held)))),
-    fixed.length ? h("p", { class: "hint" }, `In brackets: as a share of ${fixed.join(" and of ")}.`) : "",
+    h("p", { class: "hint" }, ...symbol(MEANT), fixed.length ? ` In brackets: as a share of ${fixed.join(" and of ")}.` : ""),
   ];
 }
 
@@ -41,9 +48,13 @@ function row(m, view, held) {
   const share = (name) => (fixed && m.lifts && !fell && fixed.peaks[name] > 0
     ? ` (${number((100 * m.peaks[name]) / fixed.peaks[name], 3)} %)` : "");
   const outcome = fell ? `overturned at ${number(m.peaks.end_time)} s` : m.lifts ? m.status.replace("_", " ") : "fixed base";
-  const cell = ([name, , factor], i) => h("td", {
-    "data-name": name, "data-value": m.peaks[name], title: `at ${number(m.peaks[`time_of_${name}`])} s`,
-  }, i === 0 && fell ? "–" : number(m.peaks[name] * factor) + (i ? share(name) : ""));
+  const cell = ([name, , factor, comparable]) => {
+    const value = m.peaks[name];
+    if (value === null || (name === "max_rotation" && fell)) return h("td", { "data-name": name }, "–");
+    const text = number(value * factor) + (comparable ? share(name) : "");
+    const title = `at ${number(m.peaks[`time_of_${name}`])} s`;
+    return h("td", { "data-name": name, "data-value": value, title, class: value < 0 ? "overturned" : null }, text);
+  };
   return h("tr", { "data-model": m.label },
     h("th", { scope: "row" }, m.label),
     h("td", { class: m.status, "data-name": "status" }, outcome),
@@ -51,6 +62,11 @@ function row(m, view, held) {
     h("td", { "data-name": "n_impacts", "data-value": m.peaks.n_impacts }, String(m.peaks.n_impacts)),
     h("td", {}, m.lifts && !fell ? `${number((100 * m.peaks.max_rotation) / view.nominal, 3)} %` : "–"),
     held ? h("td", {}, m.lifts ? number(m.peaks.max_tendon_force / 1000) : "–") : null);
+}
+
+// What the models ask of the ground or of their tendons that these cannot do, a paragraph each.
+export function warnings(view) {
+  return view.models.flatMap((m) => m.warnings.map((text) => h("p", { "data-model": m.label }, `${m.label}: ${text}`)));
 }
 
 // A sentence or two on the first model, and whether others fall.
@@ -71,6 +87,10 @@ export function words(view) {
     text += `the base lifts and rocks with up to ${number(1000 * p.max_rotation, 3)} mrad `;
     text += `at ${number(p.time_of_max_rotation, 3)} s, with ${impacts}.`;
     if (p.nominal_overturning) text += " That is past the nominal limit 0.7 atan(B/h*₁), though it did not fall.";
+    if (p.max_total_top_displacement !== null) {
+      text += ` The top moves by up to ${number(p.max_total_top_displacement, 3)} m relative to the ground`;
+      text += fixed ? `; that of ${named(fixed)} by ${number(fixed.peaks.max_total_top_displacement, 3)} m.` : ".";
+    }
     if (fixed && fixed.peaks.max_base_moment > 0) {
       const change = 100 * (p.max_base_moment / fixed.peaks.max_base_moment - 1);
       text += ` Against ${named(fixed)} the base moment is `;

@@ -2,22 +2,27 @@
 
 import { Chart } from "../chart.js";
 import { decode, h, latest } from "../dom.js";
-import { slider } from "../form.js";
+import { select, slider } from "../form.js";
 import { looks } from "../looks.js";
 import { legend } from "../marks.js";
 import { models } from "../models.js";
 import { assumptions } from "../response/assumptions.js";
 import { Energy } from "../response/energy.js";
 import { Player } from "../response/player.js";
-import { table, words } from "../response/table.js";
+import { table, warnings, words } from "../response/table.js";
 import { bracket } from "../stage.js";
 
 const PANELS = [
   ["rotation", "θ [mrad]", 1000, "Rotation"],
-  ["top_displacement", "u_top [m]", 1, "Displacement of the top"],
+  ["displacement", "", 1, "Displacement of the top"],
   ["base_moment", "M_b [kN m]", 1e-3, "Base moment"],
   ["base_shear", "V_b [kN]", 1e-3, "Base shear"],
 ];
+const DISPLACEMENTS = [
+  ["total_top_displacement", "relative to the ground", "u_top total [m]"],
+  ["top_displacement", "relative to the base, which turns", "u_top relative [m]"],
+];
+const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear"];
 const FILES = [
   ["figure", "Figure (SVG)"], ["energy", "Energy (SVG)"], ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
   ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
@@ -49,10 +54,16 @@ export default function responseTab(app) {
     firstOnTop: true,
   });
   const energy = new Energy(() => load());
+  const seen = select("displacement", "Displacement of the top in the plot", DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
+    if (!view) return;
+    choose(view);
+    draw();
+  });
   const keys = h("div", { id: "keys" });
   const peaks = h("div", { class: "scroll", id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
-  const results = h("div", { class: "results" }, verdict, keys, panels.map(([, chart]) => chart.element),
+  const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
+  const results = h("div", { class: "results" }, verdict, warned, keys, seen, panels.map(([, chart]) => chart.element),
     h("p", { class: "hint" }, "Shade: the base of the first model is off the ground. Triangles: its impacts. ",
       "Click or use the arrow keys for the time; drag or press + and − to zoom; double click or press Escape to see all."),
     h("h2", {}, "Largest values"), peaks,
@@ -87,7 +98,19 @@ export default function responseTab(app) {
     keys.replaceChildren(legend(view.models.map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
     verdict.textContent = words(view);
+    warned.replaceChildren(...warnings(view));
+    warned.hidden = !warned.children.length;
     player.set(view, view.models.map((m) => m.look.color));
+  }
+
+  // The displacement that is plotted: in total, if it is known and nobody chose otherwise.
+  function choose(answer) {
+    const known = answer.models.every((m) => m.scaled.total_top_displacement);
+    seen.hidden = !known;
+    const key = known ? seen.querySelector("select").value : "top_displacement";
+    for (const m of answer.models) m.scaled.displacement = m.scaled[key];
+    const [, chart] = panels.find(([name]) => name === "displacement");
+    chart.options.yLabel = DISPLACEMENTS.find(([name]) => name === key)[2];
   }
 
   // The charts follow the time of the animation.
@@ -117,10 +140,12 @@ export default function responseTab(app) {
     }
     const all = looks(answer.models);
     answer.models.forEach((m, i) => {
-      for (const name of ["t", "side", "points", ...PANELS.map(([key]) => key)]) m[name] = decode(m[name]);
-      m.scaled = Object.fromEntries(PANELS.map(([key, , factor]) => [key, m[key].map((v) => v * factor)]));
+      for (const name of ["t", "side", "points", ...SERIES]) m[name] = m[name] && decode(m[name]);
+      const factor = (key) => PANELS.find(([name]) => name === key)?.[2] ?? 1;
+      m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v * factor(key))]));
       m.look = all[i];
     });
+    choose(answer);
     answer.end = Math.max(...answer.models.map((m) => m.t[m.t.length - 1]));
     view = answer;
     draw();
