@@ -309,19 +309,20 @@ def test_ragged_shapes_are_told():
         ("%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 2.0 0.0\n", "its first line must name a matrix"),
         ("%%MatrixMarket matrix coordinate real general\n1 1\n", "its second line must hold the numbers of rows"),
         ("%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 2.0\n", r"it must hold 3 entries of three numbers"),
-        ("%%MatrixMarket matrix coordinate real general\n2 2 1\n3 1 2.0\n", "must stand in 2 rows and 2 columns"),
+        (
+            "%%MatrixMarket matrix coordinate real general\n2 2 1\n3 1 2.0\n",
+            "its entries must stand in 2 rows and 2 columns",
+        ),
         (
             "%%MatrixMarket matrix array real symmetric\n2 2\n1\n2\n",
-            "it must hold 3 numbers of a matrix of 2 by 2, but",
+            "it must hold 3 numbers of a matrix of 2 by 2",
         ),
         ("%%MatrixMarket matrix array real general\n1000000 1000000\n1\n", "it must hold 1000000000000 numbers"),
     ],
 )
 def test_damaged_matrix_market(tmp_path, text, words):
     (tmp_path / "k.mtx").write_text(text)
-    with pytest.raises(
-        InputError, match=rf"stiffness: .*k\.mtx does not hold a matrix of numbers that can be read: {words}"
-    ):
+    with pytest.raises(InputError, match=rf"stiffness: .*k\.mtx does not hold a matrix of numbers.*: {words}"):
         rf.from_matrices([1.0], tmp_path / "k.mtx", [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
 
 
