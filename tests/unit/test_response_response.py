@@ -46,7 +46,8 @@ QUANTITIES = (
     "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
     "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
-    "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force",
+    "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force", "total_top_displacement",
+    "total_floor_displacement",
 )  # fmt: skip
 KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float"}
 METHODS = ("required_friction_excluding_impacts", "sliding_time")
@@ -118,9 +119,9 @@ def test_floor_peaks_are_read_only(response):
 @pytest.mark.parametrize(
     ("peaks", "text"),
     [
-        (([1.0, 2.0], [1.0, 2.0], [1.0]), r"story_drift, story_shear, floor_acceleration have the sizes \[2, 2, 1\]"),
-        (([1.0], [np.nan], [1.0]), "story_shear must be finite"),
-        (([[1.0]], [1.0], [1.0]), "story_drift must be one-dimensional"),
+        (([1.0, 2.0], [1.0, 2.0], [1.0], [1.0]), r"total_floor_displacement have the sizes \[2, 2, 1, 1\]"),
+        (([1.0], [np.nan], [1.0], [1.0]), "story_shear must be finite"),
+        (([[1.0]], [1.0], [1.0], [1.0]), "story_drift must be one-dimensional"),
     ],
 )
 def test_floor_peaks_that_do_not_fit(peaks, text):
@@ -188,8 +189,10 @@ def solution(**changes):
         "overturned": False,
         "settled": False,
         "end_time": 1.0,
-        "peaks": np.zeros(4),
-        "peak_times": np.zeros(4),
+        "peaks": np.zeros(6),
+        "peak_times": np.zeros(6),
+        "lost_support": 0.0,
+        "time_of_lost_support": 0.0,
         "n_uplifts": 0,
         "n_impacts": 0,
         "nodes": None,
@@ -201,10 +204,10 @@ def solution(**changes):
     ("changes", "status"),
     [
         ({}, "no_uplift"),
-        ({"peaks": np.array([0.0, 1.0, 2.0, 3.0])}, "no_uplift"),
+        ({"peaks": np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0])}, "no_uplift"),
         ({"n_uplifts": 1}, "rocking"),
         ({"n_impacts": 1}, "rocking"),
-        ({"peaks": np.array([1e-9, 0.0, 0.0, 0.0])}, "rocking"),
+        ({"peaks": np.array([1e-9, 0.0, 0.0, 0.0, 0.0, 0.0])}, "rocking"),
         ({"n_uplifts": 1, "overturned": True}, "overturned"),
     ],
 )
@@ -213,20 +216,20 @@ def test_status(changes, status):
 
 
 def test_peaks_of_the_solver_are_named_in_their_order():
-    peaks, times = np.arange(4.0 + 3 * 4), 0.1 * np.arange(16.0)
-    run = respond(Model().of(FRAME.rocking()), "one", solution(peaks=peaks, peak_times=times))
-    found = [run.max_rotation, run.max_top_displacement, run.max_base_moment, run.max_base_shear]
-    assert found == peaks[:4].tolist()
-    found = [
-        run.time_of_max_rotation,
-        run.time_of_max_top_displacement,
-        run.time_of_max_base_moment,
-        run.time_of_max_base_shear,
-    ]
-    assert found == times[:4].tolist()
-    assert run.floors.story_drift.tolist() == [4, 5, 6, 7]
-    assert run.floors.story_shear.tolist() == [8, 9, 10, 11]
-    assert run.floors.floor_acceleration.tolist() == [12, 13, 14, 15]
+    names = (
+        "rotation", "top_displacement", "base_moment", "base_shear", "total_top_displacement", "horizontal_reaction",
+    )  # fmt: skip
+    peaks, times = np.arange(6.0 + 4 * 4), 0.1 * np.arange(22.0)
+    lost = {"lost_support": 1e5, "time_of_lost_support": 7.0}
+    run = respond(Model().of(FRAME.rocking()), "one", solution(peaks=peaks, peak_times=times, **lost))
+    assert [getattr(run, f"max_{name}") for name in names] == peaks[:6].tolist()
+    assert [getattr(run, f"time_of_max_{name}") for name in names] == times[:6].tolist()
+    assert run.min_vertical_reaction == FRAME.rocking().m_tot * 9.81 - 1e5
+    assert run.time_of_min_vertical_reaction == 7.0
+    assert run.floors.story_drift.tolist() == [6, 7, 8, 9]
+    assert run.floors.story_shear.tolist() == [10, 11, 12, 13]
+    assert run.floors.total_floor_displacement.tolist() == [14, 15, 16, 17]
+    assert run.floors.floor_acceleration.tolist() == [18, 19, 20, 21]
     for changes in ({"peaks": peaks[:3], "peak_times": times}, {"peaks": peaks, "peak_times": times[:3]}):
         with pytest.raises(ValueError, match="shorter"):
             respond(Model().of(FRAME.rocking()), "one", solution(**changes))
