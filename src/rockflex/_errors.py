@@ -4,14 +4,14 @@ from rockflex._shown import shortened
 
 __all__ = ["InputError", "RecordWarning", "SolverError"]
 
-LONGEST = 1900  # characters of a message, where a path or a list of names would make it any length
+LONGEST = 1900  # characters of a message, where a path or a text of the user would make it any length
 
 
 class InputError(ValueError):
     """What was given cannot be used; the message says what, what is expected, and how to mend it."""
 
-    def __init__(self, message: str = "") -> None:
-        super().__init__(shortened(message, LONGEST))
+    def __init__(self, message: str = "", longest: int = LONGEST) -> None:
+        super().__init__(shortened(message, longest))
 
 
 class SolverError(RuntimeError):

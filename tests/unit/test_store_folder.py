@@ -133,7 +133,7 @@ def test_many_and_long_differences_are_cut(tmp_path: Path) -> None:
 
 
 def test_other_records_are_refused(done: Path) -> None:
-    with pytest.raises(InputError, match=r'with other records.*\n  record: "abc" in the folder, "abd" now'):
+    with pytest.raises(InputError, match=r'with another record, .*\n  record: "abc" in the folder, "abd" now'):
         StudyFolder.open(done, SPEC, 4, VERSIONS, {"record": "abd"})
 
 

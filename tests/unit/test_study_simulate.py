@@ -13,6 +13,7 @@ from rockflex import (
     quiet_motion,
     simulate,
 )
+from rockflex._shown import shown
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:300] * 2.0, 0.02, name="El Centro")
 FRAME = Frame(
@@ -125,7 +126,7 @@ def test_arguments_that_cannot_be_used(changes, text):
 def test_free_vibration_is_seconds_or_a_word(given, output):
     with pytest.raises(InputError) as caught:
         simulate(FRAME, MOTION, output=output, free_vibration=given)
-    text = f'free_vibration must be zero or more seconds (at most 1e+09), or "settle", but {given!r} was given.'
+    text = f'free_vibration must be zero or more seconds (at most 1e+09), or "settle", but {shown(given)} was given.'
     assert str(caught.value) == text
 
 

@@ -78,7 +78,7 @@ VALUES = {
     rf.BoucWen: lambda: rf.BoucWen(0.05),
     rf.CantileverWithTipMass: lambda: rf.CantileverWithTipMass(10.0, 1e4, 1e9, 1e3, 1.0, 0.02, 500.0),
     rf.CloudFit: lambda: rf.fit_cloud([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
-    rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, 0),
+    rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, None, 0),
     rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
     rf.EnergyLedger: lambda: response().energy,
     rf.FishBone: lambda: rf.FishBone([3.0, 3.5], 1e3, 1e7, [1e6, math.inf], base_mass=0.0, half_width=0.5,

@@ -9,7 +9,16 @@ from typing import Any, Literal
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import GroundMotion, OnError, folder_files, load_suite, quiet_motion, read_files, suite_names
+from rockflex.motion import (
+    NAMES,
+    GroundMotion,
+    OnError,
+    folder_files,
+    load_suite,
+    quiet_motion,
+    read_files,
+    suite_names,
+)
 
 __all__ = ["FoundMotion", "embedded_suites", "find_motions", "quiet_ground"]
 
@@ -143,4 +152,4 @@ def _read(files: Sequence[Path], units: str | None, dt: float | None, on_error: 
         text = str(error).replace('on_error="skip"', "--on-error skip")
         if "units=" in text or "dt=" in text:
             text += " On the command line these are --units and --dt."
-        raise InputError(text) from error
+        raise InputError(text, longest=NAMES) from error

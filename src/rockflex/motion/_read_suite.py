@@ -13,12 +13,13 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._readers import read_motion
 from rockflex.motion._suite import Suite
 
-__all__ = ["OnError", "folder_files", "read_files", "read_suite"]
+__all__ = ["NAMES", "OnError", "folder_files", "read_files", "read_suite"]
 
 OnError = Literal["raise", "skip"]
 
 SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
 TOLD = 10  # files whose faults are told in full; of more only the names
+NAMES = 50_000  # characters of a message that names every file
 
 
 def read_suite(
@@ -89,7 +90,8 @@ def read_files(
     if faults:
         told = _told(faults, len(files))
         if on_error == "raise" or not motions:
-            raise InputError(told + (' on_error="skip" goes on with the other files.' if motions else ""))
+            told += ' on_error="skip" goes on with the other files.' if motions else ""
+            raise InputError(told, longest=NAMES)
         warnings.warn(f"Left out: {told}", RecordWarning, stacklevel=3)
     if vertical:
         names = ", ".join(file.name for file in vertical)

@@ -38,8 +38,8 @@ SAMPLES = 200_000
 DURATION = 300.0  # s of a record
 MODELS = 4  # side by side
 RUNS = 20_000  # of a study
-RUN = 1.5  # s of computing that one run may take, see `rockflex.solve.Pace`; a hard one takes three times as long
-TOGETHER = 2.5  # s of the runs of one answer
+RUN = 5.0  # s of computing at which a run is stopped: a hard one takes three times its estimate (`rockflex.solve.Pace`)
+TOGETHER = 3.0  # s of the runs of one answer, as they are estimated
 STUDY = 180.0  # s of all runs of a study: some minutes
 
 INFINITE = frozenset({"stiffness_ratio", "stiffness_parameter", "beam_stiffness"})
