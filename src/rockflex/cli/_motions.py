@@ -10,7 +10,6 @@ from typing import Any, Literal
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion import (
-    NAMES,
     GroundMotion,
     OnError,
     folder_files,
@@ -152,4 +151,4 @@ def _read(files: Sequence[Path], units: str | None, dt: float | None, on_error: 
         text = str(error).replace('on_error="skip"', "--on-error skip")
         if "units=" in text or "dt=" in text:
             text += " On the command line these are --units and --dt."
-        raise InputError(text, longest=NAMES) from error
+        raise InputError(text, longest=len(text)) from error

@@ -13,13 +13,12 @@ from rockflex.motion._pulses import (
     rectangular_pulse,
     ricker_pulse,
 )
-from rockflex.motion._read_suite import NAMES, OnError, folder_files, read_files, read_suite
+from rockflex.motion._read_suite import OnError, folder_files, read_files, read_suite
 from rockflex.motion._readers import read_motion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._suite import Suite
 
 __all__ = [
-    "NAMES",
     "GroundMotion",
     "OnError",
     "RecordInfo",

@@ -13,7 +13,7 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._readers import read_motion
 from rockflex.motion._suite import Suite
 
-__all__ = ["NAMES", "OnError", "folder_files", "read_files", "read_suite"]
+__all__ = ["OnError", "folder_files", "read_files", "read_suite"]
 
 OnError = Literal["raise", "skip"]
 

@@ -24,6 +24,7 @@ __all__ = [
     "RANGES",
     "RUN",
     "RUNS",
+    "STOP",
     "check_motion",
     "check_numbers",
     "check_runs",
@@ -38,7 +39,8 @@ SAMPLES = 200_000
 DURATION = 300.0  # s of a record
 MODELS = 4  # side by side
 RUNS = 20_000  # of a study
-RUN = 5.0  # s of computing at which a run is stopped: a hard one takes three times its estimate (`rockflex.solve.Pace`)
+RUN = 1.5  # s of computing that one run may take, as it is estimated (`rockflex.solve.Pace`)
+STOP = 5.0  # s of computing at which it is stopped: a hard run takes three times its estimate
 TOGETHER = 3.0  # s of the runs of one answer, as they are estimated
 STUDY = 180.0  # s of all runs of a study: some minutes
 

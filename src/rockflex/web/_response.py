@@ -12,7 +12,7 @@ from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
 from rockflex.solve import pace_of
 from rockflex.study import simulate
-from rockflex.web._limits import RUN, check_together
+from rockflex.web._limits import STOP, check_together
 from rockflex.web._packing import envelope, pack, plain
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
@@ -50,7 +50,7 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
             raise Refusal({"models": f"{label}: {error}"}) from error
     check_together(tied, motion, free)
     for label, spring in yielding.items():
-        options: dict[str, Any] = {"free_vibration": free, "bouc_wen": spring, "impact": law, "work_limit": RUN}
+        options: dict[str, Any] = {"free_vibration": free, "bouc_wen": spring, "impact": law, "work_limit": STOP}
         try:
             found.append(simulate(built.structure, motion, label, **options))
         except (InputError, SolverError) as error:
