@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._files import write_whole
+from rockflex._files import check_regular, write_whole
 from rockflex._shown import shown
 from rockflex.modal import FloorModes, RockingProperties, Tendon
 from rockflex.models import (
@@ -92,7 +92,8 @@ def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: 
 
 def load(path: Path, kinds: dict[str, type]) -> Kept:
     """Read what `save` wrote, with peaks of these names and types."""
-    if not path.is_file():
+    check_regular(path)
+    if not path.exists():
         message = f"No saved response at {path}. Give the path that Response.save returned."
         raise InputError(message)
     try:
