@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rockflex._kernel import kernel
 
-__all__ = ["EXTRA", "Field", "field_rates", "inertia_left"]
+__all__ = ["EXTRA", "Field", "field_rates", "inertia_left", "pivot_at"]
 
 Array = NDArray[np.float64]
 
@@ -28,14 +28,15 @@ class Field(NamedTuple):
     damping: Array  # 2ζω
     height: Array  # h*
     mass: Array  # m*
-    inertia: float  # I_θ
     weight_arm: float  # L_0^r
     total_mass: float
-    half_width: float
-    prestress_moment: float  # B times the tendons' initial force
-    tendon_stiffness: float  # Σ k (B - x)²
-    prestress: float  # the tendons' initial force
-    axial_stiffness: float  # Σ k
+    # Of the right pivot and of the left one, (2,) each; r = arm - s x is the distance of a tendon.
+    arm: Array  # B: distance of the pivot from the axis of the masses
+    inertia: Array  # I_θ
+    prestress_moment: Array  # Σ F_0 r
+    tendon_stiffness: Array  # Σ k r²
+    tendon_pull: Array  # Σ k r
+    prestress: float  # Σ F_0
     gravity: float  # g
     yield_displacement: float
     post_yield_ratio: float
@@ -46,14 +47,21 @@ class Field(NamedTuple):
 
 
 @kernel
+def pivot_at(side: float) -> int:
+    """Place of a side's pivot in the field's pairs of values."""
+    return 1 if side < 0.0 else 0
+
+
+@kernel
 def inertia_left(field: Field, side: float, motion: Array) -> float:
     """Factor of θ'' once D'' is eliminated: I_θ - Σ m* h*², and in the complete models what D adds."""
     n = field.omega2.size
-    inertia = field.inertia
+    pivot = pivot_at(side)
+    inertia = field.inertia[pivot]
     for i in range(n):
         inertia -= field.mass[i] * field.height[i] * field.height[i]
         if field.complete:
-            inertia += field.mass[i] * motion[i] * (motion[i] - 2.0 * side * field.half_width)
+            inertia += field.mass[i] * motion[i] * (motion[i] - 2.0 * side * field.arm[pivot])
     return inertia
 
 
@@ -68,7 +76,8 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
     sine, cosine = 0.0, 1.0
     if side != 0.0 and field.complete:
         sine, cosine = math.sin(theta), math.cos(theta)
-    offset = side * field.half_width
+    pivot = pivot_at(side)
+    offset = side * field.arm[pivot]
     rates[2 * n + 2] = 0.0
     rates[2 * n + 5] = 0.0
     damped = drive = moment = displaced = carried = 0.0
@@ -99,11 +108,11 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
             arm = weight * sine + field.weight_arm * cosine - displaced * sine
             moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
             # Tendons are stretched by 2 r sin(|θ|/2) and pull at the arm r cos(θ/2), r being their distance B - s x.
-            moment += side * field.prestress_moment * math.sqrt(0.5 + 0.5 * cosine) + field.tendon_stiffness * sine
+            moment += side * field.prestress_moment[pivot] * math.sqrt(0.5 + 0.5 * cosine) + field.tendon_stiffness[pivot] * sine
         else:
             arm = field.weight_arm
             moment += field.gravity * (weight - field.weight_arm * theta)
-            moment += side * field.prestress_moment + field.tendon_stiffness * theta
+            moment += side * field.prestress_moment[pivot] + field.tendon_stiffness[pivot] * theta
         moment += acceleration * arm
         angular = -moment / inertia_left(field, side, motion)
         drive = arm * spin

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._kernel import kernel
-from rockflex.models._field import Field
+from rockflex.models._field import Field, pivot_at
 
 __all__ = ["HORIZONTAL", "LEFT_OUT", "LINEAR", "SWAY", "VERTICAL", "Posture", "observe", "observe_all", "posture_of"]
 
@@ -44,7 +44,8 @@ def posture_of(field: Field, side: float, acceleration: float, motion: Array, ra
     sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
     upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
     half = 0.5 * sine / upright
-    offset = side * field.half_width
+    pivot = pivot_at(side)
+    offset = side * field.arm[pivot]
     across = field.total_mass * offset  # Σ m_i (s B - u_i)
     speed = push = 0.0
     for i in range(n):
@@ -53,7 +54,7 @@ def posture_of(field: Field, side: float, acceleration: float, motion: Array, ra
         push += field.mass[i] * rates[n + i]
     along, beside = across * cosine - field.weight_arm * sine, across * sine + field.weight_arm * cosine
     # A tendon points from where it leaves the base to where it left it in contact: at θ/2 from the vertical.
-    pull = field.prestress + 2.0 * field.axial_stiffness * field.half_width * abs(half)
+    pull = field.prestress + 2.0 * field.tendon_pull[pivot] * abs(half)
     square, coriolis = spin * spin, 2.0 * spin * speed
     return Posture(
         sine=sine,

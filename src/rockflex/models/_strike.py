@@ -12,7 +12,7 @@ from rockflex._kernel import Callback, kernel
 from rockflex.modal import RockingProperties
 from rockflex.models._impact import ImpactLaw, Restitution, VVELComplete, VVELSimplified
 
-__all__ = ["Impact", "OwnLaw", "impact_of", "kinetic_energy", "stick", "strike"]
+__all__ = ["Impact", "OwnLaw", "impact_of", "kinetic_energy", "may_pass", "stick", "strike"]
 
 Array = NDArray[np.float64]
 
@@ -73,6 +73,12 @@ def strike(impact: Impact, state: Array) -> bool:
             state[n + i] *= scale
     state[2 * n + 1] = passed
     return True
+
+
+@kernel
+def may_pass(impact: Impact) -> bool:
+    """Whether the rocking may go on after an impact without a contact in between."""
+    return impact.kind == CALLED or impact.restitution != 0.0
 
 
 @kernel

@@ -1,7 +1,6 @@
-"""The arrays that the adaptive engine's kernels pass around, beside those of the exact engine.
+"""The arrays that the Runge-Kutta steps need, beside those of `rockflex.solve.layout`.
 
-The motion is that of `Field`: [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic]. A row is a linear functional
-[D.., D'.., θ, θ', z, a, s] of it, one set a phase; row 0 is the phase's guard, as in the exact engine.
+The state of an integrated model is [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic].
 """
 
 from typing import NamedTuple
@@ -9,23 +8,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.models import EXTRA, Field
+from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
-from rockflex.solve.exact.layout import Array
+from rockflex.solve.layout import Array
 
-__all__ = ["TERMS", "Flow", "Stages", "stages"]
+__all__ = ["TERMS", "Flow", "Stages", "stages_of"]
 
 TERMS = 8  # of the polynomial across a step
 
 
 class Flow(NamedTuple):
-    """A nonlinear model made ready."""
+    """The phases of a model that no closed form carries."""
 
     field: Field
-    resistance: float  # M_r; infinite on a base that cannot lift
-    free_inertia: float  # I_θ - Σ m* h*²
-    rows: Array  # (2, F, 2N + 5)
-    kinds: NDArray[np.int64]  # (F,): what becomes of the rows while rocking, see `rockflex.models`
+    kinds: NDArray[np.int64]  # (F,): what becomes of the rows while rocking, see `rockflex.models.observe`
     levers: Array  # (F, 2): of those that are no linear functionals
     rest: float  # vertical reaction at rest
     scale: Array  # (2N + 3,): sizes below which a component's error does not matter
@@ -35,7 +31,7 @@ class Flow(NamedTuple):
 class Stages(NamedTuple):
     """Room for one step."""
 
-    motion: Array  # (2N + 6,), at the start of the step; the exact engine's `state` is the front of it
+    motion: Array  # (2N + 6,), at the start of the step: `Motion.state`
     trial: Array  # (2N + 6,)
     rates: Array  # (16, 2N + 6)
     bends: Array  # (7, 2N + 6): the continuous extension
@@ -58,8 +54,11 @@ class Stages(NamedTuple):
     work: Array  # (5,): `Log.work`
 
 
-def stages(motion: Array, rows: int, work: Array) -> Stages:
-    """Room for one run that starts from `motion`; `work` is that of its log."""
+def stages_of(motion: Array, moving: int, rows: int, work: Array) -> Stages:
+    """Room for one run that starts from `motion`, whose first `moving` entries count in the errors.
+
+    `work` is that of its log.
+    """
     n = motion.size
     return Stages(
         motion,
@@ -71,7 +70,7 @@ def stages(motion: Array, rows: int, work: Array) -> Stages:
         np.full(1, np.inf),
         np.ones(1),
         np.zeros(1, dtype=np.bool_),
-        np.zeros(n - EXTRA + 1),
+        np.zeros(moving),
         np.zeros(n),
         np.zeros(n),
         np.zeros(n),

@@ -7,13 +7,14 @@ from rockflex.models import field_rates
 from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
 from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
-from rockflex.solve.exact.layout import LEFT, STEP, Array
+from rockflex.solve.layout import LEFT, STEP, Array, Span, System
 
 __all__ = [
     "FAILED",
     "choose_branch",
     "expand_nested",
     "extend",
+    "forget",
     "place_at",
     "row_poly",
     "settle_on",
@@ -27,17 +28,18 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 
 @kernel
-def take_step(flow: Flow, side: float, acceleration: float, slope: float, longest: float, room: Stages) -> float:
-    """Try steps of at most `longest` until one is accurate; return its length, or `FAILED`, also where no work is left.
+def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
+    """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`, also where no work is left.
 
     `room.trial` holds the end of the step, `room.rates` the stages up to it.
     """
+    longest = rest.length
     step = min(room.step[0], longest)
     if not room.known[0]:
         room.told[0] = False
         if flow.field.hysteretic:
-            choose_branch(flow, side, acceleration, room)
-        field_rates(flow.field, side, room.branch[0], acceleration, room.motion, room.rates[0])
+            choose_branch(flow, side, rest.ground, room)
+        field_rates(flow.field, side, room.branch[0], rest.ground, room.motion, room.rates[0])
     room.known[0] = True
     most = MOST
     while True:
@@ -47,7 +49,7 @@ def take_step(flow: Flow, side: float, acceleration: float, slope: float, longes
         for stage in range(1, LAST + 1):
             place_stage(stage, step, room.motion, room.rates, room.trial)
             field_rates(
-                flow.field, side, room.branch[0], acceleration + slope * step * C[stage], room.trial, room.rates[stage]
+                flow.field, side, room.branch[0], rest.ground + rest.slope * step * C[stage], room.trial, room.rates[stage]
             )
         error = error_of(flow, step, room)
         if error <= 1.0:
@@ -93,13 +95,13 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
 
 
 @kernel
-def extend(flow: Flow, side: float, acceleration: float, slope: float, step: float, room: Stages) -> None:
+def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
     """Fill `room.bends`, the continuous extension of the step just taken."""
-    n = room.motion.size
+    n, step = room.motion.size, span.length
     for stage in range(LAST + 1, STAGES):
         place_stage(stage, step, room.motion, room.rates, room.bends[0])
         field_rates(
-            flow.field, side, room.branch[0], acceleration + slope * step * C[stage], room.bends[0], room.rates[stage]
+            flow.field, side, room.branch[0], span.ground + span.slope * step * C[stage], room.bends[0], room.rates[stage]
         )
     for i in range(n):
         rise = room.trial[i] - room.motion[i]
@@ -112,6 +114,12 @@ def extend(flow: Flow, side: float, acceleration: float, slope: float, step: flo
             for k in range(5, STAGES):
                 total += DENSE[j, k] * room.rates[k, i]
             room.bends[3 + j, i] = step * total
+
+
+@kernel
+def forget(room: Stages) -> None:
+    """Note that the motion is no longer where the last step left it, so that its rates are not known."""
+    room.known[0] = False
 
 
 @kernel
@@ -130,6 +138,7 @@ def step_over(room: Stages) -> None:
 def settle_on(u: float, room: Stages) -> None:
     """Put the motion at the fraction `u` of the step in place of that at its start."""
     place_at(u, room, room.motion)
+    forget(room)
 
 
 @kernel
@@ -144,24 +153,22 @@ def place_at(u: float, room: Stages, place: Array) -> None:
 
 
 @kernel
-def row_poly(
-    row: int, weights: Array, acceleration: float, slope: float, side: float, step: float, room: Stages
-) -> None:
-    """Coefficients, in `room.polys[row]`, of one row over the step, time in units of it."""
-    n = weights.size - 2
-    start = weights[n] * acceleration + weights[n + 1] * side
-    polys = room.polys
+def row_poly(system: System, phase: int, row: int, span: Span, room: Stages) -> None:
+    """Coefficients, in `room.polys[row]`, of one row of a phase over the step, time in units of it."""
+    rows, polys = system.plain_rows, room.polys
+    n = rows.shape[2] - 2
+    start = rows[phase, row, n] * span.ground + rows[phase, row, n + 1]
     for k in range(TERMS):
         polys[row, k] = 0.0
     for i in range(n):
-        weight = weights[i]
+        weight = rows[phase, row, i]
         if weight != 0.0:
             start += weight * room.motion[i]
             for j in range(TERMS - 1):
                 polys[row, j] += weight * room.bends[j, i]
     expand_nested(polys, row)
     polys[row, 0] = start
-    polys[row, 1] += weights[n] * slope * step
+    polys[row, 1] += rows[phase, row, n] * span.slope * span.length
 
 
 @kernel

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.layout import Array, Physics
+from rockflex.solve.layout import Array, Motion, Span, System
 
 __all__ = ["advance", "bend", "evaluate", "expand", "first_descent", "row_series"]
 
@@ -19,94 +19,88 @@ MOST_STEPS = 10_000  # a few do; only a root touched to a high order takes more,
 
 
 @kernel
-def expand(
-    physics: Physics,
-    rocking: bool,
-    state: Array,
-    acceleration: float,
-    slope: float,
-    side: float,
-    lift: float,
-    step: float,
-    series: Array,
-) -> None:
-    """Fill `series` (N + 1, order + 1) with the Taylor coefficients of D_1..D_N and θ, time in units of `step`.
+def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) -> None:
+    """Fill `motion.series` (N + b, order + 1) with the Taylor coefficients of D and q, time in units of the span.
 
     `lift` is θ'' at the instant of uplift, where it is known better than the equation of motion gives it (zero
     from a condition that is met continuously); NaN elsewhere.
     """
-    n = physics.omega2.size
+    n, freedoms, step, series = system.layout.modes, motion.push.size, span.length, motion.series
+    free = system.side[phase] != 0.0
     for i in range(n):
-        series[i, 0] = state[i]
-        series[i, 1] = state[n + i] * step
-    series[n, 0] = state[2 * n]
-    series[n, 1] = state[2 * n + 1] * step
+        series[i, 0] = motion.state[i]
+        series[i, 1] = motion.state[n + i] * step
+    for j in range(freedoms):
+        series[n + j, 0] = motion.state[2 * n + 2 * j]
+        series[n + j, 1] = motion.state[2 * n + 2 * j + 1] * step
     square = step * step
-    share = 1.0 / physics.inertia
     for k in range(series.shape[1] - 2):
         drive = 0.0
         if k == 0:
-            drive = square * acceleration
+            drive = square * span.ground
         elif k == 1:
-            drive = square * step * slope
+            drive = square * step * span.slope
         pair = 1.0 / ((k + 2.0) * (k + 1.0))
-        moment = 0.0
+        for j in range(freedoms):
+            motion.push[j] = 0.0
         for i in range(n):
-            restoring = physics.damping[i] * step * (k + 1.0) * series[i, k + 1]
-            restoring += physics.omega2[i] * square * series[i, k]
-            moment += physics.mass[i] * physics.height[i] * restoring
+            restoring = system.damping[i] * step * (k + 1.0) * series[i, k + 1]
+            restoring += system.omega2[i] * square * series[i, k]
             series[i, k + 2] = -(restoring + drive) * pair
-        series[n, k + 2] = 0.0
-        if not rocking:
+            for j in range(freedoms):
+                motion.push[j] += system.leverage[phase, j, i] * restoring
+        for j in range(freedoms):
+            series[n + j, k + 2] = 0.0
+        if not free:
             continue
-        moment += physics.gravity * square * series[n, k] + physics.drive_arm * drive
-        if k == 0:
-            moment -= side * physics.resistance * square
-        angular = moment * share
-        if k == 0 and not math.isnan(lift):
-            angular = square * lift
-        series[n, k + 2] = angular * pair
-        for i in range(n):
-            series[i, k + 2] -= physics.height[i] * angular * pair
+        for j in range(freedoms):
+            force = system.drive[phase, j] * drive
+            for m in range(freedoms):
+                force -= system.base_stiffness[phase, j, m] * square * series[n + m, k]
+                force -= system.base_damping[phase, j, m] * step * (k + 1.0) * series[n + m, k + 1]
+            if k == 0:
+                force += system.constant[phase, j] * square
+            motion.push[j] += force
+        for j in range(freedoms):
+            turn = 0.0
+            for m in range(freedoms):
+                turn += system.flexibility[phase, j, m] * motion.push[m]
+            if k == 0 and not math.isnan(lift):
+                turn = square * lift
+            series[n + j, k + 2] = turn * pair
+            for i in range(n):
+                series[i, k + 2] -= system.coupling[phase, j, i] * turn * pair
 
 
 @kernel
-def row_series(
-    rows: Array,
-    phase: int,
-    row: int,
-    series: Array,
-    acceleration: float,
-    slope: float,
-    side: float,
-    step: float,
-    polys: Array,
-) -> None:
-    """Taylor coefficients, in `polys[row]`, of one linear functional of state, ground acceleration and side."""
-    n, terms = series.shape[0] - 1, series.shape[1]
+def row_series(system: System, phase: int, row: int, motion: Motion, span: Span) -> None:
+    """Taylor coefficients, in `motion.polys[row]`, of one row of a phase."""
+    n, pairs, terms = system.layout.modes, motion.series.shape[0], motion.series.shape[1]
+    rows, polys, series, step = system.plain_rows, motion.polys, motion.series, span.length
+    ground = rows.shape[2] - 2
     for k in range(terms):
         polys[row, k] = 0.0
-    for i in range(n + 1):
-        weight = rows[phase, row, i if i < n else 2 * n]
+    for i in range(pairs):
+        weight = rows[phase, row, i if i < n else 2 * i]
         if weight != 0.0:
             for k in range(terms):
                 polys[row, k] += weight * series[i, k]
-        weight = rows[phase, row, n + i if i < n else 2 * n + 1] / step
+        weight = rows[phase, row, n + i if i < n else 2 * i + 1] / step
         if weight != 0.0:
             for k in range(terms - 1):
                 polys[row, k] += weight * (k + 1.0) * series[i, k + 1]
-    polys[row, 0] += rows[phase, row, 2 * n + 2] * acceleration + rows[phase, row, 2 * n + 3] * side
-    polys[row, 1] += rows[phase, row, 2 * n + 2] * slope * step
+    polys[row, 0] += rows[phase, row, ground] * span.ground + rows[phase, row, ground + 1]
+    polys[row, 1] += rows[phase, row, ground] * span.slope * step
 
 
 @kernel
-def advance(series: Array, u: float, step: float, state: Array) -> None:
-    """State at the fraction `u` of `step` from the series."""
-    n = series.shape[0] - 1
-    for i in range(n + 1):
-        value, rate = evaluate(series, i, u)
-        state[i if i < n else 2 * n] = value
-        state[n + i if i < n else 2 * n + 1] = rate / step
+def advance(system: System, motion: Motion, u: float, step: float) -> None:
+    """Put the state at the fraction `u` of `step`, from the series, in place of that at its start."""
+    n = system.layout.modes
+    for i in range(motion.series.shape[0]):
+        value, rate = evaluate(motion.series, i, u)
+        motion.state[i if i < n else 2 * i] = value
+        motion.state[n + i if i < n else 2 * i + 1] = rate / step
 
 
 @kernel

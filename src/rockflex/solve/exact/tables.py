@@ -1,4 +1,4 @@
-"""Propagators and curvature bounds of both phases for the steps dt, dt/2, ... dt/2^J.
+"""Propagators and curvature bounds of a phase for the steps dt, dt/2, ... dt/2^J, and the tables that hold them.
 
 The bounds say where an event or a peak can hide between two instants. Over a step h a row leaves its chord by at
 most h²/8 max|row''|, its slope leaves its own chord by h²/8 max|row'''|, and the row leaves the cubic through the
@@ -12,61 +12,143 @@ import numpy as np
 from scipy.linalg import expm
 
 from rockflex._errors import InputError
+from rockflex.models import FREEDOMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis
-from rockflex.solve.exact.layout import Array, Physics, System
+from rockflex.solve.layout import Array, System
 
-__all__ = ["propagate", "tabulate"]
+__all__ = ["check_step", "empty_system", "grown", "levels_of", "propagate", "put_phase", "series_order"]
 
 LONGEST_FALL = 300.0  # e-folds of the rotation within a time step: beyond it numbers overflow
-NONE = np.empty((0, 0, 0))
 
 
-def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis, dt: float) -> System:
-    """A system for one time step; `plain_rows` (2, F, 2K + 2).
+def check_step(basis: Basis, dt: float) -> None:
+    """Check that no rotation grows beyond all numbers within a time step.
 
     Raises
     ------
     InputError
-        If the time step is so long that a rotation grows beyond all numbers within it.
+        If one does.
     """
-    fall = float(rocking.roots.real.max())
+    fall = float(basis.roots.real.max())
     if fall * dt > LONGEST_FALL:
         message = (
             f"The time step of {dt:g} s is too long: a rocking rotation of this structure grows e-fold in "
             f"{1.0 / fall:.3g} s. Give the motion at a step of at most {LONGEST_FALL / fall:.3g} s."
         )
         raise InputError(message)
-    fastest = max(contact.fastest, rocking.fastest)
-    halvings = max(0, math.ceil(math.log2(max(fastest * dt, 1.0))))  # then no mode turns by more than one radian
-    steps: Array = dt * 0.5 ** np.arange(halvings + 1, dtype=np.float64)
-    sag, swing, ripple = zip(*(_bounds(basis, steps) for basis in (contact, rocking)), strict=True)
-    return System(
-        physics=physics,
-        plain_rows=plain_rows,
-        basis=np.ascontiguousarray(np.stack((contact.basis.T, rocking.basis.T))),
-        inverse=np.ascontiguousarray(np.stack((contact.inverse.T, rocking.inverse.T))),
-        forced=np.stack((contact.forced, rocking.forced)),
-        rows=np.stack((contact.rows, rocking.rows)),
-        row_forcing=np.stack((contact.row_forcing, rocking.row_forcing)),
-        slope_rows=np.stack((contact.rows @ contact.matrix, rocking.rows @ rocking.matrix)),
-        blocks=np.stack((_blocks(contact, steps), _blocks(rocking, steps))),
-        dense=np.stack([expm(rocking.matrix * h) for h in steps]) if rocking.dense else NONE,
-        sag=np.stack(sag),
-        swing=np.stack(swing),
-        ripple=np.stack(ripple),
-        steps=steps,
-        hold=_pair_norm(contact.rows),
-        order=_series_order(fastest * float(steps[-1])),
-    )
 
 
-def _series_order(turn: float) -> int:
-    """Order at which a series that starts at t³, as at an uplift, has converged for a mode that turns by `turn`."""
+def levels_of(fastest: float, dt: float) -> int:
+    """How often a time step is halved until no mode turns by more than one radian."""
+    return max(0, math.ceil(math.log2(max(fastest * dt, 1.0))))
+
+
+def series_order(fastest: float, dt: float) -> int:
+    """Order at which a series that starts at t³, as at an uplift, has converged over the finest step of a phase."""
+    turn = fastest * dt * 0.5 ** levels_of(fastest, dt)
     order, term = 3, 1.0
     while term > 1e-17:
         order += 1
         term *= turn / order
     return order
+
+
+def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, levels: int, *, dense: bool) -> System:
+    """Return tables with room for so many phases and halvings of the time step, and none in them yet."""
+    p, layout, b = model.properties, model.layout, len(FREEDOMS)
+    n, core, pairs, columns = layout.modes, layout.core, layout.core // 2, layout.columns
+    whole = (capacity, levels + 1)
+    return System(
+        layout=layout,
+        omega2=p.omega**2,
+        damping=2.0 * p.zeta * p.omega,
+        coupling=np.zeros((capacity, b, n)),
+        leverage=np.zeros((capacity, b, n)),
+        flexibility=np.zeros((capacity, b, b)),
+        base_damping=np.zeros((capacity, b, b)),
+        base_stiffness=np.zeros((capacity, b, b)),
+        constant=np.zeros((capacity, b)),
+        drive=np.zeros((capacity, b)),
+        side=np.zeros(capacity),
+        linear=np.zeros(capacity, dtype=np.bool_),
+        dense=np.zeros(capacity, dtype=np.bool_),
+        levels=np.zeros(capacity, dtype=np.int64),
+        low=np.zeros(capacity),
+        high=np.zeros(capacity),
+        event=np.zeros((capacity, 2), dtype=np.int64),
+        follows=np.full((capacity, 2), -1, dtype=np.int64),
+        beside=np.full((capacity, 3), -1, dtype=np.int64),
+        plain_rows=np.zeros((capacity, rows, columns)),
+        basis=np.zeros((capacity, core, core)),
+        inverse=np.zeros((capacity, core, core)),
+        forced=np.zeros((capacity, 3, core)),
+        rows=np.zeros((capacity, rows, core)),
+        row_forcing=np.zeros((capacity, rows, 3)),
+        slope_rows=np.zeros((capacity, rows, core)),
+        blocks=np.zeros((*whole, 4, pairs)),
+        propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
+        sag=np.zeros((*whole, rows, pairs)),
+        swing=np.zeros((*whole, rows, pairs)),
+        ripple=np.zeros((*whole, rows, pairs)),
+        hold=np.zeros((capacity, rows, pairs)),
+        steps=dt * 0.5 ** np.arange(levels + 1, dtype=np.float64),
+    )
+
+
+def grown(system: System, larger: System) -> System:
+    """Return `larger` with all that `system` holds."""
+    for old, new in zip(system[1:], larger[1:], strict=True):
+        if old.size and new.shape != old.shape:
+            new[tuple(slice(length) for length in old.shape)] = old
+        elif old.size:
+            new[...] = old
+    return larger
+
+
+def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_rows: Array, dt: float) -> None:
+    """Enter one phase at place `p`; `plain_rows` (F, C). Where it is not linear, there is no basis."""
+    guard = phase.guards[0]
+    system.side[p] = phase.side
+    system.low[p], system.high[p] = guard.low, guard.high
+    for bound, end in enumerate((guard.below, guard.above)):
+        system.event[p, bound] = -1 if end is None else end.event
+    system.plain_rows[p] = plain_rows
+    system.linear[p] = basis is not None
+    arrow = phase.arrow
+    if basis is None or arrow is None:
+        return
+    system.coupling[p] = arrow.coupling
+    system.leverage[p] = arrow.leverage
+    system.flexibility[p] = arrow.flexibility
+    system.base_damping[p] = arrow.damping
+    system.base_stiffness[p] = arrow.stiffness
+    system.constant[p] = arrow.constant
+    system.drive[p] = arrow.drive
+    levels = levels_of(basis.fastest, dt)
+    steps = system.steps[: levels + 1]
+    core, own = basis.basis.shape[0], slice(levels + 1)
+    moving = plain_rows[:, :core]
+    rows = moving @ basis.basis
+    forcing = moving @ basis.steady.T
+    forcing[:, 0] += plain_rows[:, -2]
+    forcing[:, 2] += plain_rows[:, -1]
+    system.dense[p] = basis.dense
+    system.levels[p] = levels
+    system.basis[p] = basis.basis.T
+    system.inverse[p] = basis.inverse.T
+    system.forced[p] = basis.steady @ basis.inverse.T
+    system.rows[p] = rows
+    system.row_forcing[p] = forcing
+    first = rows @ basis.matrix
+    system.slope_rows[p] = first
+    system.blocks[p, own] = _blocks(basis, steps)
+    if basis.dense:
+        system.propagator[p, own] = np.stack([expm(basis.matrix * h) for h in steps])
+        bounds = _dense_bounds(basis, rows, steps)
+    else:
+        bounds = _bounds(basis, rows, first, steps)
+    system.sag[p, own], system.swing[p, own], system.ripple[p, own] = bounds
+    system.hold[p] = _pair_norm(rows)
 
 
 def _blocks(basis: Basis, steps: Array) -> Array:
@@ -91,25 +173,22 @@ def _pair_norm(rows: Array) -> Array:
     return np.hypot(rows[..., :half], rows[..., half:])
 
 
-def _bounds(basis: Basis, steps: Array) -> tuple[Array, Array, Array]:
+def _bounds(basis: Basis, rows: Array, first: Array, steps: Array) -> tuple[Array, Array, Array]:
     """Sag, swing and ripple of every row over every step, (J + 1, F, K) each."""
-    if basis.dense:
-        return _dense_bounds(basis, steps)
     h = steps[:, None, None]
     growth = np.exp(np.maximum(basis.roots.real.max(axis=1), 0.0) * h)
-    first = basis.rows @ basis.matrix
     second = first @ basis.matrix
     third = second @ basis.matrix
     fourth = third @ basis.matrix
-    sag = np.minimum(_pair_norm(second) * h**2 / 8.0, 2.0 * _pair_norm(basis.rows)) * growth
+    sag = np.minimum(_pair_norm(second) * h**2 / 8.0, 2.0 * _pair_norm(rows)) * growth
     swing = np.minimum(_pair_norm(third) * h**2 / 8.0, 2.0 * _pair_norm(first)) * growth
     return sag, swing, _pair_norm(fourth) * h**4 / 384.0 * growth
 
 
-def _dense_bounds(basis: Basis, steps: Array) -> tuple[Array, Array, Array]:
+def _dense_bounds(basis: Basis, rows: Array, steps: Array) -> tuple[Array, Array, Array]:
     """The same from |row B² exp(B t)| on the finest grid, and a norm bound between its points."""
     finest, between = expm(basis.matrix * steps[-1]), expm(np.abs(basis.matrix) * steps[-1])
-    second = basis.rows @ basis.matrix @ basis.matrix
+    second = rows @ basis.matrix @ basis.matrix
     third = second @ basis.matrix
     moving = np.stack((second, third, third @ basis.matrix))
     worst = np.abs(moving) @ between

@@ -9,21 +9,17 @@ from rockflex._kernel import kernel
 from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Log
-from rockflex.solve.exact.peaks import raise_peaks, size_of
-from rockflex.solve.exact.probe import QUARTER_TURN
+from rockflex.solve.layout import GUARD, Log, Span, System
+from rockflex.solve.peaks import raise_peaks, size_of
 
 __all__ = ["nothing_hides"]
 
 
 @kernel
-def nothing_hides(
-    flow: Flow, side: float, acceleration: float, slope: float, step: float, time: float, log: Log, room: Stages
-) -> bool:
+def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:
     """True where the step just taken holds no event and no new peak but at its end, which is then noted."""
-    phase = ROCKING if side != 0.0 else CONTACT
-    n = flow.rows.shape[2] - 2
-    modes = flow.field.omega2.size
+    rows, side, step = system.plain_rows, system.side[phase], span.length
+    n, modes = rows.shape[2] - 2, flow.field.omega2.size
     if flow.field.hysteretic:
         first, last = room.branch[0] * room.motion[modes], room.branch[0] * room.trial[modes]
         before, after = room.branch[0] * room.rates[0, modes], room.branch[0] * room.rates[LAST, modes]
@@ -32,34 +28,35 @@ def nothing_hides(
     if (
         side != 0.0
         and flow.field.complete
-        and curves_hide(flow, side, acceleration, slope, step, time, room.trial, room.rates[LAST], log, room)
+        and curves_hide(system, flow, phase, span, room.trial, room.rates[LAST], log, room)
     ):
         return False
+    low_limit, high_limit = system.low[phase], system.high[phase]
     for f in range(log.peaks.size):
         if is_curved(flow, f, side):
             continue
-        first = flow.rows[phase, f, n] * acceleration + flow.rows[phase, f, n + 1] * side
-        before = flow.rows[phase, f, n] * slope
+        first = rows[phase, f, n] * span.ground + rows[phase, f, n + 1]
+        before = rows[phase, f, n] * span.slope
         last, after = first + before * step, before
         for i in range(n):
-            weight = flow.rows[phase, f, i]
+            weight = rows[phase, f, i]
             if weight != 0.0:
                 first += weight * room.motion[i]
                 last += weight * room.trial[i]
                 before += weight * room.rates[0, i]
                 after += weight * room.rates[LAST, i]
         low, high = stretch(first, last, step * before, step * after)
-        if f > 0:
+        if f != GUARD:
             # At the ends a peak is no secret: it is noted below.
-            known = max(log.peaks[f], max(size_of(first, f, side, log), size_of(last, f, side, log)))
-            hidden = max(size_of(high, f, side, log), size_of(low, f, side, log)) > known
+            known = max(log.peaks[f], max(size_of(first, f, log), size_of(last, f, log)))
+            hidden = max(size_of(high, f, log), size_of(low, f, log)) > known
         elif side == 0.0:
-            hidden = high > flow.resistance or -low > flow.resistance
+            hidden = low < low_limit or high > high_limit
         else:
-            hidden = min(side * first, side * last) <= 0.0 or (low if side > 0.0 else -high) <= 0.0
-            hidden = hidden or max(high, -low) > max(log.peaks[0], abs(first), abs(last)) or abs(last) > QUARTER_TURN
+            hidden = min(low, first) <= low_limit or max(high, first) >= high_limit
+            hidden = hidden or max(high, -low) > max(log.peaks[GUARD], abs(first), abs(last))
         if hidden:
             return False
         room.ends[f] = last
-    raise_peaks(room.ends, side, time + step, log)
+    raise_peaks(room.ends, side, span.time + step, log)
     return True

@@ -1,0 +1,181 @@
+"""What carries the motion over one stretch of time: a power series where the phase is linear, else a Runge-Kutta step.
+
+A carrier begins a stretch and gives the guard's polynomial over it, then raises the peaks up to where the stretch is
+cut, and puts the motion there. Models without a vector field (`flow` is None) are compiled with the series alone.
+"""
+
+import math
+
+
+from rockflex._kernel import kernel
+from rockflex.models import field_rates, inertia_left
+from rockflex.solve.adaptive.curves import is_curved, raise_curves
+from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, step_over, take_step
+from rockflex.solve.adaptive.turning import BARELY
+from rockflex.solve.exact.series import advance, expand, row_series
+from rockflex.solve.exits import phase_exit
+from rockflex.solve.layout import GUARD, Array, Log, Motion, Progress, Span, System
+from rockflex.solve.peaks import raise_peak, raise_to
+
+__all__ = ["begin", "first_exit", "free_inertia", "move", "note_peaks", "prepare_guard", "turning_rate"]
+
+
+@kernel
+def begin(
+    system: System, flow: Flow | None, at: Progress, rest: Span, motion: Motion, stages: Stages | None
+) -> float:
+    """Begin a stretch over the `rest` of a linear phase's unit, or of the sample; return its length.
+
+    It is `step.FAILED` where no step is short enough.
+    """
+    if flow is None:
+        return rest.length
+    else:
+        if system.linear[at.phase]:
+            return rest.length
+        return take_step(flow, system.side[at.phase], rest, stages)
+
+
+@kernel
+def prepare_guard(
+    system: System, flow: Flow | None, at: Progress, span: Span, motion: Motion, stages: Stages | None
+) -> None:
+    """Fill in the guard's polynomial over the stretch."""
+    p = at.phase
+    if flow is None:
+        expand(system, p, motion, span, at.lift)
+        row_series(system, p, GUARD, motion, span)
+    else:
+        if system.linear[p]:
+            expand(system, p, motion, span, at.lift)
+            row_series(system, p, GUARD, motion, span)
+        else:
+            extend(flow, system.side[p], span, stages)
+            row_poly(system, p, GUARD, span, stages)
+            if not math.isnan(at.lift):
+                # θ and θ' start from zero and θ'' from what the guard says, all of them exactly.
+                stages.polys[GUARD, 0] = stages.polys[GUARD, 1] = 0.0
+                stages.polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
+
+
+@kernel
+def first_exit(
+    system: System, flow: Flow | None, at: Progress, motion: Motion, stages: Stages | None
+) -> tuple[float, int, float]:
+    """Where the phase ends: see `phase_exit`."""
+    if flow is None:
+        return phase_exit(system, at, motion.polys)
+    else:
+        if system.linear[at.phase]:
+            return phase_exit(system, at, motion.polys)
+        return phase_exit(system, at, stages.polys)
+
+
+@kernel
+def note_peaks(
+    system: System,
+    flow: Flow | None,
+    at: Progress,
+    span: Span,
+    stop: float,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> None:
+    """Raise the peaks over [0, stop] of the stretch."""
+    if flow is None:
+        note_of_series(system, at, span, stop, log, motion)
+    else:
+        if system.linear[at.phase]:
+            note_of_series(system, at, span, stop, log, motion)
+        else:
+            note_of_step(system, flow, at, span, stop, log, stages)
+
+
+@kernel
+def note_of_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
+    p = at.phase
+    if system.side[p] != 0.0:
+        raise_peak(motion.polys, GUARD, stop, span, log)
+    for f in range(1, log.peaks.size):
+        if at.fresh_rows or motion.doubt[f]:
+            row_series(system, p, f, motion, span)
+            raise_peak(motion.polys, f, stop, span, log)
+
+
+@kernel
+def note_of_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, stages: Stages) -> None:
+    p = at.phase
+    side = system.side[p]
+    if side != 0.0:
+        raise_peak(stages.polys, GUARD, stop, span, log)
+        if flow.field.complete:
+            raise_curves(system, flow, p, span, stop, log, stages)
+    for f in range(1, log.peaks.size):
+        if not is_curved(flow, f, side):
+            row_poly(system, p, f, span, stages)
+            raise_peak(stages.polys, f, stop, span, log)
+
+
+@kernel
+def move(
+    system: System,
+    flow: Flow | None,
+    at: Progress,
+    span: Span,
+    stop: float,
+    turns: bool,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> None:
+    """Put the motion at the fraction `stop` of the stretch; `turns`: a hysteretic spring turns there."""
+    if flow is None:
+        move_by_series(system, at, span, stop, log, motion)
+    else:
+        if system.linear[at.phase]:
+            move_by_series(system, at, span, stop, log, motion)
+        elif stop == 1.0:
+            step_over(stages)
+        else:
+            settle_on(stop, stages)
+            if turns:
+                motion.state[system.layout.modes] = -stages.branch[0] * BARELY
+
+
+@kernel
+def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
+    advance(system, motion, stop, span.length)
+    time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop
+    for f in range(1, log.peaks.size):
+        if not (at.fresh_rows or motion.doubt[f]):
+            raise_to(system, at.phase, f, ground, time, log, motion)
+
+
+@kernel
+def free_inertia(system: System, flow: Flow | None, phase: int, state: Array) -> float:
+    """What is left to the rotation while the modes move freely: I_θ - Σ m* h*², and what D adds in complete models."""
+    if flow is None:
+        return 1.0 / system.flexibility[phase, 0, 0]
+    else:
+        return inertia_left(flow.field, system.side[phase], state)
+
+
+@kernel
+def turning_rate(
+    system: System, flow: Flow | None, phase: int, ground: float, motion: Motion, stages: Stages | None
+) -> float:
+    """θ'' in a phase that the motion may go on with, at θ = 0."""
+    if flow is None:
+        n = system.layout.modes
+        moment = system.constant[phase, 0] + system.drive[phase, 0] * ground
+        moment -= system.base_damping[phase, 0, 0] * motion.state[system.layout.spin]
+        for i in range(n):
+            restoring = system.damping[i] * motion.state[n + i] + system.omega2[i] * motion.state[i]
+            moment += system.leverage[phase, 0, i] * restoring
+        return moment * system.flexibility[phase, 0, 0]
+    else:
+        forget(stages)
+        field_rates(flow.field, system.side[phase], 1.0, ground, motion.state, stages.rates[0])
+        return stages.rates[0, system.layout.spin]

@@ -1,0 +1,236 @@
+"""The motion carried from event to event: the first root of a guard, a jump, and the phase that follows."""
+
+
+import numpy as np
+
+from rockflex._kernel import kernel
+from rockflex.models import LANDS, OVERTURNS, Impact, kinetic_energy, may_pass, stick, strike
+from rockflex.solve.adaptive.check import nothing_hides
+from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.step import FAILED, forget, step_over
+from rockflex.solve.adaptive.turning import turning
+from rockflex.solve.carrier import begin, first_exit, free_inertia, move, note_peaks, prepare_guard, turning_rate
+from rockflex.solve.exits import INSIDE, LIFTED, PASSING, TOUCHED
+from rockflex.solve.history import keep, room_left
+from rockflex.solve.layout import (
+    EVENTS,
+    GUARD,
+    IMPACTS,
+    LEFT,
+    SERIES,
+    UPLIFTS,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+)
+from rockflex.solve.status import Status
+
+__all__ = ["CROSSED", "PAUSED", "cross", "enter", "start_crossing"]
+
+CROSSED = int(Status.ENDED)
+OVERTURNED, PAUSED, LACKS_PHASE = int(Status.OVERTURNED), int(Status.PAUSED), int(Status.LACKS_PHASE)
+BROKEN, CHATTER, GAINED, STALLED = (
+    int(each) for each in (Status.BROKEN, Status.CHATTER, Status.GAINED, Status.STALLED)
+)
+
+MOST_EVENTS = 20_000  # in one sample
+GAIN = 1e-9  # of the energy before an impact, that rounding may add
+SNAP = 1e-10  # of a unit: an event this close to its end is left to the next unit, which starts on it
+RESUME = 1e-7  # where contact is searched again after a guard that was touched but not passed
+FOLLOWING = 3  # `Progress.lacking`: first the places of `beside`, then those of `follows`
+
+
+@kernel
+def enter(system: System, at: Progress, phase: int) -> None:
+    """Go on in another phase from the present state; in a linear one the walk over the grid goes on at `at.place`."""
+    at.phase, at.tuned, at.stated, at.started = phase, False, True, False
+    levels = system.levels[phase]
+    at.place = min(int(at.begun / system.steps[levels]), (1 << levels) - 1)
+
+
+@kernel
+def start_crossing(at: Progress, fresh_rows: bool) -> None:
+    """Begin to cross event by event; with `fresh_rows` it is not known which rows may hide a peak."""
+    at.crossing, at.fresh_rows, at.onset, at.lift, at.resume = True, fresh_rows, INSIDE, np.nan, 0.0
+
+
+@kernel
+def beside(side: float) -> int:
+    """Place in `System.beside` of the phase with the base on a side."""
+    return 0 if side == 0.0 else (1 if side > 0.0 else 2)
+
+
+@kernel
+def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) -> int:
+    """Place of the phase that is needed after an event and was not met yet; -1 where none is lacking."""
+    p = at.phase
+    if event == LANDS:
+        for place in range(3):
+            needed = place == 0 or (may_pass(impact) and place != beside(system.side[p]))
+            if needed and system.beside[p, place] < 0:
+                return place
+    elif event != OVERTURNS and system.follows[p, bound] < 0:
+        return FOLLOWING + bound
+    return -1
+
+
+@kernel
+def cross(
+    system: System,
+    flow: Flow | None,
+    impact: Impact,
+    sample: Span,
+    at: Progress,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> int:
+    """Carry the state on from `at.begun`, event by event: to the next place on the grid, in a linear phase, or to the
+    sample's end.
+
+    Where it pauses, `at` holds all that it must know to go on.
+    """
+    while at.begun < sample.length:
+        if log.work[LEFT] < 0.0 or room_left(log) < 0:
+            return PAUSED
+        log.work[LEFT] -= log.work[SERIES]
+        p = at.phase
+        side, linear = system.side[p], system.linear[p]
+        here = sample.ground + sample.slope * at.begun
+        now = min(sample.time + at.begun, sample.until)
+        longest, unit = sample.length - at.begun, sample.length
+        if linear:
+            unit = float(system.steps[system.levels[p]])
+            longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
+        length = begin(system, flow, at, Span(now, sample.until, here, sample.slope, longest), motion, stages)
+        if length == FAILED:
+            return PAUSED if log.work[LEFT] < 0.0 else STALLED
+        span = Span(now, sample.until, here, sample.slope, length)
+        whole = length == longest
+        if flow is not None:
+            if not linear and at.onset == INSIDE and nothing_hides(system, flow, p, span, log, stages):
+                step_over(stages)
+                at.begun = sample.length if whole else at.begun + length
+                continue
+        prepare_guard(system, flow, at, span, motion, stages)
+        stop, bound, excess = first_exit(system, flow, at, motion, stages)
+        event = system.event[p, bound]
+        if stop < 0.0:
+            at.lacking = lacks(system, at, event, bound, impact)
+            if at.lacking >= 0:
+                return LACKS_PHASE
+            if side != 0.0:
+                log.tally[EVENTS] += 1
+                enter(system, at, system.beside[p, 0])
+                at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
+            else:
+                enter(system, at, system.follows[p, bound])
+                inertia = free_inertia(system, flow, at.phase, motion.state)
+                at.onset, at.lift = LIFTED, system.side[at.phase] * excess / inertia
+            at.fresh_rows = True
+            if flow is not None:
+                forget(stages)
+            continue
+        tipped = event == OVERTURNS and stop < 1.0
+        ends = not tipped and stop > 1.0 - SNAP * (unit / length if linear else 1.0)
+        if ends:
+            stop = 1.0
+        turns = False
+        if flow is not None:
+            if flow.field.hysteretic:
+                turn = turning(flow, stages)
+                turns = turn < stop
+                if turns:
+                    stop, ends, tipped = turn, True, False
+        if not ends:
+            at.lacking = lacks(system, at, event, bound, impact)
+            if at.lacking >= 0:
+                return LACKS_PHASE
+        if at.onset >= LIFTED:
+            log.tally[UPLIFTS] += 1
+            log.tally[EVENTS] += 1
+            keep(log, now, 0.0, here, motion.state)
+            keep(log, now, side, here, motion.state)
+        note_peaks(system, flow, at, span, stop, log, motion, stages)
+        move(system, flow, at, span, stop, turns, log, motion, stages)
+        at.begun = sample.length if whole and stop == 1.0 and not linear else at.begun + stop * length
+        at.onset, at.lift = INSIDE, np.nan
+        if ends:
+            at.resume = 0.0
+            if linear:
+                at.place += 1
+                grid = 1 << system.levels[p]
+                at.begun = sample.length if at.place == grid else unit * at.place
+                break
+            continue
+        here = sample.ground + sample.slope * at.begun
+        now = min(sample.time + at.begun, sample.until)
+        if tipped:
+            limit = system.high[p] if side > 0.0 else system.low[p]
+            log.peaks[GUARD], log.times[GUARD] = abs(limit), now
+            motion.state[system.layout.rotation] = limit
+            keep(log, now, side, here, motion.state)
+            return OVERTURNED
+        motion.state[system.layout.rotation] = 0.0
+        if event == LANDS:
+            keep(log, now, side, here, motion.state)
+            status, next_side = land(system, flow, impact, p, here, motion, stages)
+            if status != CROSSED:
+                return status
+            log.tally[EVENTS] += 1
+            log.tally[IMPACTS] += 1
+            keep(log, now, next_side, here, motion.state)
+            enter(system, at, system.beside[p, beside(next_side)])
+            at.onset = PASSING if next_side != 0.0 else INSIDE
+        else:
+            motion.state[system.layout.spin] = 0.0
+            enter(system, at, system.follows[p, bound])
+            inertia = free_inertia(system, flow, at.phase, motion.state)
+            at.lift = system.side[at.phase] * excess / inertia
+            at.onset = LIFTED if excess > 0.0 else TOUCHED
+        at.resume = 0.0
+        at.fresh_rows = True
+        if flow is not None:
+            forget(stages)
+        if log.tally[EVENTS] > MOST_EVENTS:
+            return CHATTER
+    at.crossing = False
+    return CROSSED
+
+
+@kernel
+def land(
+    system: System,
+    flow: Flow | None,
+    impact: Impact,
+    phase: int,
+    ground: float,
+    motion: Motion,
+    stages: Stages | None,
+) -> tuple[int, float]:
+    """Apply the impact law; return status and the side to which the rotation goes on, 0 for contact.
+
+    It stays in contact once its next excursion would be too short to count.
+    """
+    state, spin_place = motion.state, system.layout.spin
+    before = kinetic_energy(impact, free_inertia(system, flow, phase, state), state)
+    if not strike(impact, state):
+        return BROKEN, 0.0
+    spin = state[spin_place]
+    if spin == 0.0:
+        after = kinetic_energy(impact, 0.0, state)
+        return (GAINED if after > before * (1.0 + GAIN) else CROSSED), 0.0
+    next_side = 1.0 if spin > 0.0 else -1.0
+    following = system.beside[phase, beside(next_side)]
+    after = kinetic_energy(impact, free_inertia(system, flow, following, state), state)
+    if after > before * (1.0 + GAIN):
+        return GAINED, next_side
+    back = -next_side * turning_rate(system, flow, following, ground, motion, stages)
+    if 2.0 * abs(spin) < back * impact.shortest:
+        stick(impact, state)
+        if kinetic_energy(impact, 0.0, state) > before * (1.0 + GAIN):
+            return GAINED, 0.0
+        return CROSSED, 0.0
+    return CROSSED, next_side

@@ -1,0 +1,206 @@
+"""The arrays that the kernels pass around.
+
+The state is that of `rockflex.models.StateLayout`. A *row* is a linear functional of its moving entries, the ground
+acceleration and 1, one set of rows a phase. Row 0 of each phase is its guard; while the base rocks it is the rotation
+as well. The last row is what the base has lost of its support: it has a largest value and no least. The rows between are
+the quantities whose peaks are wanted.
+
+Each linear phase is uncoupled into K pairs of coordinates w, where state = basis · (w + forced part); pair k is
+``(w[k], w[K + k])``. Under an acceleration that is linear in time, w moves without forcing, ``w(t + h) = exp(B h) w(t)``,
+and it jumps by ``-forced[1] Δa'`` where the acceleration's slope a' changes.
+"""
+
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex.models import StateLayout
+
+__all__ = [
+    "CARRY",
+    "EVENTS",
+    "GUARD",
+    "IMPACTS",
+    "KEPT",
+    "LEFT",
+    "LOOK",
+    "SERIES",
+    "STEP",
+    "UPLIFTS",
+    "ZERO",
+    "Array",
+    "Course",
+    "Log",
+    "Motion",
+    "Progress",
+    "Span",
+    "System",
+    "motion_of",
+    "progress_at_start",
+]
+
+Array = NDArray[np.float64]
+Progress = Any  # a record of `_PROGRESS`
+
+# Places in `Log.work`: what is left of this slice, and what each kind of work takes, in s of `solve.pace`.
+LEFT, CARRY, LOOK, SERIES, STEP = 0, 1, 2, 3, 4
+
+# Places in `Log.tally`; EVENTS counts those of the present sample, KEPT the states of the history.
+UPLIFTS, IMPACTS, EVENTS, KEPT = 0, 1, 2, 3
+
+# A bare 0 has a type of its own in numba, for which every callee would be compiled once more.
+ZERO = cast("int", np.int64(0))
+GUARD = ZERO  # the row of the guard
+
+
+class System(NamedTuple):
+    """A model made ready for a time step: its phases, P of them, as many as were met; level j is the step dt / 2^j."""
+
+    layout: StateLayout
+    omega2: Array  # ω²
+    damping: Array  # 2ζω
+    # The arrow of each phase: `rockflex.models.Arrow`
+    coupling: Array  # (P, b, N)
+    leverage: Array  # (P, b, N)
+    flexibility: Array  # (P, b, b)
+    base_damping: Array  # (P, b, b)
+    base_stiffness: Array  # (P, b, b)
+    constant: Array  # (P, b)
+    drive: Array  # (P, b)
+    # What kind of phase it is, and how it ends
+    side: Array  # (P,): about which pivot the base turns
+    linear: NDArray[np.bool_]  # (P,): carried in closed form
+    dense: NDArray[np.bool_]  # (P,): linear, but does not uncouple
+    levels: NDArray[np.int64]  # (P,): levels of its grid
+    low: Array  # (P,): limits of the guard
+    high: Array  # (P,)
+    event: NDArray[np.int64]  # (P, 2): what happens where it passes them
+    follows: NDArray[np.int64]  # (P, 2): the phase that follows; -1 where it was not met yet
+    beside: NDArray[np.int64]  # (P, 3): the same phase with the base in contact, on its right pivot, on its left one
+    # Its motion
+    plain_rows: Array  # (P, F, C): the rows over the state, a and 1
+    basis: Array  # (P, S, S), S = 2 N + 2 b: transposed
+    inverse: Array  # (P, S, S): transposed
+    forced: Array  # (P, 3, S): the forced part's coefficients of a, a', 1
+    rows: Array  # (P, F, S): the rows over w
+    row_forcing: Array  # (P, F, 3): the rows' coefficients of a, a', 1
+    slope_rows: Array  # (P, F, S): the rows' time derivatives over w; `row_forcing[.., 0]` a' adds to them
+    blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
+    propagator: Array  # (P, J + 1, S, S): exp(B h) where some phase is dense; else (0, 0, 0, 0)
+    sag: Array  # (P, J + 1, F, K): bound of |row - its chord| over a step, times |w| of the pair
+    swing: Array  # (P, J + 1, F, K): bound of |row' - its chord|, likewise
+    ripple: Array  # (P, J + 1, F, K): bound of |row - its cubic through both ends' values and slopes|, likewise
+    hold: Array  # (P, F, K): bound of |row| for ever after in contact, times |w| of the pair
+    steps: Array  # (J + 1,): dt / 2^j
+
+
+class Course(NamedTuple):
+    """What a run is to do."""
+
+    record: Array  # (n,): ground acceleration
+    quiet: Array  # zeros: free vibration is run in stretches of so many samples
+    dt: float
+    free: int  # samples after the record
+    settle: bool  # whether to end as soon as nothing more can happen
+
+
+class Span(NamedTuple):
+    """A stretch of time in which the ground acceleration is linear."""
+
+    time: float  # of its start
+    until: float  # of its end, to which no rounding adds
+    ground: float  # acceleration at its start
+    slope: float  # of the acceleration
+    length: float
+
+
+class Log(NamedTuple):
+    """What every run leaves: the peak of each row (row 0: of the rotation), when, counts, work, and the history."""
+
+    peaks: Array  # (F,): largest magnitudes, but of the last row
+    times: Array  # (F,)
+    tally: NDArray[np.int64]  # (4,): uplifts, impacts, events within the present sample, states kept
+    work: Array  # (5,): what is left, and that of a sample, a look into one, a power series, a tried step
+    history: Array  # (n, 3 + S'): room for states, with time, side and acceleration before each; (0, ..) without
+
+
+class Motion(NamedTuple):
+    """The motion as it is carried, with room for intermediate values."""
+
+    state: Array  # (S',)
+    w: Array  # (S,)
+    w_end: Array  # (S,): after the step under examination
+    held: Array  # (S,): the same, while peaks are searched inside that step
+    norms: Array  # (K,)
+    lower: Array  # (F,): limits of the rows
+    upper: Array  # (F,)
+    start: Array  # (F,): values of the rows
+    end: Array  # (F,)
+    doubt: NDArray[np.bool_]  # (F,): rows that may leave their limits inside the step
+    asked: NDArray[np.bool_]  # (F,): rows that are looked at; all of them, but where peaks are searched
+    clear: NDArray[np.int64]  # (F,): up to which place on the grid that search is done
+    series: Array  # (N + b, order + 1)
+    polys: Array  # (F + 1, order + 1): polynomials of the rows, and one to work on
+    push: Array  # (b,): forces on the base's freedoms, coefficient by coefficient
+
+
+# Where a run stands. All that a kernel must know to go on, bit for bit, after it has returned in between.
+_PROGRESS = np.dtype(
+    [
+        ("stage", np.int64),  # of `driver.run`
+        ("phase", np.int64),
+        ("offset", np.int64),  # samples before the present stretch of acceleration
+        ("index", np.int64),  # sample within it
+        ("last", np.float64),  # acceleration at the end of the stretch before; NaN at first
+        ("slope", np.float64),  # of the acceleration, to which w refers
+        ("stated", np.bool_),  # whether the state is up to date, and no less true than w
+        ("tuned", np.bool_),  # whether w is up to date
+        ("started", np.bool_),  # whether the rows at the start of the sample are known from the end of the one before
+        ("begun", np.float64),  # s of the present sample that are done
+        ("place", np.int64),  # on the grid of the present sample
+        ("level", np.int64),  # of the step tried next
+        ("probed", np.bool_),  # whether that step has been examined
+        ("finding", np.int64),  # what the examination found
+        ("searching", np.bool_),  # for peaks inside that step
+        ("search_place", np.int64),
+        ("search_level", np.int64),
+        ("search_probed", np.bool_),
+        ("crossing", np.bool_),  # event by event, up to the next place on the grid
+        ("onset", np.int64),  # how the rotation leaves zero
+        ("lift", np.float64),  # θ'' at the instant of uplift, where it is known
+        ("resume", np.float64),  # where contact is searched again after a guard that was touched but not passed
+        ("fresh_rows", np.bool_),  # whether `doubt` no longer speaks of the motion ahead
+        ("lacking", np.int64),  # place in `follows` or `beside` of the phase that is needed; -1
+    ],
+    align=True,
+)
+
+
+def progress_at_start(phase: int, stated: bool) -> Progress:
+    """Return the progress of a run that is to begin in a phase."""
+    at = np.zeros(1, dtype=_PROGRESS).view(np.recarray)[0]
+    at.phase, at.last, at.lacking, at.lift, at.stated = phase, np.nan, -1, np.nan, stated
+    return at
+
+
+def motion_of(state: Array, core: int, rows: int, order: int, freedoms: int) -> Motion:
+    """Room for a motion that starts from `state`, of which the first `core` entries are carried in closed form."""
+    pairs = core // 2
+    return Motion(
+        state=state,
+        w=np.zeros(core),
+        w_end=np.zeros(core),
+        held=np.zeros(core),
+        norms=np.zeros(pairs),
+        lower=np.zeros(rows),
+        upper=np.zeros(rows),
+        start=np.zeros(rows),
+        end=np.zeros(rows),
+        doubt=np.zeros(rows, dtype=np.bool_),
+        asked=np.ones(rows, dtype=np.bool_),
+        clear=np.zeros(rows, dtype=np.int64),
+        series=np.zeros((pairs, order + 1)),
+        polys=np.zeros((rows + 1, order + 1)),
+        push=np.zeros(freedoms),
+    )

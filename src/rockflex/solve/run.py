@@ -1,0 +1,168 @@
+"""One run: the record, then free vibration for as long as it is asked for, or until nothing more can happen.
+
+The one event loop. In each phase the motion is carried over whole samples as long as nothing can hide in them; a sample
+that may hide something is walked on a grid; and a step of that in which a guard may be passed is crossed event by
+event. The kernel returns wherever its slice of work ends, and when called again goes on there, bit for bit.
+"""
+
+import math
+
+from rockflex._kernel import kernel
+from rockflex.models import Impact
+from rockflex.solve.adaptive.curves import values_of_rows
+from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.step import forget
+from rockflex.solve.adaptive.steps import step_through
+from rockflex.solve.events import CROSSED, PAUSED
+from rockflex.solve.exact.march import march, to_coordinates, to_state
+from rockflex.solve.exact.probe import NOTHING
+from rockflex.solve.history import MARGIN, keep, room_left
+from rockflex.solve.layout import CARRY, EVENTS, GUARD, LEFT, Array, Course, Log, Motion, Progress, Span, System
+from rockflex.solve.peaks import raise_row, raise_to_state
+from rockflex.solve.sample import cross_sample
+from rockflex.solve.status import Status
+
+__all__ = ["run"]
+
+ENDED, SETTLED, UNSETTLED = int(Status.ENDED), int(Status.SETTLED), int(Status.UNSETTLED)
+
+BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: a stretch begins; over whole samples; a closer look at one
+BLOCK = 4096  # samples that are carried at once, at most
+
+
+@kernel
+def run(
+    system: System,
+    flow: Flow | None,
+    impact: Impact,
+    course: Course,
+    at: Progress,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> int:
+    """Carry the motion on from where it is; return how the run ended, or why it stops in between."""
+    while True:
+        remaining = course.free + course.record.size - 1 - at.offset
+        piece = course.record
+        if at.offset > 0:
+            if remaining == 0:
+                return UNSETTLED if course.settle else ENDED
+            piece = course.quiet[: min(course.quiet.size - 1, remaining) + 1]
+        if at.stage == BEGINNING:
+            if begin_piece(system, flow, course, piece[0], at, log, motion, stages):
+                return SETTLED
+            at.stage = CARRYING
+        status = cross_piece(system, flow, impact, piece, course.dt, at, log, motion, stages)
+        if status != CROSSED:
+            return status
+        if system.linear[at.phase] and not at.stated:
+            to_state(system, at, piece[piece.size - 1], motion)
+            at.stated = True
+        at.last = piece[piece.size - 1]
+        at.offset += piece.size - 1
+        at.index, at.stage = 0, BEGINNING
+
+
+@kernel
+def begin_piece(
+    system: System,
+    flow: Flow | None,
+    course: Course,
+    ground: float,
+    at: Progress,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> bool:
+    """Prepare for a stretch of acceleration; True where a run that is to settle has done so."""
+    time, side = at.offset * course.dt, system.side[at.phase]
+    at.started = False
+    if system.linear[at.phase]:
+        at.slope = 0.0
+        to_coordinates(system, at, ground, motion)
+        at.tuned = True
+        if at.offset > 0 and course.settle and side == 0.0 and settled(system, at, log, motion):
+            return True
+    if ground != at.last:  # the start, or a jump of the acceleration at the record's end
+        keep(log, time, side, ground, motion.state)
+        if flow is None:
+            raise_to_state(system, at.phase, ground, time, log, motion)
+        else:
+            forget(stages)
+            values_of_rows(system, flow, at.phase, ground, stages)
+            for f in range(GUARD if side != 0.0 else 1, log.peaks.size):
+                raise_row(f, stages.values[f], time, log)
+    return False
+
+
+@kernel
+def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
+    """True where free vibration in contact can neither lift the base again nor raise a peak."""
+    p, pairs = at.phase, motion.norms.size
+    for f in range(log.peaks.size):
+        bound = 0.0
+        for k in range(pairs):
+            bound += system.hold[p, f, k] * math.hypot(motion.w[k], motion.w[pairs + k])
+        if bound > (min(system.high[p], -system.low[p]) if f == GUARD else log.peaks[f]):
+            return False
+    return True
+
+
+@kernel
+def cross_piece(
+    system: System,
+    flow: Flow | None,
+    impact: Impact,
+    piece: Array,
+    dt: float,
+    at: Progress,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> int:
+    """Carry the motion through one stretch of acceleration."""
+    rate, last = 1.0 / dt, piece.size - 1
+    while at.index < last:
+        if at.stage == CARRYING:
+            if log.work[LEFT] < 0.0 or room_left(log) < 0:
+                return PAUSED
+            if not carry(system, flow, piece, dt, at, log, motion, stages):
+                continue
+            # In a linear phase the whole sample has been examined.
+            at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.linear[at.phase]
+            at.slope = (piece[at.index + 1] - piece[at.index]) * rate
+            log.tally[EVENTS] = 0
+        i = at.index
+        time, until = (at.offset + i) * dt, (at.offset + i + 1) * dt
+        sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, dt)
+        status = cross_sample(system, flow, impact, sample, piece[i + 1], at, log, motion, stages)
+        if status != CROSSED:
+            return status
+        log.work[LEFT] -= log.work[CARRY]
+        at.index, at.stage, at.begun, at.started = i + 1, CARRYING, 0.0, False
+    return CROSSED
+
+
+@kernel
+def carry(
+    system: System,
+    flow: Flow | None,
+    piece: Array,
+    dt: float,
+    at: Progress,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> bool:
+    """Carry the motion over whole samples; True where the next one needs a closer look."""
+    if flow is not None:
+        if not system.linear[at.phase]:
+            return step_through(system, flow, piece, dt, at, log, stages)
+    first = at.index
+    most = BLOCK
+    if log.history.shape[0] > 0:
+        most = min(most, room_left(log) + MARGIN // 2)
+    march(system, piece, dt, most, at, log, motion)
+    log.work[LEFT] -= (at.index - first) * log.work[CARRY]
+    return at.finding != NOTHING

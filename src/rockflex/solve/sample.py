@@ -1,0 +1,89 @@
+"""The closer look: one sample walked on a dyadic grid, in the largest steps in which nothing can hide."""
+
+from rockflex._kernel import kernel
+from rockflex.models import Impact
+from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.events import CROSSED, PAUSED, cross, start_crossing
+from rockflex.solve.exact.grid import largest_step
+from rockflex.solve.exact.march import to_coordinates, to_state
+from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe, set_limits
+from rockflex.solve.exact.survey import survey
+from rockflex.solve.history import keep
+from rockflex.solve.layout import LEFT, LOOK, Log, Motion, Progress, Span, System
+from rockflex.solve.peaks import raise_peaks
+
+__all__ = ["cross_sample"]
+
+
+@kernel
+def cross_sample(
+    system: System,
+    flow: Flow | None,
+    impact: Impact,
+    sample: Span,
+    last: float,
+    at: Progress,
+    log: Log,
+    motion: Motion,
+    stages: Stages | None,
+) -> int:
+    """Carry the motion over the rest of a sample, at whose end the ground's acceleration becomes `last`.
+
+    In a linear phase `motion.w` holds the motion at `at.place` of the grid. A state that is `at.stated` is as true as
+    `w` or truer: a rotation that has just left zero is far below the rounding of a modal sum. The walk depends on the
+    guard alone, not on which peaks are asked for, so neither does the motion.
+    """
+    while at.begun < sample.length:
+        p = at.phase
+        if at.crossing or not system.linear[p]:
+            if not at.crossing:
+                start_crossing(at, True)
+            status = cross(system, flow, impact, sample, at, log, motion, stages)
+            if status != CROSSED:
+                return status
+            at.level, at.probed = largest_step(at.place, system.levels[at.phase]), False
+            continue
+        levels = system.levels[p]
+        grid, stride = 1 << levels, 1 << (levels - at.level)
+        unit = float(system.steps[levels])
+        here = sample.ground + sample.slope * unit * at.place
+        now = sample.time + unit * at.place
+        step = Span(now, sample.until, here, sample.slope, unit * stride)
+        if not at.searching:
+            if log.work[LEFT] < 0.0:
+                return PAUSED
+            log.work[LEFT] -= log.work[LOOK]
+            if not at.probed:
+                if not at.tuned:
+                    to_coordinates(system, at, here, motion)
+                    at.tuned = True
+                set_limits(system, p, log, motion)
+                examine(system, p, at.level, here, here + sample.slope * unit * stride, sample.slope, motion)
+                at.finding = probe(system, p, at.level, sample.slope, motion)
+            at.probed = False
+            if at.finding == EVENT and at.level < levels:
+                at.level += 1
+                continue
+            if at.finding == EVENT:
+                if not at.stated:
+                    to_state(system, at, here, motion)
+                at.begun, at.stated, at.tuned = unit * at.place, True, False
+                start_crossing(at, False)
+                continue
+            raise_peaks(motion.end, system.side[p], now + unit * stride, log)
+        if at.finding == PEAK and not survey(system, at, step, log, motion):
+            return PAUSED
+        for k in range(motion.w.size):
+            motion.w[k] = motion.w_end[k]
+        at.stated = False
+        at.place += stride
+        at.begun = sample.length if at.place == grid else unit * at.place
+        at.level = largest_step(at.place, levels)
+    if system.linear[at.phase]:
+        if not at.tuned:
+            to_coordinates(system, at, last, motion)
+            at.tuned = True
+        if not at.stated and log.history.shape[0] > 0:
+            to_state(system, at, last, motion)
+    keep(log, sample.until, system.side[at.phase], last, motion.state)
+    return CROSSED
