@@ -236,7 +236,10 @@ def test_tendons_hold_properties_down(write):
 def test_wrong_tendons(failing):
     frame = text("frame", FRAME)
     one = "[[tendons]]\nposition = 0.3\ninitial_force = 5e5\nstiffness = 2e7\n"
-    assert failing(frame + one).startswith(", [[tendons]]: The tendons must be symmetric about the centre of the base")
+    assert failing(frame + one.replace("0.3", "-1.3")).startswith(
+        ", [[tendons]]: Tendons must pass through the base, 0.842617 m to each side of its centre, but one stands at "
+        "-1.3 m."
+    )
     assert failing(frame + one.replace("2e7", "-1")) == (
         ", [[tendons]]: stiffness must be a zero or positive, finite number in N/m, but -1.0 was given."
     )

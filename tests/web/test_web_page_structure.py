@@ -50,7 +50,7 @@ def test_tendons_are_added_and_removed(visitor) -> None:
     page.get_by_role("button", name="Add a tendon").click()
     page.wait_for_function("b => Number(document.querySelectorAll('dd[data-value]')[2].dataset.value) > b", arg=before)
     visitor.fill("structure.tendons.0.position", "99")
-    assert "The tendons must be symmetric" in visitor.error("structure.tendons")
+    assert "Tendons must pass through the base" in visitor.error("structure.tendons")
     visitor.fill("structure.tendons.0.position", "0")
     page.get_by_role("button", name="Remove").click()
     page.wait_for_function(

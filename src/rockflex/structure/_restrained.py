@@ -32,12 +32,12 @@ class Restrained:
     structure
         Any structure: a `Frame`, a `TaperedTower`, ...
     tendons : tuple of Tendon
-        One in the centre, symmetric pairs, or both.
+        Where and how many you like, within the base.
 
     Raises
     ------
     InputError
-        If the tendons are not symmetric or stand outside the base, or `structure` is none.
+        If a tendon stands outside the base, or `structure` is none.
     """
 
     structure: Unrestrained
