@@ -73,6 +73,7 @@ class System(NamedTuple):
     linear: NDArray[np.bool_]  # (P,): carried in closed form
     dense: NDArray[np.bool_]  # (P,): linear, but does not uncouple
     levels: NDArray[np.int64]  # (P,): levels of its grid
+    terms: NDArray[np.int64]  # (P,): of the power series that converge over its finest step
     low: Array  # (P,): limits of the guard
     high: Array  # (P,)
     event: NDArray[np.int64]  # (P, 2): what happens where it passes them
@@ -140,8 +141,8 @@ class Motion(NamedTuple):
     doubt: NDArray[np.bool_]  # (F,): rows that may leave their limits inside the step
     asked: NDArray[np.bool_]  # (F,): rows that are looked at; all of them, but where peaks are searched
     clear: NDArray[np.int64]  # (F,): up to which place on the grid that search is done
-    series: Array  # (N + b, order + 1)
-    polys: Array  # (F + 1, order + 1): polynomials of the rows, and one to work on
+    series: Array  # (N + b, terms)
+    polys: Array  # (F + 1, terms): polynomials of the rows, and one to work on
     push: Array  # (b,): forces on the base's freedoms, coefficient by coefficient
 
 
@@ -184,7 +185,7 @@ def progress_at_start(phase: int, stated: bool) -> Progress:
     return at
 
 
-def motion_of(state: Array, core: int, rows: int, order: int, freedoms: int) -> Motion:
+def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> Motion:
     """Room for a motion that starts from `state`, of which the first `core` entries are carried in closed form."""
     pairs = core // 2
     return Motion(
@@ -200,7 +201,7 @@ def motion_of(state: Array, core: int, rows: int, order: int, freedoms: int) -> 
         doubt=np.zeros(rows, dtype=np.bool_),
         asked=np.ones(rows, dtype=np.bool_),
         clear=np.zeros(rows, dtype=np.int64),
-        series=np.zeros((pairs, order + 1)),
-        polys=np.zeros((rows + 1, order + 1)),
+        series=np.zeros((pairs, terms)),
+        polys=np.zeros((rows + 1, terms)),
         push=np.zeros(freedoms),
     )

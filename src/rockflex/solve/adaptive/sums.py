@@ -2,7 +2,7 @@
 
 from rockflex._kernel import kernel
 from rockflex.solve.adaptive.tableau import A
-from rockflex.solve.exact.layout import Array
+from rockflex.solve.layout import Array
 
 __all__ = ["place_stage"]
 

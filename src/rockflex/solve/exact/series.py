@@ -33,8 +33,11 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
     for j in range(freedoms):
         series[n + j, 0] = motion.state[2 * n + 2 * j]
         series[n + j, 1] = motion.state[2 * n + 2 * j + 1] * step
-    square = step * step
-    for k in range(series.shape[1] - 2):
+    square, terms = step * step, system.terms[phase]
+    for k in range(terms, series.shape[1]):
+        for i in range(series.shape[0]):
+            series[i, k] = 0.0
+    for k in range(terms - 2):
         drive = 0.0
         if k == 0:
             drive = square * span.ground
@@ -75,10 +78,10 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
 @kernel
 def row_series(system: System, phase: int, row: int, motion: Motion, span: Span) -> None:
     """Taylor coefficients, in `motion.polys[row]`, of one row of a phase."""
-    n, pairs, terms = system.layout.modes, motion.series.shape[0], motion.series.shape[1]
+    n, pairs, terms = system.layout.modes, motion.series.shape[0], system.terms[phase]
     rows, polys, series, step = system.plain_rows, motion.polys, motion.series, span.length
     ground = rows.shape[2] - 2
-    for k in range(terms):
+    for k in range(polys.shape[1]):
         polys[row, k] = 0.0
     for i in range(pairs):
         weight = rows[phase, row, i if i < n else 2 * i]

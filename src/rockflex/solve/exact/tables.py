@@ -16,7 +16,7 @@ from rockflex.models import FREEDOMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis
 from rockflex.solve.layout import Array, System
 
-__all__ = ["check_step", "empty_system", "grown", "levels_of", "propagate", "put_phase", "series_order"]
+__all__ = ["check_step", "empty_system", "grown", "levels_of", "propagate", "put_phase", "terms_of"]
 
 LONGEST_FALL = 300.0  # e-folds of the rotation within a time step: beyond it numbers overflow
 
@@ -43,14 +43,14 @@ def levels_of(fastest: float, dt: float) -> int:
     return max(0, math.ceil(math.log2(max(fastest * dt, 1.0))))
 
 
-def series_order(fastest: float, dt: float) -> int:
-    """Order at which a series that starts at t³, as at an uplift, has converged over the finest step of a phase."""
+def terms_of(fastest: float, dt: float) -> int:
+    """Terms with which a series that starts at t³, as at an uplift, has converged over the finest step of a phase."""
     turn = fastest * dt * 0.5 ** levels_of(fastest, dt)
     order, term = 3, 1.0
     while term > 1e-17:
         order += 1
         term *= turn / order
-    return order
+    return order + 1
 
 
 def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, levels: int, *, dense: bool) -> System:
@@ -73,6 +73,7 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
         linear=np.zeros(capacity, dtype=np.bool_),
         dense=np.zeros(capacity, dtype=np.bool_),
         levels=np.zeros(capacity, dtype=np.int64),
+        terms=np.zeros(capacity, dtype=np.int64),
         low=np.zeros(capacity),
         high=np.zeros(capacity),
         event=np.zeros((capacity, 2), dtype=np.int64),
@@ -133,7 +134,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
     system.dense[p] = basis.dense
-    system.levels[p] = levels
+    system.levels[p], system.terms[p] = levels, terms_of(basis.fastest, dt)
     system.basis[p] = basis.basis.T
     system.inverse[p] = basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T

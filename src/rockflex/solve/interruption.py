@@ -1,0 +1,40 @@
+"""Stopping runs from outside: whoever started them can ask for it, and they end within a slice of their work."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+__all__ = ["RunStoppedError", "check_interruption", "stopping_when"]
+
+_ASKED: ContextVar[Callable[[], bool] | None] = ContextVar("asked", default=None)
+
+
+class RunStoppedError(Exception):
+    """A run that was stopped because it was asked to: no failure of the model, and no result."""
+
+
+@contextmanager
+def stopping_when(asked: Callable[[], bool]) -> Iterator[None]:
+    """Stop the runs within this context, in this thread, as soon as `asked()` is true.
+
+    `asked` is called between the slices of a run, some ten times a second; for example an event's ``is_set``.
+    """
+    token = _ASKED.set(asked)
+    try:
+        yield
+    finally:
+        _ASKED.reset(token)
+
+
+def check_interruption() -> None:
+    """Check whether the present run was asked to stop.
+
+    Raises
+    ------
+    RunStoppedError
+        If it was.
+    """
+    asked = _ASKED.get()
+    if asked is not None and asked():
+        message = "The run was stopped before its end."
+        raise RunStoppedError(message)
