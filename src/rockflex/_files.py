@@ -1,13 +1,22 @@
 """Paths as they are given, and files that appear whole or not at all and outlast a loss of power afterwards."""
 
 import os
+import stat
 from pathlib import Path
 from uuid import uuid4
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = ["path_of", "sweep", "write_whole"]
+__all__ = ["check_regular", "irregular", "path_of", "sweep", "write_whole"]
+
+_KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a pipe"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
 
 
 def path_of(name: str, given: object) -> Path:
@@ -34,6 +43,30 @@ def path_of(name: str, given: object) -> Path:
         message = f"{name} must be that of a file, but {shown(str(path))} was given: {reason}."
         raise InputError(message)
     return path
+
+
+def irregular(path: Path) -> str:
+    """Say what stands at `path` in place of a regular file, as "a pipe"; empty for such a file, and where none is."""
+    try:
+        mode = path.stat().st_mode
+    except OSError:  # told by who reads it
+        return ""
+    return next((kind for is_kind, kind in _KINDS if is_kind(mode)), "")
+
+
+def check_regular(path: Path, name: str = "") -> None:
+    """Refuse what may never end when it is read, or cannot be; every reader asks before it opens.
+
+    Raises
+    ------
+    InputError
+        If there is something at `path`, and no regular file; `name` says in the message which argument it was.
+    """
+    kind = irregular(path)
+    if kind:
+        remedy = "Give a file in it." if kind == "a folder" else "Write what it gives to a file, and give that."
+        message = f"{name}{': ' * bool(name)}{path} is {kind}, but a regular file is expected. {remedy}"
+        raise InputError(message)
 
 
 def write_whole(path: Path, content: bytes) -> Path:

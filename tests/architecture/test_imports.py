@@ -35,6 +35,7 @@ FOUNDATION = {
     "_files",
     "_kernel",
     "_matrices",
+    "_numba",
     "_shown",
     "_values",
 }  # every layer may import these; they only each other
@@ -45,7 +46,7 @@ HOME = {
     "matplotlib": {"plot"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "numba": {"_kernel"},
+    "numba": {"_numba"},
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
@@ -154,10 +155,10 @@ def misplaced(found: list[Import]) -> list[str]:
 
 
 def cycle(found: list[Import], sources: dict[str, str]) -> list[str]:
-    """Modules that import each other in a ring, the type checker's imports included; empty if there is none."""
+    """Modules that import each other in a ring, late and typing imports included; empty if there is none."""
     graph: dict[str, set[str]] = {public(name): set() for name in sources}
     for each in found:
-        if each.when != DEFERRED and each.target in graph:
+        if each.target in graph:
             graph[public(each.importer)].add(each.target)
     try:
         TopologicalSorter(graph).prepare()
@@ -186,7 +187,7 @@ FOUND = imports(SOURCES)
 
 def test_the_walk_sees_the_package() -> None:
     assert {"rockflex.__init__", "rockflex._kernel", "rockflex.solve.exact.unit"} <= SOURCES.keys()
-    assert {each.importer for each in FOUND if each.target.split(".")[0] == "numba"} == {"rockflex._kernel"}
+    assert {each.importer for each in FOUND if each.target.split(".")[0] == "numba"} == {"rockflex._numba"}
     assert any(each.when == DEFERRED for each in FOUND)
     assert any(each.when == TYPING for each in FOUND)
 
@@ -289,7 +290,7 @@ def test_a_cycle_is_seen() -> None:
     ring = synthetic({"modal/_a": "from rockflex.modal._b import x", "modal/_b": "from . import _a"})
     assert {"rockflex.modal._a", "rockflex.modal._b"} == set(cycle(imports(ring), ring))
     late = synthetic({"modal/_a": "from rockflex.modal._b import x", "modal/_b": "def f():\n    from . import _a"})
-    assert cycle(imports(late), late) == []
+    assert {"rockflex.modal._a", "rockflex.modal._b"} == set(cycle(imports(late), late))
 
 
 def test_a_careless_module_is_seen() -> None:

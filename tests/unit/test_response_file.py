@@ -101,9 +101,8 @@ def test_another_form_of_file_is_refused(tmp_path, name):
 
 
 def test_a_missing_file(tmp_path):
-    for path in (tmp_path / "none.npz", tmp_path):
-        with pytest.raises(InputError, match=r"No saved response at .*Give the path that Response\.save returned\."):
-            Response.load(path)
+    with pytest.raises(InputError, match=r"No saved response at .*Give the path that Response\.save returned\."):
+        Response.load(tmp_path / "none.npz")
 
 
 @pytest.mark.parametrize("cut", [100, 0.5, 0.99])

@@ -176,6 +176,17 @@ def test_a_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pyt
         opened(str(tmp_path / "study"), PLAN)
 
 
+def nested(depth: int) -> list:
+    value: list = []
+    for _ in range(depth):
+        value = [value]
+    return value
+
+
+ENDLESS: dict = {}
+ENDLESS["itself"] = ENDLESS
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [
@@ -183,6 +194,17 @@ def test_a_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pyt
         ({"spec": {1: 2}}, r"keys of spec must be strings, but 1 was given"),
         ({"spec": [1]}, r"spec must be a mapping, but list was given"),
         ({"n_chunks": 0}, r"n_chunks must be a whole number of at least 1"),
+        (
+            {"n_chunks": 10**12},
+            r"n_chunks must be at most 100000, for each chunk is a file, but 1000000000000 was given\. Compute more "
+            r"runs a chunk: runs_per_chunk in a study\.$",
+        ),
+        (
+            {"spec": {"a": nested(5000)}},
+            r"^spec\.a\[0\]\[0\].*\[0\] is nested more than 50 deep, which no specification is\. Give the value "
+            r"itself, not lists within lists, and no list that holds itself\.$",
+        ),
+        ({"spec": {"a": [ENDLESS]}}, r"is nested more than 50 deep"),
         ({"versions": None}, r"versions must be a mapping"),
         ({"checksums": {"a": {1}}}, r"checksums\.a is of type set"),
     ],
@@ -231,6 +253,17 @@ def test_changed_files_are_seen(done: Path) -> None:
         manifest.write_text(content)
         with pytest.raises(InputError, match=r"damaged \(.*Restore both from a copy"):
             StudyFolder.load(done)
+    for count in ("0", "1e9", "4000000000", '"4"'):
+        manifest.write_text(kept[1].replace('"n_chunks": 4', f'"n_chunks": {count}'))
+        with pytest.raises(InputError, match=r"damaged \(InputError: n_chunks must be .*Restore both from a copy"):
+            StudyFolder.load(done)
+    manifest.write_text(kept[1])
+    for depth in (60, 900, 5000, 10**6):
+        spec.write_text(f'{{"a": {"[" * depth}{"]" * depth}}}')
+        for attempt in (StudyFolder.load, lambda path: opened(str(path), PLAN)):
+            with pytest.raises(InputError, match=r"damaged \((RecursionError|InputError: .* list that holds itself)"):
+                attempt(done)
+    spec.write_text(kept[0])
     manifest.write_text(kept[1].replace("study-2", "study-9"))
     with pytest.raises(InputError, match=r"has the format 'rockflex-study-9', but .* reads 'rockflex-study-2'"):
         opened(str(done), PLAN)

@@ -16,6 +16,7 @@ import numpy as np
 
 from rockflex import __version__
 from rockflex._errors import InputError
+from rockflex._files import check_regular
 
 __all__ = ["check_folder", "file_stems", "staged", "to_json", "versions"]
 
@@ -108,6 +109,7 @@ def _move(stage: Path, folder: Path, names: list[str]) -> None:
 def _earlier(folder: Path) -> list[str]:
     """Names of the files that an earlier summary in the folder lists as its own."""
     try:
+        check_regular(folder / SUMMARY)
         document = json.loads((folder / SUMMARY).read_text("utf-8"))
         names = document["files"] if "rockflex" in document["versions"] else []
     except (OSError, ValueError, LookupError, TypeError):

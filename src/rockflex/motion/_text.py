@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._files import check_regular
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -26,6 +27,7 @@ def read_lines(path: str | Path) -> list[str]:
     if file.is_dir():
         message = f"{file} is a directory. Read all its records with read_suite({shown(str(file))})."
         raise InputError(message)
+    check_regular(file)
     try:
         data = file.read_bytes()
     except FileNotFoundError as error:

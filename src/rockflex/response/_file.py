@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._files import write_whole
+from rockflex._files import check_regular, write_whole
 from rockflex._shown import shown
 from rockflex.modal import FloorModes, RockingProperties, Tendon
 from rockflex.models import (
@@ -27,9 +27,10 @@ from rockflex.models import (
 )
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
-from rockflex.response._response import PEAKS, Response
 
 __all__ = ["load", "save"]
+
+Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 
 FORMAT = "rockflex-response-2"
 PROPERTIES = (
@@ -55,8 +56,8 @@ FLOOR_MODES = ("heights", "displacement", "force")
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 
 
-def save(response: Response, path: Path) -> Path:
-    """Write `response` to `path`, to which ``.npz`` is added where it lacks; the file appears whole or not at all."""
+def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: History | None) -> Path:
+    """Write a response to `path`, to which ``.npz`` is added where it lacks; the file appears whole or not at all."""
     if path.suffix[1:2].isalpha() and path.suffix.lower() != ".npz":  # "scale 1.5" has no suffix
         message = (
             f"A response is saved as .npz, but {path.name!r} was given. Name it {path.stem + '.npz'!r}; for a "
@@ -65,12 +66,12 @@ def save(response: Response, path: Path) -> Path:
         )
         raise InputError(message)
     path = path if path.suffix.lower() == ".npz" else path.with_name(path.name + ".npz")
-    scalars = {"format": FORMAT, **response.peaks()}
+    scalars = {"format": FORMAT, **peaks}
     arrays: dict[str, Any] = {}
-    if response.floors is not None:
-        arrays |= {f"floors.{name}": getattr(response.floors, name) for name in FLOOR_PEAKS}
-    if response.history is not None:
-        model = response.history.model
+    if floors is not None:
+        arrays |= {f"floors.{name}": getattr(floors, name) for name in FLOOR_PEAKS}
+    if history is not None:
+        model = history.model
         scalars["lifts"] = model.lifts
         scalars["law"] = _described(model.law)
         scalars["missing_mass"] = model.missing_mass
@@ -79,7 +80,7 @@ def save(response: Response, path: Path) -> Path:
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
         scalars["tendons"] = [asdict(tendon) for tendon in model.properties.tendons]
-        arrays["nodes"] = response.history.nodes
+        arrays["nodes"] = history.nodes
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
         if model.properties.floors is not None:
             arrays |= {f"floor_modes.{name}": getattr(model.properties.floors, name) for name in FLOOR_MODES}
@@ -89,9 +90,10 @@ def save(response: Response, path: Path) -> Path:
     return write_whole(path, content.getvalue())
 
 
-def load(path: Path) -> Response:
-    """Read what `save` wrote."""
-    if not path.is_file():
+def load(path: Path, kinds: dict[str, type]) -> Kept:
+    """Read what `save` wrote, with peaks of these names and types."""
+    check_regular(path)
+    if not path.exists():
         message = f"No saved response at {path}. Give the path that Response.save returned."
         raise InputError(message)
     try:
@@ -100,23 +102,23 @@ def load(path: Path) -> Response:
         arrays = {name: np.load(io.BytesIO(part)) for name, part in content.items()}
         scalars = json.loads(str(arrays["response"]))
         known = scalars["format"] == FORMAT
-        response = _response(scalars, arrays) if known else None
+        kept = _kept(scalars, arrays, kinds) if known else None
     except Exception as error:  # zipfile, zlib, NumPy and json meet damage with nearly any exception
         reason = f"{type(error).__name__}: {error}"
         message = f"{path} is not a saved response ({reason}). Give a file that Response.save wrote."
         raise InputError(message) from error
-    if response is None:
+    if kept is None:
         message = f"{path} has the format {shown(scalars['format'])}, but {FORMAT!r} is expected."
         raise InputError(message)
-    return response
+    return kept
 
 
-def _response(scalars: dict[str, Any], arrays: dict[str, Any]) -> Response:
+def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type]) -> Kept:
     for name, values in arrays.items():
         if name != "response" and values.dtype != np.float64:
             message = f"{name} must be of type float64, but is of type {values.dtype}."
             raise InputError(message)
-    peaks = {name: _typed(scalars, name, Response.__annotations__[name]) for name in PEAKS}
+    peaks = {name: _typed(scalars, name, kind) for name, kind in kinds.items()}
     floors = history = None
     if "nodes" in arrays:
         history = History(_model(scalars, arrays), arrays["nodes"])
@@ -125,7 +127,7 @@ def _response(scalars: dict[str, Any], arrays: dict[str, Any]) -> Response:
         if floors.story_drift.shape != arrays["floor_modes.heights"].shape:
             message = f"There are peaks of {floors.story_drift.size} floors and not as many heights."
             raise InputError(message)
-    return Response(**peaks, floors=floors, history=history)
+    return peaks, floors, history
 
 
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:

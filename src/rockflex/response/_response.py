@@ -13,6 +13,7 @@ from rockflex._files import path_of
 from rockflex._values import Value
 from rockflex.models import LinearModel, RockingModel
 from rockflex.response._energy import EnergyLedger
+from rockflex.response._file import load, save
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._floors import floor_accelerations
 from rockflex.response._history import History
@@ -192,9 +193,7 @@ class Response(Value):
         InputError
             If the path has another suffix, such as ``.parquet``.
         """
-        from rockflex.response._file import save
-
-        return save(self, path_of("path", path))
+        return save(path_of("path", path), self.peaks(), self.floors, self.history)
 
     @classmethod
     def load(cls, path: str | Path) -> "Response":
@@ -205,12 +204,12 @@ class Response(Value):
         InputError
             If the file is missing or is not a saved response.
         """
-        from rockflex.response._file import load
-
-        return load(path_of("path", path))
+        peaks, floors, history = load(path_of("path", path), KINDS)
+        return Response(**peaks, floors=floors, history=history)
 
 
 PEAKS = tuple(f.name for f in fields(Response) if f.name not in ("floors", "history"))
+KINDS: dict[str, type] = {name: Response.__annotations__[name] for name in PEAKS}
 
 
 def respond(model: RockingModel, motion: str, solution: Solution) -> Response:

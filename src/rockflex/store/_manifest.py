@@ -10,7 +10,7 @@ from typing import Any, Self, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
-from rockflex._files import write_whole
+from rockflex._files import check_regular, write_whole
 from rockflex._shown import shortened, shown
 from rockflex.store._spec import differences, listed, plain
 
@@ -18,6 +18,7 @@ __all__ = ["MANIFEST", "SPEC", "Manifest"]
 
 FORMAT = "rockflex-study-2"  # 1: without total displacements and reactions of the ground
 MANIFEST, SPEC = "manifest.json", "spec.json"
+MOST_PARTS = 100_000  # every part is a file, whose number has five digits
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Manifest:
             if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
                 message = f"{name} must be a mapping, but {type(given).__name__} was given."
                 raise InputError(message)
-        count = whole_number("n_chunks", n_chunks, 1)
+        count = _part_count(n_chunks)
         content, sums = plain("spec", spec), plain("checksums", checksums)
         now = datetime.now(UTC).isoformat(timespec="seconds")
         return cls(content, _digest(content, count, sums), count, plain("versions", versions), sums, now)
@@ -81,12 +82,15 @@ class Manifest:
             If a file is missing, damaged, changed by hand or of another format.
         """
         path = folder / MANIFEST
+        for file in (path, folder / SPEC):
+            check_regular(file)
         try:
             origin = json.loads(path.read_text("utf-8"))
-            spec = json.loads((folder / SPEC).read_text("utf-8"))
+            spec = plain("spec", json.loads((folder / SPEC).read_text("utf-8")))
             known = origin.pop("format")
             if known == FORMAT:
                 del origin["seed"]
+                _part_count(origin["n_chunks"])
                 manifest = cls(spec=spec, **origin)
                 intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
                 if intact:
@@ -134,6 +138,17 @@ class Manifest:
                 "Install those versions, give another folder, or pass any_version=True to mix them."
             )
             raise InputError(message)
+
+
+def _part_count(n_chunks: SupportsIndex) -> int:
+    count = whole_number("n_chunks", n_chunks, 1)
+    if count > MOST_PARTS:
+        message = (
+            f"n_chunks must be at most {MOST_PARTS}, for each chunk is a file, but {shown(count)} was given. "
+            "Compute more runs a chunk: runs_per_chunk in a study."
+        )
+        raise InputError(message)
+    return count
 
 
 def _encoded(content: dict[str, Any]) -> bytes:

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
+from rockflex._files import irregular
+
 if TYPE_CHECKING:
     import pyarrow as pa
 
@@ -42,6 +44,10 @@ def verify(path: Path, study: str, number: int) -> bytes:
     PartError
         If it is cut short, damaged, not a part, or a part of another study or place.
     """
+    kind = irregular(path)
+    if kind:
+        message = f"it is {kind}"
+        raise PartError(message)
     content = path.read_bytes()
     if content[:4] != b"PAR1" or content[-4:] != b"PAR1" or len(content) < 12:
         message = f"it is no whole Parquet file, but {len(content)} bytes"

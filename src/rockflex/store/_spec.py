@@ -6,15 +6,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex._shown import shortened, shown
 
 __all__ = ["differences", "listed", "plain"]
 
 SHOWN = 10  # differences in a message
+DEEPEST = 50  # levels of a specification; those of studies have five
 WIDTH = 60  # characters of a value in a message
 
 
-def plain(name: str, value: object) -> Any:
+def plain(name: str, value: object, depth: int = 0) -> Any:
     """Return `value` as dicts, lists, strings, numbers, booleans and None, as JSON would give it back.
 
     Infinities and NaN are kept, as Python's JSON does.
@@ -22,8 +23,14 @@ def plain(name: str, value: object) -> Any:
     Raises
     ------
     InputError
-        If there is anything else in it; the message has the dotted path.
+        If there is anything else in it, or it is nested too deep; the message has the dotted path.
     """
+    if depth > DEEPEST:
+        message = (
+            f"{shortened(name)} is nested more than {DEEPEST} deep, which no specification is. Give the value itself, "
+            "not lists within lists, and no list that holds itself."
+        )
+        raise InputError(message)
     if value is None or isinstance(value, str | bool):
         return value
     if isinstance(value, int | float):
@@ -34,10 +41,10 @@ def plain(name: str, value: object) -> Any:
             if not isinstance(key, str):
                 message = f"The keys of {name} must be strings, but {shown(key)} was given."
                 raise InputError(message)
-        return {str(key): plain(f"{name}.{key}", each) for key, each in items.items()}
+        return {str(key): plain(f"{name}.{key}", each, depth + 1) for key, each in items.items()}
     if isinstance(value, list | tuple):
         entries = cast("Sequence[object]", value)
-        return [plain(f"{name}[{place}]", each) for place, each in enumerate(entries)]
+        return [plain(f"{name}[{place}]", each, depth + 1) for place, each in enumerate(entries)]
     message = (
         f"{name} is of type {type(value).__name__}, which JSON does not know. Give a number, a string, a list or a "
         "dict; a NumPy array or number by its .tolist()."

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
-from rockflex._files import path_of
+from rockflex._files import check_regular, path_of
 from rockflex.structure._matrix_market import read_matrix_market
 
 __all__ = ["Given", "checksum", "numbers"]
@@ -38,7 +38,8 @@ def numbers(name: str, given: Given) -> ArrayLike:
     if path.suffix.lower() not in _SUFFIXES:
         message = f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix."
         raise InputError(message)
-    if not path.is_file():
+    check_regular(path, name)
+    if not path.exists():
         message = f"{name}: the file {path} does not exist (working directory: {Path.cwd()})."
         raise InputError(message)
     try:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from rockflex._errors import InputError
-from rockflex._files import path_of
+from rockflex._files import check_regular, path_of
 from rockflex._shown import shortened
 from rockflex.structure.file._entry import StructureEntry
 from rockflex.structure.file._table import checked
@@ -53,8 +53,9 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the file cannot be read, or is not TOML.
+        If the file cannot be read, is no regular file, or is not TOML.
     """
+    check_regular(file)
     try:
         return tomllib.loads(file.read_text("utf-8"))
     except FileNotFoundError as error:

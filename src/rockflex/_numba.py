@@ -1,0 +1,50 @@
+"""What kernels use of numba that it does not promise to keep, and what stands in where a version has it no more.
+
+Without them kernels compute the same, and only start or run slower. `tests/unit/test_numba_parts.py` names the versions
+that were tried.
+"""
+
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from numba import njit
+
+__all__ = ["compiled", "direct"]
+
+OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
+
+
+def compiled(function: Callable[..., Any], stamp: str) -> Any:
+    """Compile at the first call, and keep the result on disk for as long as the stamp is the same.
+
+    numba's own stamp sees a change of a kernel's own file alone, not of the kernels that were compiled into it. Where
+    the stamp cannot be set, nothing is kept, for it could be out of date.
+    """
+    try:
+        kernel = _without_counts(function, cache=True)
+    except RuntimeError:  # numba finds no folder that it may write
+        return _without_counts(function, cache=False)
+    file: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    if not hasattr(file, "_source_stamp"):
+        return _without_counts(function, cache=False)
+    file._source_stamp = (file._source_stamp, stamp)
+    return kernel
+
+
+def _without_counts(function: Callable[..., Any], *, cache: bool) -> Any:
+    """Without reference counts, whose atomic updates cost more than the arithmetic: kernels allocate nothing."""
+    jit: Any = njit
+    with suppress(Exception):  # whatever a version says of an option that it does not know
+        kernel = jit(_nrt=False, cache=cache, **OPTIONS)(function)
+        if hasattr(kernel.targetdescr.options, "_nrt"):  # today's numba complains at the first call only
+            return kernel
+    return jit(cache=cache, **OPTIONS)(function)
+
+
+def direct(kernel: Callable[..., Any]) -> Callable[..., Any]:
+    """The machine code for the one set of types that a kernel was called with; where that is not to be had, itself."""
+    overloads = getattr(kernel, "overloads", {})
+    if len(overloads) != 1:  # without compilation there is none
+        return kernel
+    return getattr(next(iter(overloads.values())), "entry_point", None) or kernel

@@ -1,0 +1,176 @@
+"""Private parts of numba: the versions that have them, and that kernels say the same without any of them."""
+
+import numba
+import numpy as np
+import pytest
+
+from rockflex import _numba
+from rockflex._kernel import Callback, Entry, sources_digest
+from rockflex.motion._spectrum_kernel import oscillator_peaks, unit_responses
+from rockflex.solve.exact.run import run
+
+TRIED = ("0.60", "0.61", "0.63", "0.68")
+VERSION = ".".join(numba.__version__.split(".")[:2])
+
+
+@pytest.fixture(autouse=True)
+def _a_cache_of_its_own(monkeypatch, tmp_path):
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+
+
+def missing():
+    """Private parts that the installed version lacks, or has elsewhere."""
+    parts = {
+        "an option _nrt, without which kernels count references and run slower": hasattr(
+            getattr(getattr(run, "targetdescr", None), "options", None), "_nrt"
+        ),
+        "a source stamp, without which kernels compile anew in every process": hasattr(
+            getattr(getattr(run, "_cache", None), "_cache_file", None), "_source_stamp"
+        ),
+        "an entry point, without which every call looks at all its arguments": direct_entry_is_had(),
+    }
+    return [name for name, there in parts.items() if not there]
+
+
+def direct_entry_is_had():
+    kernel = _numba.compiled(doubled, "stamp")
+    kernel(np.ones(2))
+    return _numba.direct(kernel) is not kernel
+
+
+def test_versions_that_were_tried_have_every_part():
+    """A version that was not tried is no failure, for each part has a substitute; but it is told."""
+    if VERSION not in TRIED:
+        lacks = "; ".join(missing()) or "nothing"
+        pytest.skip(
+            f"numba {VERSION} has not been tried: {', '.join(TRIED)} have. It lacks {lacks}. Run tests/unit, "
+            f"tests/property and tests/validation with it, mend src/rockflex/_numba.py where a part is elsewhere, "
+            f"and add {VERSION!r} to TRIED in tests/unit/test_numba_parts.py."
+        )
+    assert missing() == []
+
+
+@pytest.mark.parametrize("kernel", [run, oscillator_peaks])
+def test_the_cache_is_stamped_with_every_kernel_source(kernel):
+    file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    if not hasattr(file, "_source_stamp"):
+        assert kernel.stats.cache_path is None  # nothing is kept that could be out of date
+    else:
+        assert file._source_stamp[1] == sources_digest()
+
+
+def doubled(x):
+    for i in range(x.size):
+        x[i] *= 2.0
+    return x.size
+
+
+def says_the_same(kernel):
+    ours = (6.0, 0.05, 0.3)
+    return kernel(*ours) == pytest.approx(unit_responses.py_func(*ours), rel=1e-12)
+
+
+def options_of_numba():
+    return [each for each in type(run).targetdescr.options.__mro__ if "_nrt" in vars(each)]
+
+
+def test_without_the_option_kernels_count_references(monkeypatch):
+    """As numba is today, which refuses an option that it does not know at the first call."""
+    for each in options_of_numba():
+        monkeypatch.delattr(each, "_nrt")
+    kernel = _numba.compiled(unit_responses.py_func, "without the option")
+    assert "_nrt" not in kernel.targetoptions
+    assert says_the_same(kernel)
+
+
+def test_an_option_that_is_refused_at_once_is_not_given(monkeypatch):
+    def refuses(**options):
+        if "_nrt" in options:
+            message = "got an unexpected keyword argument '_nrt'"
+            raise TypeError(message)
+        return numba.njit(**options)
+
+    monkeypatch.setattr(_numba, "njit", refuses)
+    kernel = _numba.compiled(doubled, "refused")
+    assert kernel.targetoptions["nogil"]
+    assert kernel.stats.cache_path is not None
+    assert kernel(np.ones(3)) == 3
+
+
+def without_stamp(kernel):
+    kernel._cache._cache_file = object()
+
+
+def without_cache_file(kernel):
+    kernel._cache = None
+
+
+@pytest.mark.parametrize("take_away", [without_stamp, without_cache_file])
+def test_without_a_stamp_nothing_is_kept_on_disk(monkeypatch, take_away):
+    def later(**options):
+        def decorate(function):
+            kernel = numba.njit(**options)(function)
+            if options["cache"]:
+                take_away(kernel)
+            return kernel
+
+        return decorate
+
+    monkeypatch.setattr(_numba, "njit", later)
+    kernel = _numba.compiled(unit_responses.py_func, "stamp")
+    assert kernel.stats.cache_path is None
+    assert kernel.targetoptions["_nrt"] is False
+    assert says_the_same(kernel)
+
+
+def test_without_a_folder_to_write_nothing_is_kept_on_disk(monkeypatch):
+    def homeless(**options):
+        if options["cache"]:
+            message = "cannot cache function 'doubled': no locator available for file 'kernel.py'"
+            raise RuntimeError(message)
+        return numba.njit(**options)
+
+    monkeypatch.setattr(_numba, "njit", homeless)
+    kernel = _numba.compiled(doubled, "stamp")
+    assert kernel.stats.cache_path is None
+    assert kernel(np.ones(3)) == 3
+
+
+class WithoutEntryPoint:
+    """A compiled function of another numba, whose overloads are of another kind."""
+
+    def __init__(self):
+        self.calls = 0
+        self.overloads = {"float64": object()}
+
+    def __call__(self, x):
+        self.calls += 1
+        return 2.0 * x
+
+
+def test_without_an_entry_point_the_kernel_itself_is_called():
+    kernel = WithoutEntryPoint()
+    entry = Entry(kernel)
+    assert [entry(1.0), entry(2.0), entry(3.0)] == [2.0, 4.0, 6.0]
+    assert kernel.calls == 3
+
+
+def test_a_kernel_of_several_types_has_no_one_entry():
+    kernel = _numba.compiled(doubled, "two")
+    kernel(np.ones(2))
+    assert _numba.direct(kernel) is not kernel
+    kernel(np.ones(4)[::2])
+    assert _numba.direct(kernel) is kernel
+
+
+def calls(function, address, count):
+    return function(address, count)
+
+
+def test_a_callback_is_called_by_kernels_and_by_python():
+    callback = Callback(lambda address, count: int(address) + 10 * count)
+    assert callback(3, 4) == 43
+    kernel = _numba.compiled(calls, "callback")
+    assert kernel(callback, np.uint64(3), 4) == 43
+    assert kernel(Callback(lambda _address, _count: 1), np.uint64(3), 4) == 1
+    assert len(kernel.overloads) == 1  # all callbacks are of one type
