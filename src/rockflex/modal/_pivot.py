@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -58,6 +59,11 @@ class Pivot:
         """M_r in N m: the base turns about this pivot when the overturning moment exceeds it (Eq. 24)."""
         return self.weight_moment + self.prestress_moment
 
+    @property
+    def balance_rotation(self) -> float:
+        """Rotation |θ| in rad at which the static moment vanishes; infinite where tendons keep it from that."""
+        return -self.resisting_moment / self.rocking_stiffness if self.rocking_stiffness < 0.0 else math.inf
+
 
 def pivot_of(
     side: int,
@@ -78,7 +84,7 @@ def pivot_of(
     InputError
         If `side` is neither 1 nor -1.
     """
-    if isinstance(side, bool) or side not in (1, -1):
+    if real_or_nan(side) not in (1.0, -1.0):
         message = f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given."
         raise InputError(message)
     side = int(side)

@@ -193,10 +193,14 @@ class RockingProperties(Value):
         )
 
     @property
+    def pivots(self) -> tuple[Pivot, ...]:
+        """The pivots that there are to tell apart: one of a `symmetric` structure, else the right and the left one."""
+        return (self.pivot(1),) if self.symmetric else (self.pivot(1), self.pivot(-1))
+
+    @property
     def weaker_pivot(self) -> Pivot:
         """The pivot with the lesser resisting moment, about which the base lifts first; the right one of two alike."""
-        right, left = self.pivot(1), self.pivot(-1)
-        return left if left.resisting_moment < right.resisting_moment else right
+        return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
 
     @property
     def symmetric(self) -> bool:
@@ -247,7 +251,7 @@ class RockingProperties(Value):
 
         Of an eccentric base it is the lesser of the two, with the nearer pivot's distance for B.
         """
-        return min(self.pivot(side).nominal_overturning_rotation for side in (1, -1))
+        return min(pivot.nominal_overturning_rotation for pivot in self.pivots)
 
     @computable("The inertia of the structure on this base")
     def with_half_width(self, half_width: float) -> "RockingProperties":

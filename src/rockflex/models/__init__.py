@@ -3,7 +3,15 @@
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._field import EXTRA, Field, field_rates, inertia_left
 from rockflex.models._forces import horizontal_row, lost_support_row, missing_mass_rows, row_size
-from rockflex.models._impact import ForgottenLaw, ImpactLaw, Restitution, VVELComplete, VVELSimplified, housner
+from rockflex.models._impact import (
+    ForgottenLaw,
+    ImpactLaw,
+    Restitution,
+    SidedRestitution,
+    VVELComplete,
+    VVELSimplified,
+    housner,
+)
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._linear import LinearModel
 from rockflex.models._nonlinear import NonlinearModel
@@ -38,6 +46,7 @@ __all__ = [
     "Posture",
     "Restitution",
     "RockingModel",
+    "SidedRestitution",
     "VVELComplete",
     "VVELSimplified",
     "field_rates",
