@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 
 from rockflex._numba import compiled, direct
 
-__all__ = ["Callback", "Entry", "kernel"]
+__all__ = ["Callback", "Entry", "kernel", "python_kernel"]
 
 _C_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_size_t, ctypes.c_int64)
 
@@ -22,9 +22,15 @@ F = TypeVar("F", bound=Callable[..., Any])
 def kernel(function: F) -> F:
     """Compile with numba: no interpreter lock, cached on disk, fused multiply-adds allowed.
 
-    A kernel writes into the arrays that it is given; it can neither make an array nor return one.
+    A kernel writes into the arrays that it is given; it can neither make an array nor return one. Other kernels can call
+    it, and Python cannot: see `python_kernel`.
     """
-    return cast("F", compiled(function, sources_digest()))
+    return cast("F", compiled(function, sources_digest(), within=True))
+
+
+def python_kernel(function: F) -> F:
+    """Compile a kernel that Python calls."""
+    return cast("F", compiled(function, sources_digest(), within=False))
 
 
 class Entry:
@@ -41,7 +47,7 @@ class Entry:
         if self._entry is not None:
             return self._entry(*arguments)
         result = self._function(*arguments)
-        self._entry = direct(self._function)
+        self._entry = direct(self._function, arguments)
         return result
 
 

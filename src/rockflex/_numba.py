@@ -8,43 +8,49 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from numba import njit
+from numba import njit, typeof
 
 __all__ = ["compiled", "direct"]
 
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
+# A kernel that only kernels call needs no way in from Python, which takes as long to compile as the kernel.
+WITHIN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
-def compiled(function: Callable[..., Any], stamp: str) -> Any:
+
+def compiled(function: Callable[..., Any], stamp: str, *, within: bool) -> Any:
     """Compile at the first call, and keep the result on disk for as long as the stamp is the same.
+
+    With `within`, only other kernels can call it.
 
     numba's own stamp sees a change of a kernel's own file alone, not of the kernels that were compiled into it. Where
     the stamp cannot be set, nothing is kept, for it could be out of date.
     """
     try:
-        kernel = _without_counts(function, cache=True)
+        kernel = _without_counts(function, within=within, cache=True)
     except RuntimeError:  # numba finds no folder that it may write
-        return _without_counts(function, cache=False)
+        return _without_counts(function, within=within, cache=False)
     file: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
     if not hasattr(file, "_source_stamp"):
-        return _without_counts(function, cache=False)
+        return _without_counts(function, within=within, cache=False)
     file._source_stamp = (file._source_stamp, stamp)
     return kernel
 
 
-def _without_counts(function: Callable[..., Any], *, cache: bool) -> Any:
+def _without_counts(function: Callable[..., Any], *, within: bool, cache: bool) -> Any:
     """Without reference counts, whose atomic updates cost more than the arithmetic: kernels allocate nothing."""
     jit: Any = njit
+    options = {**OPTIONS, **WITHIN} if within else OPTIONS
     with suppress(Exception):  # whatever a version says of an option that it does not know
-        kernel = jit(_nrt=False, cache=cache, **OPTIONS)(function)
-        if hasattr(kernel.targetdescr.options, "_nrt"):  # today's numba complains at the first call only
+        kernel = jit(_nrt=False, cache=cache, **options)(function)
+        if all(hasattr(kernel.targetdescr.options, name) for name in ("_nrt", *options)):  # today's numba complains at the first call only
             return kernel
     return jit(cache=cache, **OPTIONS)(function)
 
 
-def direct(kernel: Callable[..., Any]) -> Callable[..., Any]:
-    """The machine code for the one set of types that a kernel was called with; where that is not to be had, itself."""
-    overloads = getattr(kernel, "overloads", {})
-    if len(overloads) != 1:  # without compilation there is none
-        return kernel
-    return getattr(next(iter(overloads.values())), "entry_point", None) or kernel
+def direct(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[..., Any]:
+    """The machine code for the types of these arguments; where that is not to be had, the kernel itself."""
+    overloads = getattr(kernel, "overloads", {})  # without compilation there are none
+    with suppress(Exception):  # whatever a version says of it
+        return overloads[tuple(typeof(each) for each in arguments)].entry_point
+    return kernel

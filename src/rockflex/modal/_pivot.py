@@ -4,14 +4,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal._tendons import Tendon, balanced
 
-__all__ = ["OVERTURNING_SHARE", "Pivot", "pivot_inertia", "pivot_of"]
+__all__ = ["PIVOT_VALUES", "Pivot", "checked_side", "pivot_inertia", "pivot_of"]
 
-OVERTURNING_SHARE = 0.7
+PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
+"""What `pivot_of` takes of `RockingProperties`, by name."""
+
+_OVERTURNING_SHARE = 0.7
 
 
 @dataclass(frozen=True)
@@ -58,9 +62,29 @@ class Pivot:
         """M_r in N m: the base turns about this pivot when the overturning moment exceeds it (Eq. 24)."""
         return self.weight_moment + self.prestress_moment
 
+    @property
+    def balance_rotation(self) -> float:
+        """Rotation |θ| in rad at which the static moment vanishes; infinite where tendons keep it from that."""
+        return -self.resisting_moment / self.rocking_stiffness if self.rocking_stiffness < 0.0 else math.inf
+
+
+def checked_side(side: int) -> int:
+    """Return 1 or -1.
+
+    Raises
+    ------
+    InputError
+        If `side` is neither.
+    """
+    if real_or_nan(side) not in (1.0, -1.0):
+        message = f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given."
+        raise InputError(message)
+    return int(side)
+
 
 def pivot_of(
     side: int,
+    tendons: Sequence[Tendon],
     *,
     half_width: float,
     eccentricity: float,
@@ -69,19 +93,8 @@ def pivot_of(
     m_tot: float,
     l0r: float,
     height: float,
-    tendons: Sequence[Tendon],
 ) -> Pivot:
-    """Return one pivot of a structure, from the values of its `RockingProperties` and a height for its slenderness.
-
-    Raises
-    ------
-    InputError
-        If `side` is neither 1 nor -1.
-    """
-    if isinstance(side, bool) or side not in (1, -1):
-        message = f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given."
-        raise InputError(message)
-    side = int(side)
+    """Return one pivot of a structure, from its `RockingProperties` and a height for the slenderness."""
     arm = half_width - side * eccentricity
     # About both pivots of a symmetric base the same numbers, to the last digit and in any order of the tendons.
     alike = eccentricity == 0.0 and balanced(tendons)
@@ -102,7 +115,7 @@ def pivot_of(
         tendon_stiffness=stiffness,
         axial_stiffness_moment=pull,
         rocking_stiffness=stiffness - l0r * GRAVITY,
-        nominal_overturning_rotation=OVERTURNING_SHARE * math.atan2(arm, height),
+        nominal_overturning_rotation=_OVERTURNING_SHARE * math.atan2(arm, height),
     )
 
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import SupportsIndex
 
 import numpy as np
@@ -14,7 +15,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal._floors import FloorModes
-from rockflex.modal._pivot import Pivot, pivot_of
+from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_of
 from rockflex.modal._rocking_checks import (
     SLACK,
     check_modes,
@@ -180,23 +181,23 @@ class RockingProperties(Value):
         InputError
             If `side` is neither.
         """
-        return pivot_of(
-            side,
-            half_width=self.half_width,
-            eccentricity=self.eccentricity,
-            i_theta=self.i_theta,
-            translational_inertia=self.translational_inertia,
-            m_tot=self.m_tot,
-            l0r=self.l0r,
-            height=float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot,
-            tendons=self.tendons,
-        )
+        return self._by_side[checked_side(side)]
+
+    @cached_property
+    def _by_side(self) -> dict[int, Pivot]:
+        values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
+        height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
+        return {side: pivot_of(side, self.tendons, height=height, **values) for side in (1, -1)}
 
     @property
+    def pivots(self) -> tuple[Pivot, ...]:
+        """The pivots that there are to tell apart: one of a `symmetric` structure, else the right and the left one."""
+        return (self.pivot(1),) if self.symmetric else (self.pivot(1), self.pivot(-1))
+
+    @cached_property
     def weaker_pivot(self) -> Pivot:
         """The pivot with the lesser resisting moment, about which the base lifts first; the right one of two alike."""
-        right, left = self.pivot(1), self.pivot(-1)
-        return left if left.resisting_moment < right.resisting_moment else right
+        return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
 
     @property
     def symmetric(self) -> bool:
@@ -247,7 +248,7 @@ class RockingProperties(Value):
 
         Of an eccentric base it is the lesser of the two, with the nearer pivot's distance for B.
         """
-        return min(self.pivot(side).nominal_overturning_rotation for side in (1, -1))
+        return min(pivot.nominal_overturning_rotation for pivot in self.pivots)
 
     @computable("The inertia of the structure on this base")
     def with_half_width(self, half_width: float) -> "RockingProperties":

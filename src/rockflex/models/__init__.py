@@ -3,7 +3,15 @@
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, Element
 from rockflex.models._field import EXTRA, Field, field_rates, inertia_left, pivot_at
-from rockflex.models._impact import ForgottenLaw, ImpactLaw, Restitution, VVELComplete, VVELSimplified, housner
+from rockflex.models._impact import (
+    ForgottenLaw,
+    ImpactLaw,
+    Restitution,
+    SidedRestitution,
+    VVELComplete,
+    VVELSimplified,
+    housner,
+)
 from rockflex.models._kept import accelerations, acting_side, rates_of, values_of
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME, StateLayout, layout_of
@@ -62,6 +70,7 @@ __all__ = [
     "Quantities",
     "Restitution",
     "RockingModel",
+    "SidedRestitution",
     "StateLayout",
     "VVELComplete",
     "VVELSimplified",

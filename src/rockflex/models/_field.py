@@ -108,7 +108,10 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
             arm = weight * sine + field.weight_arm * cosine - displaced * sine
             moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
             # Tendons are stretched by 2 r sin(|θ|/2) and pull at the arm r cos(θ/2), r being their distance B - s x.
-            moment += side * field.prestress_moment[pivot] * math.sqrt(0.5 + 0.5 * cosine) + field.tendon_stiffness[pivot] * sine
+            moment += (
+                side * field.prestress_moment[pivot] * math.sqrt(0.5 + 0.5 * cosine)
+                + field.tendon_stiffness[pivot] * sine
+            )
         else:
             arm = field.weight_arm
             moment += field.gravity * (weight - field.weight_arm * theta)

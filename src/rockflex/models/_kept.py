@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._kernel import kernel
+from rockflex._kernel import python_kernel
 from rockflex.models._field import Field, field_rates
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
@@ -48,9 +48,7 @@ def accelerations(model: RockingModel, states: Array) -> Array:
 def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
     """D', D'', θ' and θ'' in the order of the state, shape (n, 2N + 2), from the accelerations D'' and θ''."""
     layout = model.layout
-    return np.column_stack(
-        (layout.velocities(states), found[:, :-1], layout.of(states, layout.spin), found[:, -1])
-    )
+    return np.column_stack((layout.velocities(states), found[:, :-1], layout.of(states, layout.spin), found[:, -1]))
 
 
 def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
@@ -71,9 +69,7 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
     return values
 
 
-def _by_side(
-    model: RockingModel, states: Array, side: Array
-) -> list[tuple[NDArray[np.bool_], tuple[int, ...], Array]]:
+def _by_side(model: RockingModel, states: Array, side: Array) -> list[tuple[NDArray[np.bool_], tuple[int, ...], Array]]:
     """For each side: which states are on it, its phase, and what its rows are taken over."""
     moving = states[:, HEADER : HEADER + model.layout.moving]
     vector = np.column_stack((moving, states[:, GROUND], np.ones(side.size)))
@@ -81,7 +77,7 @@ def _by_side(
     return [(which, key, vector[which]) for which, key in chosen if which.any()]
 
 
-@kernel
+@python_kernel
 def _rates_at(field: Field, side: Array, acceleration: Array, motion: Array, rates: Array) -> None:
     n = field.omega2.size
     for k in range(side.size):

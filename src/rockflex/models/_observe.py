@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._kernel import kernel
+from rockflex._kernel import kernel, python_kernel
 from rockflex.models._field import Field, pivot_at
 
 __all__ = ["HORIZONTAL", "LEFT_OUT", "LINEAR", "SWAY", "VERTICAL", "Posture", "observe", "observe_all", "posture_of"]
@@ -83,7 +83,7 @@ def observe(kind: int, value: float, near: float, far: float, posture: Posture) 
     return value
 
 
-@kernel
+@python_kernel
 def observe_all(
     field: Field,
     kind: int,

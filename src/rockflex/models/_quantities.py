@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._values import Value
 from rockflex.models._elements import CLOSED
 from rockflex.models._modal_model import ModalModel
-from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
+from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
 
 __all__ = ["Quantities", "lost_support_row", "rows_of"]
@@ -42,7 +42,9 @@ class Quantities(Value):
     @classmethod
     def of(cls, count: int, modes: int, kind: int = LINEAR, **shares: ArrayLike) -> "Quantities":
         """Return `count` quantities of a model with so many modes; shares that are not named are zero."""
-        values: dict[str, Any] = {name: np.zeros((count, modes)) for name in ("displacement", "restoring", "acceleration")}
+        values: dict[str, Any] = {
+            name: np.zeros((count, modes)) for name in ("displacement", "restoring", "acceleration")
+        }
         values |= {name: np.zeros(count) for name in ("rotation", "turn", "ground")}
         for name, share in shares.items():
             values[name] += np.asarray(share, dtype=np.float64)
@@ -103,5 +105,3 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
     row -= side * model.properties.m_tot * pivot.arm * model.angular_acceleration(key)
     row[model.layout.rotation] -= side * pivot.axial_stiffness_moment
     return row
-
-

@@ -6,7 +6,6 @@ cut, and puts the motion there. Models without a vector field (`flow` is None) a
 
 import math
 
-
 from rockflex._kernel import kernel
 from rockflex.models import field_rates, inertia_left
 from rockflex.solve.adaptive.curves import is_curved, raise_curves
@@ -15,26 +14,38 @@ from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, st
 from rockflex.solve.adaptive.turning import BARELY
 from rockflex.solve.exact.series import advance, expand, row_series
 from rockflex.solve.exits import phase_exit
-from rockflex.solve.layout import GUARD, Array, Log, Motion, Progress, Span, System
+from rockflex.solve.layout import (
+    CONSTANT,
+    DAMPING,
+    DRAG,
+    DRIVE,
+    FLEXIBILITY,
+    GUARD,
+    LEVERAGE,
+    OMEGA2,
+    Array,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+)
 from rockflex.solve.peaks import raise_peak, raise_to
 
 __all__ = ["begin", "first_exit", "free_inertia", "move", "note_peaks", "prepare_guard", "turning_rate"]
 
 
 @kernel
-def begin(
-    system: System, flow: Flow | None, at: Progress, rest: Span, motion: Motion, stages: Stages | None
-) -> float:
+def begin(system: System, flow: Flow | None, at: Progress, rest: Span, motion: Motion, stages: Stages | None) -> float:
     """Begin a stretch over the `rest` of a linear phase's unit, or of the sample; return its length.
 
     It is `step.FAILED` where no step is short enough.
     """
     if flow is None:
         return rest.length
-    else:
-        if system.linear[at.phase]:
-            return rest.length
-        return take_step(flow, system.side[at.phase], rest, stages)
+    if system.phases[at.phase].linear:
+        return rest.length
+    return take_step(flow, system.phases[at.phase].side, rest, stages)
 
 
 @kernel
@@ -47,11 +58,11 @@ def prepare_guard(
         expand(system, p, motion, span, at.lift)
         row_series(system, p, GUARD, motion, span)
     else:
-        if system.linear[p]:
+        if system.phases[p].linear:
             expand(system, p, motion, span, at.lift)
             row_series(system, p, GUARD, motion, span)
         else:
-            extend(flow, system.side[p], span, stages)
+            extend(flow, system.phases[p].side, span, stages)
             row_poly(system, p, GUARD, span, stages)
             if not math.isnan(at.lift):
                 # θ and θ' start from zero and θ'' from what the guard says, all of them exactly.
@@ -66,10 +77,9 @@ def first_exit(
     """Where the phase ends: see `phase_exit`."""
     if flow is None:
         return phase_exit(system, at, motion.polys)
-    else:
-        if system.linear[at.phase]:
-            return phase_exit(system, at, motion.polys)
-        return phase_exit(system, at, stages.polys)
+    if system.phases[at.phase].linear:
+        return phase_exit(system, at, motion.polys)
+    return phase_exit(system, at, stages.polys)
 
 
 @kernel
@@ -87,7 +97,7 @@ def note_peaks(
     if flow is None:
         note_of_series(system, at, span, stop, log, motion)
     else:
-        if system.linear[at.phase]:
+        if system.phases[at.phase].linear:
             note_of_series(system, at, span, stop, log, motion)
         else:
             note_of_step(system, flow, at, span, stop, log, stages)
@@ -96,7 +106,7 @@ def note_peaks(
 @kernel
 def note_of_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
     p = at.phase
-    if system.side[p] != 0.0:
+    if system.phases[p].side != 0.0:
         raise_peak(motion.polys, GUARD, stop, span, log)
     for f in range(1, log.peaks.size):
         if at.fresh_rows or motion.doubt[f]:
@@ -107,7 +117,7 @@ def note_of_series(system: System, at: Progress, span: Span, stop: float, log: L
 @kernel
 def note_of_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, stages: Stages) -> None:
     p = at.phase
-    side = system.side[p]
+    side = system.phases[p].side
     if side != 0.0:
         raise_peak(stages.polys, GUARD, stop, span, log)
         if flow.field.complete:
@@ -134,7 +144,7 @@ def move(
     if flow is None:
         move_by_series(system, at, span, stop, log, motion)
     else:
-        if system.linear[at.phase]:
+        if system.phases[at.phase].linear:
             move_by_series(system, at, span, stop, log, motion)
         elif stop == 1.0:
             step_over(stages)
@@ -157,9 +167,8 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
 def free_inertia(system: System, flow: Flow | None, phase: int, state: Array) -> float:
     """What is left to the rotation while the modes move freely: I_θ - Σ m* h*², and what D adds in complete models."""
     if flow is None:
-        return 1.0 / system.flexibility[phase, 0, 0]
-    else:
-        return inertia_left(flow.field, system.side[phase], state)
+        return 1.0 / system.base[phase, FLEXIBILITY, 0, 0]
+    return inertia_left(flow.field, system.phases[phase].side, state)
 
 
 @kernel
@@ -169,13 +178,12 @@ def turning_rate(
     """θ'' in a phase that the motion may go on with, at θ = 0."""
     if flow is None:
         n = system.layout.modes
-        moment = system.constant[phase, 0] + system.drive[phase, 0] * ground
-        moment -= system.base_damping[phase, 0, 0] * motion.state[system.layout.spin]
+        moment = system.push[phase, CONSTANT, 0] + system.push[phase, DRIVE, 0] * ground
+        moment -= system.base[phase, DAMPING, 0, 0] * motion.state[system.layout.spin]
         for i in range(n):
-            restoring = system.damping[i] * motion.state[n + i] + system.omega2[i] * motion.state[i]
-            moment += system.leverage[phase, 0, i] * restoring
-        return moment * system.flexibility[phase, 0, 0]
-    else:
-        forget(stages)
-        field_rates(flow.field, system.side[phase], 1.0, ground, motion.state, stages.rates[0])
-        return stages.rates[0, system.layout.spin]
+            restoring = system.modes[DRAG, i] * motion.state[n + i] + system.modes[OMEGA2, i] * motion.state[i]
+            moment += system.border[phase, 0, LEVERAGE, i] * restoring
+        return moment * system.base[phase, FLEXIBILITY, 0, 0]
+    forget(stages)
+    field_rates(flow.field, system.phases[phase].side, 1.0, ground, motion.state, stages.rates[0])
+    return stages.rates[0, system.layout.spin]

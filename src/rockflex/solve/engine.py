@@ -18,7 +18,6 @@ from rockflex.solve._pace import Pace, quick_pace
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
 from rockflex.solve.adaptive.layout import Flow, Stages, stages_of
-from rockflex.solve.entry import run_in_closed_form, run_integrated
 from rockflex.solve.history import MARGIN, room_left
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import (
@@ -36,6 +35,7 @@ from rockflex.solve.layout import (
     progress_at_start,
 )
 from rockflex.solve.phases import CompiledPhases
+from rockflex.solve.run import run
 from rockflex.solve.status import Status
 
 __all__ = ["Engine", "preparing"]
@@ -47,7 +47,8 @@ SLICE = 0.1  # of work, in s, between two looks at whether the run is to stop
 TOLERANCE = 1e-10  # relative, of a step
 TREMOR = 0.01  # m/s²
 
-_closed_form, _integrated = Entry(run_in_closed_form), Entry(run_integrated)
+# One each, for each has its own set of types: the former knows no vector field, and is compiled without the integrator.
+_closed_form, _integrated = Entry(run), Entry(run)
 
 
 def preparing(model: RockingModel) -> AbstractContextManager[None]:
@@ -182,7 +183,7 @@ class Engine:
         self, system: System, state: Array, log: Log, motion: Motion | None, stages: Stages | None
     ) -> tuple[Motion, Stages | None]:
         """Room for the motion; where it was there before, with as many terms as the phases now need."""
-        terms = int(system.terms.max(initial=4))
+        terms = int(system.phases.terms.max(initial=4))
         if motion is None:
             motion = motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
             if self._flow is not None:
@@ -197,7 +198,7 @@ class Engine:
         self, system: System, course: Course, at: Progress, log: Log, motion: Motion, stages: Stages | None
     ) -> int:
         if self._flow is None:
-            return _closed_form(system, self._impact, course, at, log, motion)
+            return _closed_form(system, None, self._impact, course, at, log, motion, None)
         return _integrated(system, self._flow, self._impact, course, at, log, motion, stages)
 
     def _patience(self) -> float:

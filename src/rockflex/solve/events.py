@@ -1,6 +1,5 @@
 """The motion carried from event to event: the first root of a guard, a jump, and the phase that follows."""
 
-
 import numpy as np
 
 from rockflex._kernel import kernel
@@ -13,7 +12,10 @@ from rockflex.solve.carrier import begin, first_exit, free_inertia, move, note_p
 from rockflex.solve.exits import INSIDE, LIFTED, PASSING, TOUCHED
 from rockflex.solve.history import keep, room_left
 from rockflex.solve.layout import (
+    BESIDE,
+    EVENT,
     EVENTS,
+    FOLLOWS,
     GUARD,
     IMPACTS,
     LEFT,
@@ -46,7 +48,7 @@ FOLLOWING = 3  # `Progress.lacking`: first the places of `beside`, then those of
 def enter(system: System, at: Progress, phase: int) -> None:
     """Go on in another phase from the present state; in a linear one the walk over the grid goes on at `at.place`."""
     at.phase, at.tuned, at.stated, at.started = phase, False, True, False
-    levels = system.levels[phase]
+    levels = system.phases[phase].levels
     at.place = min(int(at.begun / system.steps[levels]), (1 << levels) - 1)
 
 
@@ -68,10 +70,10 @@ def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) 
     p = at.phase
     if event == LANDS:
         for place in range(3):
-            needed = place == 0 or (may_pass(impact) and place != beside(system.side[p]))
-            if needed and system.beside[p, place] < 0:
+            needed = place == 0 or (may_pass(impact) and place != beside(system.phases[p].side))
+            if needed and system.links[p, BESIDE + place] < 0:
                 return place
-    elif event != OVERTURNS and system.follows[p, bound] < 0:
+    elif event != OVERTURNS and system.links[p, FOLLOWS + bound] < 0:
         return FOLLOWING + bound
     return -1
 
@@ -97,38 +99,37 @@ def cross(
             return PAUSED
         log.work[LEFT] -= log.work[SERIES]
         p = at.phase
-        side, linear = system.side[p], system.linear[p]
+        side, linear = system.phases[p].side, system.phases[p].linear
         here = sample.ground + sample.slope * at.begun
         now = min(sample.time + at.begun, sample.until)
         longest, unit = sample.length - at.begun, sample.length
         if linear:
-            unit = float(system.steps[system.levels[p]])
+            unit = float(system.steps[system.phases[p].levels])
             longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
         length = begin(system, flow, at, Span(now, sample.until, here, sample.slope, longest), motion, stages)
         if length == FAILED:
             return PAUSED if log.work[LEFT] < 0.0 else STALLED
         span = Span(now, sample.until, here, sample.slope, length)
         whole = length == longest
-        if flow is not None:
-            if not linear and at.onset == INSIDE and nothing_hides(system, flow, p, span, log, stages):
-                step_over(stages)
-                at.begun = sample.length if whole else at.begun + length
-                continue
+        if flow is not None and not linear and at.onset == INSIDE and nothing_hides(system, flow, p, span, log, stages):
+            step_over(stages)
+            at.begun = sample.length if whole else at.begun + length
+            continue
         prepare_guard(system, flow, at, span, motion, stages)
         stop, bound, excess = first_exit(system, flow, at, motion, stages)
-        event = system.event[p, bound]
+        event = system.links[p, EVENT + bound]
         if stop < 0.0:
             at.lacking = lacks(system, at, event, bound, impact)
             if at.lacking >= 0:
                 return LACKS_PHASE
             if side != 0.0:
                 log.tally[EVENTS] += 1
-                enter(system, at, system.beside[p, 0])
+                enter(system, at, system.links[p, BESIDE + 0])
                 at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
             else:
-                enter(system, at, system.follows[p, bound])
+                enter(system, at, system.links[p, FOLLOWS + bound])
                 inertia = free_inertia(system, flow, at.phase, motion.state)
-                at.onset, at.lift = LIFTED, system.side[at.phase] * excess / inertia
+                at.onset, at.lift = LIFTED, system.phases[at.phase].side * excess / inertia
             at.fresh_rows = True
             if flow is not None:
                 forget(stages)
@@ -138,12 +139,11 @@ def cross(
         if ends:
             stop = 1.0
         turns = False
-        if flow is not None:
-            if flow.field.hysteretic:
-                turn = turning(flow, stages)
-                turns = turn < stop
-                if turns:
-                    stop, ends, tipped = turn, True, False
+        if flow is not None and flow.field.hysteretic:
+            turn = turning(flow, stages)
+            turns = turn < stop
+            if turns:
+                stop, ends, tipped = turn, True, False
         if not ends:
             at.lacking = lacks(system, at, event, bound, impact)
             if at.lacking >= 0:
@@ -161,14 +161,14 @@ def cross(
             at.resume = 0.0
             if linear:
                 at.place += 1
-                grid = 1 << system.levels[p]
+                grid = 1 << system.phases[p].levels
                 at.begun = sample.length if at.place == grid else unit * at.place
                 break
             continue
         here = sample.ground + sample.slope * at.begun
         now = min(sample.time + at.begun, sample.until)
         if tipped:
-            limit = system.high[p] if side > 0.0 else system.low[p]
+            limit = system.phases[p].high if side > 0.0 else system.phases[p].low
             log.peaks[GUARD], log.times[GUARD] = abs(limit), now
             motion.state[system.layout.rotation] = limit
             keep(log, now, side, here, motion.state)
@@ -182,13 +182,13 @@ def cross(
             log.tally[EVENTS] += 1
             log.tally[IMPACTS] += 1
             keep(log, now, next_side, here, motion.state)
-            enter(system, at, system.beside[p, beside(next_side)])
+            enter(system, at, system.links[p, BESIDE + beside(next_side)])
             at.onset = PASSING if next_side != 0.0 else INSIDE
         else:
             motion.state[system.layout.spin] = 0.0
-            enter(system, at, system.follows[p, bound])
+            enter(system, at, system.links[p, FOLLOWS + bound])
             inertia = free_inertia(system, flow, at.phase, motion.state)
-            at.lift = system.side[at.phase] * excess / inertia
+            at.lift = system.phases[at.phase].side * excess / inertia
             at.onset = LIFTED if excess > 0.0 else TOUCHED
         at.resume = 0.0
         at.fresh_rows = True
@@ -223,7 +223,7 @@ def land(
         after = kinetic_energy(impact, 0.0, state)
         return (GAINED if after > before * (1.0 + GAIN) else CROSSED), 0.0
     next_side = 1.0 if spin > 0.0 else -1.0
-    following = system.beside[phase, beside(next_side)]
+    following = system.links[phase, BESIDE + beside(next_side)]
     after = kinetic_energy(impact, free_inertia(system, flow, following, state), state)
     if after > before * (1.0 + GAIN):
         return GAINED, next_side

@@ -23,7 +23,7 @@ def phase_exit(system: System, at: Progress, polys: Array) -> tuple[float, int, 
     where a rotation never left zero.
     """
     p = at.phase
-    side, low, high = system.side[p], system.low[p], system.high[p]
+    side, low, high = system.phases[p].side, system.phases[p].low, system.phases[p].high
     if side != 0.0:
         inner = LOW if side > 0.0 else HIGH
         lands = landing(polys, side, at.onset)

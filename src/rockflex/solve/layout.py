@@ -18,15 +18,32 @@ from numpy.typing import NDArray
 from rockflex.models import StateLayout
 
 __all__ = [
+    "BESIDE",
     "CARRY",
+    "CONSTANT",
+    "COUPLING",
+    "DAMPING",
+    "DRAG",
+    "DRIVE",
+    "EVENT",
     "EVENTS",
+    "FLEXIBILITY",
+    "FOLLOWS",
     "GUARD",
     "IMPACTS",
     "KEPT",
     "LEFT",
+    "LEVERAGE",
+    "LINKS",
     "LOOK",
+    "OMEGA2",
+    "PHASE",
+    "RIPPLE",
+    "SAG",
     "SERIES",
     "STEP",
+    "STIFFNESS",
+    "SWING",
     "UPLIFTS",
     "ZERO",
     "Array",
@@ -49,6 +66,33 @@ LEFT, CARRY, LOOK, SERIES, STEP = 0, 1, 2, 3, 4
 # Places in `Log.tally`; EVENTS counts those of the present sample, KEPT the states of the history.
 UPLIFTS, IMPACTS, EVENTS, KEPT = 0, 1, 2, 3
 
+# Places in `System.modes`, `border`, `base` and `push`
+OMEGA2, DRAG = 0, 1
+COUPLING, LEVERAGE = 0, 1
+FLEXIBILITY, DAMPING, STIFFNESS = 0, 1, 2
+CONSTANT, DRIVE = 0, 1
+
+# Places in `System.links`, of two limits each: what happens there, and which phase follows; -1 for none, or for one that
+# was not met yet. Then the same branches with the base in contact, on its right pivot and on its left one.
+EVENT, FOLLOWS, BESIDE, LINKS = 0, 2, 4, 7
+
+# Places in `System.bounds`: how far a row may lie from its chord over a step, its slope from its own chord, and the row
+# from the cubic through the values and slopes at both ends.
+SAG, SWING, RIPPLE = 0, 1, 2
+
+PHASE = np.dtype(
+    [
+        ("side", np.float64),  # about which pivot the base turns
+        ("low", np.float64),  # limits of the guard
+        ("high", np.float64),
+        ("levels", np.int64),  # of its grid
+        ("terms", np.int64),  # of the power series that converge over the finest step
+        ("linear", np.bool_),  # carried in closed form
+        ("dense", np.bool_),  # linear, but does not uncouple
+    ],
+    align=True,
+)
+
 # A bare 0 has a type of its own in numba, for which every callee would be compiled once more.
 ZERO = cast("int", np.int64(0))
 GUARD = ZERO  # the row of the guard
@@ -58,27 +102,12 @@ class System(NamedTuple):
     """A model made ready for a time step: its phases, P of them, as many as were met; level j is the step dt / 2^j."""
 
     layout: StateLayout
-    omega2: Array  # ω²
-    damping: Array  # 2ζω
-    # The arrow of each phase: `rockflex.models.Arrow`
-    coupling: Array  # (P, b, N)
-    leverage: Array  # (P, b, N)
-    flexibility: Array  # (P, b, b)
-    base_damping: Array  # (P, b, b)
-    base_stiffness: Array  # (P, b, b)
-    constant: Array  # (P, b)
-    drive: Array  # (P, b)
-    # What kind of phase it is, and how it ends
-    side: Array  # (P,): about which pivot the base turns
-    linear: NDArray[np.bool_]  # (P,): carried in closed form
-    dense: NDArray[np.bool_]  # (P,): linear, but does not uncouple
-    levels: NDArray[np.int64]  # (P,): levels of its grid
-    terms: NDArray[np.int64]  # (P,): of the power series that converge over its finest step
-    low: Array  # (P,): limits of the guard
-    high: Array  # (P,)
-    event: NDArray[np.int64]  # (P, 2): what happens where it passes them
-    follows: NDArray[np.int64]  # (P, 2): the phase that follows; -1 where it was not met yet
-    beside: NDArray[np.int64]  # (P, 3): the same phase with the base in contact, on its right pivot, on its left one
+    modes: Array  # (2, N): ω² and 2ζω
+    phases: Any  # (P,): records of `PHASE`
+    links: NDArray[np.int64]  # (P, LINKS): what follows each phase
+    border: Array  # (P, b, 2, N): c and m* c of `rockflex.models.Arrow`
+    base: Array  # (P, 3, b, b): flexibility, damping and stiffness of the base's freedoms
+    push: Array  # (P, 2, b): constant forces on them, and the factor of the ground acceleration
     # Its motion
     plain_rows: Array  # (P, F, C): the rows over the state, a and 1
     basis: Array  # (P, S, S), S = 2 N + 2 b: transposed
@@ -89,9 +118,7 @@ class System(NamedTuple):
     slope_rows: Array  # (P, F, S): the rows' time derivatives over w; `row_forcing[.., 0]` a' adds to them
     blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
     propagator: Array  # (P, J + 1, S, S): exp(B h) where some phase is dense; else (0, 0, 0, 0)
-    sag: Array  # (P, J + 1, F, K): bound of |row - its chord| over a step, times |w| of the pair
-    swing: Array  # (P, J + 1, F, K): bound of |row' - its chord|, likewise
-    ripple: Array  # (P, J + 1, F, K): bound of |row - its cubic through both ends' values and slopes|, likewise
+    bounds: Array  # (P, 3, J + 1, F, K): sag, swing and ripple of each row over a step, times |w| of the pair
     hold: Array  # (P, F, K): bound of |row| for ever after in contact, times |w| of the pair
     steps: Array  # (J + 1,): dt / 2^j
 

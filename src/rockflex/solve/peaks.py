@@ -78,5 +78,5 @@ def raise_to(system: System, phase: int, row: int, ground: float, time: float, l
 @kernel
 def raise_to_state(system: System, phase: int, ground: float, time: float, log: Log, motion: Motion) -> None:
     """Raise all peaks to the present state."""
-    for f in range(GUARD if system.side[phase] != 0.0 else 1, log.peaks.size):
+    for f in range(GUARD if system.phases[phase].side != 0.0 else 1, log.peaks.size):
         raise_to(system, phase, f, ground, time, log, motion)

@@ -6,7 +6,7 @@ from rockflex.models import Key, Phase, Quantities, RockingModel, lost_support_r
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.closed_form import accelerations_in
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
-from rockflex.solve.layout import Array, System
+from rockflex.solve.layout import BESIDE, FOLLOWS, Array, System
 
 __all__ = ["CompiledPhases"]
 
@@ -80,7 +80,7 @@ class CompiledPhases:
         if system is None:
             system = empty_system(self._model, rows, dt, max(CAPACITY, count), levels, dense=dense)
         else:
-            capacity, had = system.side.size, system.steps.size - 1
+            capacity, had = system.links.shape[0], system.steps.size - 1
             if count > capacity or levels > had or dense > (system.propagator.size > 0):
                 capacity = capacity if count <= capacity else 2 * count
                 larger = empty_system(self._model, rows, dt, capacity, max(levels, had), dense=dense)
@@ -103,9 +103,9 @@ class CompiledPhases:
         """Enter which phase leads to which, as far as they were met."""
         for p, phase in enumerate(self._phases):
             for place in range(3):
-                system.beside[p, place] = self._places.get(self._beside(phase, place), -1)
+                system.links[p, BESIDE + place] = self._places.get(self._beside(phase, place), -1)
             for bound, leads in enumerate((phase.guards[0].below, phase.guards[0].above)):
-                system.follows[p, bound] = -1 if leads is None else self._places.get(leads.key, -1)
+                system.links[p, FOLLOWS + bound] = -1 if leads is None else self._places.get(leads.key, -1)
 
     def _beside(self, phase: Phase, place: int) -> Key:
         """The same branches, with the base in contact, on its right pivot or on its left one."""

@@ -7,7 +7,7 @@ event. The kernel returns wherever its slice of work ends, and when called again
 
 import math
 
-from rockflex._kernel import kernel
+from rockflex._kernel import kernel, python_kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.curves import values_of_rows
 from rockflex.solve.adaptive.layout import Flow, Stages
@@ -30,7 +30,7 @@ BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: a stretch begins; over whole s
 BLOCK = 4096  # samples that are carried at once, at most
 
 
-@kernel
+@python_kernel
 def run(
     system: System,
     flow: Flow | None,
@@ -56,7 +56,7 @@ def run(
         status = cross_piece(system, flow, impact, piece, course.dt, at, log, motion, stages)
         if status != CROSSED:
             return status
-        if system.linear[at.phase] and not at.stated:
+        if system.phases[at.phase].linear and not at.stated:
             to_state(system, at, piece[piece.size - 1], motion)
             at.stated = True
         at.last = piece[piece.size - 1]
@@ -76,9 +76,9 @@ def begin_piece(
     stages: Stages | None,
 ) -> bool:
     """Prepare for a stretch of acceleration; True where a run that is to settle has done so."""
-    time, side = at.offset * course.dt, system.side[at.phase]
+    time, side = at.offset * course.dt, system.phases[at.phase].side
     at.started = False
-    if system.linear[at.phase]:
+    if system.phases[at.phase].linear:
         at.slope = 0.0
         to_coordinates(system, at, ground, motion)
         at.tuned = True
@@ -104,7 +104,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
         bound = 0.0
         for k in range(pairs):
             bound += system.hold[p, f, k] * math.hypot(motion.w[k], motion.w[pairs + k])
-        if bound > (min(system.high[p], -system.low[p]) if f == GUARD else log.peaks[f]):
+        if bound > (min(system.phases[p].high, -system.phases[p].low) if f == GUARD else log.peaks[f]):
             return False
     return True
 
@@ -130,7 +130,7 @@ def cross_piece(
             if not carry(system, flow, piece, dt, at, log, motion, stages):
                 continue
             # In a linear phase the whole sample has been examined.
-            at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.linear[at.phase]
+            at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.phases[at.phase].linear
             at.slope = (piece[at.index + 1] - piece[at.index]) * rate
             log.tally[EVENTS] = 0
         i = at.index
@@ -156,9 +156,8 @@ def carry(
     stages: Stages | None,
 ) -> bool:
     """Carry the motion over whole samples; True where the next one needs a closer look."""
-    if flow is not None:
-        if not system.linear[at.phase]:
-            return step_through(system, flow, piece, dt, at, log, stages)
+    if flow is not None and not system.phases[at.phase].linear:
+        return step_through(system, flow, piece, dt, at, log, stages)
     first = at.index
     most = BLOCK
     if log.history.shape[0] > 0:

@@ -35,15 +35,15 @@ def cross_sample(
     """
     while at.begun < sample.length:
         p = at.phase
-        if at.crossing or not system.linear[p]:
+        if at.crossing or not system.phases[p].linear:
             if not at.crossing:
                 start_crossing(at, True)
             status = cross(system, flow, impact, sample, at, log, motion, stages)
             if status != CROSSED:
                 return status
-            at.level, at.probed = largest_step(at.place, system.levels[at.phase]), False
+            at.level, at.probed = largest_step(at.place, system.phases[at.phase].levels), False
             continue
-        levels = system.levels[p]
+        levels = system.phases[p].levels
         grid, stride = 1 << levels, 1 << (levels - at.level)
         unit = float(system.steps[levels])
         here = sample.ground + sample.slope * unit * at.place
@@ -70,7 +70,7 @@ def cross_sample(
                 at.begun, at.stated, at.tuned = unit * at.place, True, False
                 start_crossing(at, False)
                 continue
-            raise_peaks(motion.end, system.side[p], now + unit * stride, log)
+            raise_peaks(motion.end, system.phases[p].side, now + unit * stride, log)
         if at.finding == PEAK and not survey(system, at, step, log, motion):
             return PAUSED
         for k in range(motion.w.size):
@@ -79,11 +79,11 @@ def cross_sample(
         at.place += stride
         at.begun = sample.length if at.place == grid else unit * at.place
         at.level = largest_step(at.place, levels)
-    if system.linear[at.phase]:
+    if system.phases[at.phase].linear:
         if not at.tuned:
             to_coordinates(system, at, last, motion)
             at.tuned = True
         if not at.stated and log.history.shape[0] > 0:
             to_state(system, at, last, motion)
-    keep(log, sample.until, system.side[at.phase], last, motion.state)
+    keep(log, sample.until, system.phases[at.phase].side, last, motion.state)
     return CROSSED

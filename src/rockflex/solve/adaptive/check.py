@@ -18,7 +18,7 @@ __all__ = ["nothing_hides"]
 @kernel
 def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:
     """True where the step just taken holds no event and no new peak but at its end, which is then noted."""
-    rows, side, step = system.plain_rows, system.side[phase], span.length
+    rows, side, step = system.plain_rows, system.phases[phase].side, span.length
     n, modes = rows.shape[2] - 2, flow.field.omega2.size
     if flow.field.hysteretic:
         first, last = room.branch[0] * room.motion[modes], room.branch[0] * room.trial[modes]
@@ -31,7 +31,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, 
         and curves_hide(system, flow, phase, span, room.trial, room.rates[LAST], log, room)
     ):
         return False
-    low_limit, high_limit = system.low[phase], system.high[phase]
+    low_limit, high_limit = system.phases[phase].low, system.phases[phase].high
     for f in range(log.peaks.size):
         if is_curved(flow, f, side):
             continue

@@ -35,7 +35,7 @@ def tell(
     system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array
 ) -> None:
     """Fill in the values of the curved rows; of the last one, as in `Log`, the loss of support."""
-    n, last, side = flow.field.omega2.size, system.plain_rows.shape[2] - 2, system.side[phase]
+    n, last, side = flow.field.omega2.size, system.plain_rows.shape[2] - 2, system.phases[phase].side
     posture = posture_of(flow.field, side, acceleration, motion, rates)
     for f in range(1, values.size):
         kind = flow.kinds[f]
@@ -124,14 +124,14 @@ def look_ahead(
     later = ground + span.slope * AHEAD * span.length
     for i in range(motion.size):
         room.place[i] = motion[i] + AHEAD * span.length * rates[i]
-    field_rates(flow.field, system.side[phase], room.branch[0], later, room.place, room.place_rates)
+    field_rates(flow.field, system.phases[phase].side, room.branch[0], later, room.place, room.place_rates)
     tell(system, flow, phase, later, room.place, room.place_rates, values)
 
 
 @kernel
 def raise_curves(system: System, flow: Flow, phase: int, span: Span, stop: float, log: Log, room: Stages) -> None:
     """Raise the peaks of all curved rows over [0, stop] of the step whose extension is in `room.bends`."""
-    side, length = system.side[phase], span.length * stop
+    side, length = system.phases[phase].side, span.length * stop
     place_at(stop, room, room.end)
     field_rates(flow.field, side, room.branch[0], span.ground + span.slope * length, room.end, room.end_rates)
     part = Span(span.time, span.until, span.ground, span.slope, length)
@@ -176,7 +176,7 @@ def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Spa
     """Value of a curved row at the fraction `u` of a step."""
     ground = span.ground + span.slope * span.length * u
     place_at(u, room, room.place)
-    field_rates(flow.field, system.side[phase], room.branch[0], ground, room.place, room.place_rates)
+    field_rates(flow.field, system.phases[phase].side, room.branch[0], ground, room.place, room.place_rates)
     tell(system, flow, phase, ground, room.place, room.place_rates, room.values)
     return room.values[f]
 
@@ -184,7 +184,7 @@ def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Spa
 @kernel
 def values_of_rows(system: System, flow: Flow, phase: int, ground: float, room: Stages) -> None:
     """Fill `room.values` with all rows at the present motion, where a stretch of acceleration begins."""
-    side, rows = system.side[phase], system.plain_rows
+    side, rows = system.phases[phase].side, system.plain_rows
     n = rows.shape[2] - 2
     if flow.field.hysteretic:
         choose_branch(flow, side, ground, room)

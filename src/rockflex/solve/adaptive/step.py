@@ -49,7 +49,12 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
         for stage in range(1, LAST + 1):
             place_stage(stage, step, room.motion, room.rates, room.trial)
             field_rates(
-                flow.field, side, room.branch[0], rest.ground + rest.slope * step * C[stage], room.trial, room.rates[stage]
+                flow.field,
+                side,
+                room.branch[0],
+                rest.ground + rest.slope * step * C[stage],
+                room.trial,
+                room.rates[stage],
             )
         error = error_of(flow, step, room)
         if error <= 1.0:
@@ -101,7 +106,12 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
     for stage in range(LAST + 1, STAGES):
         place_stage(stage, step, room.motion, room.rates, room.bends[0])
         field_rates(
-            flow.field, side, room.branch[0], span.ground + span.slope * step * C[stage], room.bends[0], room.rates[stage]
+            flow.field,
+            side,
+            room.branch[0],
+            span.ground + span.slope * step * C[stage],
+            room.bends[0],
+            room.rates[stage],
         )
     for i in range(n):
         rise = room.trial[i] - room.motion[i]

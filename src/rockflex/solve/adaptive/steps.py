@@ -11,15 +11,13 @@ __all__ = ["step_through"]
 
 
 @kernel
-def step_through(
-    system: System, flow: Flow, piece: Array, dt: float, at: Progress, log: Log, stages: Stages
-) -> bool:
+def step_through(system: System, flow: Flow, piece: Array, dt: float, at: Progress, log: Log, stages: Stages) -> bool:
     """Carry the motion over samples from `at.index` on, of which `at.begun` s are done.
 
     It stops before a step that needs a closer look, and returns True; or where the work or the room runs out, or at the
     end of the piece.
     """
-    rate, side = 1.0 / dt, system.side[at.phase]
+    rate, side = 1.0 / dt, system.phases[at.phase].side
     for i in range(at.index, piece.size - 1):
         slope = (piece[i + 1] - piece[i]) * rate
         time, until = (at.offset + i) * dt, (at.offset + i + 1) * dt

@@ -5,7 +5,7 @@ import math
 from rockflex._kernel import kernel
 from rockflex.solve.exact.probe import NOTHING, examine, probe, set_limits
 from rockflex.solve.history import keep
-from rockflex.solve.layout import ZERO, Array, Log, Motion, Progress, System
+from rockflex.solve.layout import SAG, ZERO, Array, Log, Motion, Progress, System
 from rockflex.solve.peaks import raise_peaks
 
 __all__ = ["march", "to_coordinates", "to_state"]
@@ -46,8 +46,8 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
     """
     p = at.phase
     pairs = motion.norms.size
-    active = pairs if system.side[p] != 0.0 else system.layout.modes
-    uncoupled = not system.dense[p]
+    active = pairs if system.phases[p].side != 0.0 else system.layout.modes
+    uncoupled = not system.phases[p].dense
     rate = 1.0 / dt
     at.finding = NOTHING
     started, slope, first = at.started, at.slope, at.index
@@ -80,7 +80,7 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
         for f in range(motion.start.size):
             sag = 0.0
             for k in range(active):
-                sag += system.sag[p, 0, f, k] * motion.norms[k]
+                sag += system.bounds[p, SAG, 0, f, k] * motion.norms[k]
             low, high = min(motion.start[f], motion.end[f]), max(motion.start[f], motion.end[f])
             safe = safe and low - sag >= motion.lower[f] and high + sag <= motion.upper[f]
         if not safe:
@@ -89,13 +89,13 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
                 at.stated = at.stated and i == first
                 at.slope, at.index, at.started = slope, i, False
                 return
-            raise_peaks(motion.end, system.side[p], (at.offset + i + 1) * dt, log)
+            raise_peaks(motion.end, system.phases[p].side, (at.offset + i + 1) * dt, log)
             set_limits(system, p, log, motion)
         for k in range(2 * pairs):
             motion.w[k] = motion.w_end[k]
         if log.history.shape[0] > 0:
             at.slope = slope
             to_state(system, at, there, motion)
-            keep(log, (at.offset + i + 1) * dt, system.side[p], there, motion.state)
+            keep(log, (at.offset + i + 1) * dt, system.phases[p].side, there, motion.state)
     at.stated = at.stated and last == first
     at.slope, at.index, at.started = slope, last, started

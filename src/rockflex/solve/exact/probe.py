@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.solve.layout import GUARD, Log, Motion, System
+from rockflex.solve.layout import GUARD, RIPPLE, SAG, SWING, Log, Motion, System
 
 __all__ = ["EVENT", "NOTHING", "PEAK", "cubic_range", "examine", "probe", "set_limits"]
 
@@ -19,12 +19,12 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
     for f in range(log.peaks.size):
         motion.lower[f] = -log.peaks[f]
         motion.upper[f] = log.peaks[f]
-    if system.side[phase] == 0.0:
-        motion.lower[GUARD] = system.low[phase]
-        motion.upper[GUARD] = system.high[phase]
+    if system.phases[phase].side == 0.0:
+        motion.lower[GUARD] = system.phases[phase].low
+        motion.upper[GUARD] = system.phases[phase].high
     else:
-        motion.lower[GUARD] = max(system.low[phase], -log.peaks[GUARD])
-        motion.upper[GUARD] = min(system.high[phase], log.peaks[GUARD])
+        motion.lower[GUARD] = max(system.phases[phase].low, -log.peaks[GUARD])
+        motion.upper[GUARD] = min(system.phases[phase].high, log.peaks[GUARD])
     motion.lower[support] = -np.inf
 
 
@@ -32,13 +32,13 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
 def examine(system: System, phase: int, level: int, here: float, there: float, slope: float, motion: Motion) -> None:
     """Carry `motion.w` over a step into `w_end`, with the rows asked for at both ends and the pairs' norms."""
     pairs = motion.norms.size
-    count = pairs if system.side[phase] != 0.0 else system.layout.modes
+    count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
     for k in range(count):
         x, y = motion.w[k], motion.w[pairs + k]
         motion.norms[k] = math.sqrt(x * x + y * y)
         motion.w_end[k] = system.blocks[phase, level, 0, k] * x + system.blocks[phase, level, 1, k] * y
         motion.w_end[pairs + k] = system.blocks[phase, level, 2, k] * x + system.blocks[phase, level, 3, k] * y
-    if system.dense[phase]:
+    if system.phases[phase].dense:
         for i in range(motion.w.size):
             motion.w_end[i] = 0.0
             for k in range(motion.w.size):
@@ -67,7 +67,7 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
     is settled where it stays within `ripple` of the cubic through both ends.
     """
     pairs = motion.norms.size
-    count = pairs if system.side[phase] != 0.0 else system.layout.modes
+    count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
     finding = NOTHING
     for f in range(motion.start.size):
         motion.doubt[f] = False
@@ -75,7 +75,7 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
             continue
         sag = 0.0
         for k in range(count):
-            sag += system.sag[phase, level, f, k] * motion.norms[k]
+            sag += system.bounds[phase, SAG, level, f, k] * motion.norms[k]
         first, last = motion.start[f], motion.end[f]
         low, high = min(first, last), max(first, last)
         if low - sag >= motion.lower[f] and high + sag <= motion.upper[f]:
@@ -83,8 +83,8 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
         swing = ripple = 0.0
         before = after = system.row_forcing[phase, f, 0] * slope
         for k in range(count):
-            swing += system.swing[phase, level, f, k] * motion.norms[k]
-            ripple += system.ripple[phase, level, f, k] * motion.norms[k]
+            swing += system.bounds[phase, SWING, level, f, k] * motion.norms[k]
+            ripple += system.bounds[phase, RIPPLE, level, f, k] * motion.norms[k]
             before += system.slope_rows[phase, f, k] * motion.w[k]
             before += system.slope_rows[phase, f, pairs + k] * motion.w[pairs + k]
             after += system.slope_rows[phase, f, k] * motion.w_end[k]
@@ -96,8 +96,8 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
             hidden = low - ripple < motion.lower[f] or high + ripple > motion.upper[f]
         elif f == GUARD:
             # A rotation may start on its limit, where it has just left the ground, but not end there.
-            hidden = first < system.low[phase] or first > system.high[phase]
-            hidden = hidden or last <= system.low[phase] or last >= system.high[phase]
+            hidden = first < system.phases[phase].low or first > system.phases[phase].high
+            hidden = hidden or last <= system.phases[phase].low or last >= system.phases[phase].high
         motion.doubt[f] = hidden
         if hidden:
             finding = max(finding, EVENT if f == GUARD else PEAK)

@@ -10,7 +10,21 @@ import math
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.solve.layout import Array, Motion, Span, System
+from rockflex.solve.layout import (
+    CONSTANT,
+    COUPLING,
+    DAMPING,
+    DRAG,
+    DRIVE,
+    FLEXIBILITY,
+    LEVERAGE,
+    OMEGA2,
+    STIFFNESS,
+    Array,
+    Motion,
+    Span,
+    System,
+)
 
 __all__ = ["advance", "bend", "evaluate", "expand", "first_descent", "row_series"]
 
@@ -26,14 +40,14 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
     from a condition that is met continuously); NaN elsewhere.
     """
     n, freedoms, step, series = system.layout.modes, motion.push.size, span.length, motion.series
-    free = system.side[phase] != 0.0
+    free = system.phases[phase].side != 0.0
     for i in range(n):
         series[i, 0] = motion.state[i]
         series[i, 1] = motion.state[n + i] * step
     for j in range(freedoms):
         series[n + j, 0] = motion.state[2 * n + 2 * j]
         series[n + j, 1] = motion.state[2 * n + 2 * j + 1] * step
-    square, terms = step * step, system.terms[phase]
+    square, terms = step * step, system.phases[phase].terms
     for k in range(terms, series.shape[1]):
         for i in range(series.shape[0]):
             series[i, k] = 0.0
@@ -47,38 +61,38 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
         for j in range(freedoms):
             motion.push[j] = 0.0
         for i in range(n):
-            restoring = system.damping[i] * step * (k + 1.0) * series[i, k + 1]
-            restoring += system.omega2[i] * square * series[i, k]
+            restoring = system.modes[DRAG, i] * step * (k + 1.0) * series[i, k + 1]
+            restoring += system.modes[OMEGA2, i] * square * series[i, k]
             series[i, k + 2] = -(restoring + drive) * pair
             for j in range(freedoms):
-                motion.push[j] += system.leverage[phase, j, i] * restoring
+                motion.push[j] += system.border[phase, j, LEVERAGE, i] * restoring
         for j in range(freedoms):
             series[n + j, k + 2] = 0.0
         if not free:
             continue
         for j in range(freedoms):
-            force = system.drive[phase, j] * drive
+            force = system.push[phase, DRIVE, j] * drive
             for m in range(freedoms):
-                force -= system.base_stiffness[phase, j, m] * square * series[n + m, k]
-                force -= system.base_damping[phase, j, m] * step * (k + 1.0) * series[n + m, k + 1]
+                force -= system.base[phase, STIFFNESS, j, m] * square * series[n + m, k]
+                force -= system.base[phase, DAMPING, j, m] * step * (k + 1.0) * series[n + m, k + 1]
             if k == 0:
-                force += system.constant[phase, j] * square
+                force += system.push[phase, CONSTANT, j] * square
             motion.push[j] += force
         for j in range(freedoms):
             turn = 0.0
             for m in range(freedoms):
-                turn += system.flexibility[phase, j, m] * motion.push[m]
+                turn += system.base[phase, FLEXIBILITY, j, m] * motion.push[m]
             if k == 0 and not math.isnan(lift):
                 turn = square * lift
             series[n + j, k + 2] = turn * pair
             for i in range(n):
-                series[i, k + 2] -= system.coupling[phase, j, i] * turn * pair
+                series[i, k + 2] -= system.border[phase, j, COUPLING, i] * turn * pair
 
 
 @kernel
 def row_series(system: System, phase: int, row: int, motion: Motion, span: Span) -> None:
     """Taylor coefficients, in `motion.polys[row]`, of one row of a phase."""
-    n, pairs, terms = system.layout.modes, motion.series.shape[0], system.terms[phase]
+    n, pairs, terms = system.layout.modes, motion.series.shape[0], system.phases[phase].terms
     rows, polys, series, step = system.plain_rows, motion.polys, motion.series, span.length
     ground = rows.shape[2] - 2
     for k in range(polys.shape[1]):

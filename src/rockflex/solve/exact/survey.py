@@ -23,7 +23,7 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
     `at` then says how far the search has come.
     """
     p, level = at.phase, at.level
-    side, levels = system.side[p], system.levels[p]
+    levels = system.phases[p].levels
     grid = 1 << (levels - level)
     unit = float(system.steps[levels])
     if not at.searching:

@@ -14,7 +14,23 @@ from scipy.linalg import expm
 from rockflex._errors import InputError
 from rockflex.models import FREEDOMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis
-from rockflex.solve.layout import Array, System
+from rockflex.solve.layout import (
+    CONSTANT,
+    COUPLING,
+    DAMPING,
+    DRIVE,
+    EVENT,
+    FLEXIBILITY,
+    LEVERAGE,
+    LINKS,
+    PHASE,
+    RIPPLE,
+    SAG,
+    STIFFNESS,
+    SWING,
+    Array,
+    System,
+)
 
 __all__ = ["check_step", "empty_system", "grown", "levels_of", "propagate", "put_phase", "terms_of"]
 
@@ -58,27 +74,15 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
     p, layout, b = model.properties, model.layout, len(FREEDOMS)
     n, core, pairs, columns = layout.modes, layout.core, layout.core // 2, layout.columns
     whole = (capacity, levels + 1)
+    links = np.full((capacity, LINKS), -1, dtype=np.int64)
     return System(
         layout=layout,
-        omega2=p.omega**2,
-        damping=2.0 * p.zeta * p.omega,
-        coupling=np.zeros((capacity, b, n)),
-        leverage=np.zeros((capacity, b, n)),
-        flexibility=np.zeros((capacity, b, b)),
-        base_damping=np.zeros((capacity, b, b)),
-        base_stiffness=np.zeros((capacity, b, b)),
-        constant=np.zeros((capacity, b)),
-        drive=np.zeros((capacity, b)),
-        side=np.zeros(capacity),
-        linear=np.zeros(capacity, dtype=np.bool_),
-        dense=np.zeros(capacity, dtype=np.bool_),
-        levels=np.zeros(capacity, dtype=np.int64),
-        terms=np.zeros(capacity, dtype=np.int64),
-        low=np.zeros(capacity),
-        high=np.zeros(capacity),
-        event=np.zeros((capacity, 2), dtype=np.int64),
-        follows=np.full((capacity, 2), -1, dtype=np.int64),
-        beside=np.full((capacity, 3), -1, dtype=np.int64),
+        modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
+        phases=np.zeros(capacity, dtype=PHASE).view(np.recarray),
+        links=links,
+        border=np.zeros((capacity, b, 2, n)),
+        base=np.zeros((capacity, 3, b, b)),
+        push=np.zeros((capacity, 2, b)),
         plain_rows=np.zeros((capacity, rows, columns)),
         basis=np.zeros((capacity, core, core)),
         inverse=np.zeros((capacity, core, core)),
@@ -88,9 +92,7 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
         slope_rows=np.zeros((capacity, rows, core)),
         blocks=np.zeros((*whole, 4, pairs)),
         propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
-        sag=np.zeros((*whole, rows, pairs)),
-        swing=np.zeros((*whole, rows, pairs)),
-        ripple=np.zeros((*whole, rows, pairs)),
+        bounds=np.zeros((capacity, 3, levels + 1, rows, pairs)),
         hold=np.zeros((capacity, rows, pairs)),
         steps=dt * 0.5 ** np.arange(levels + 1, dtype=np.float64),
     )
@@ -108,23 +110,18 @@ def grown(system: System, larger: System) -> System:
 
 def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_rows: Array, dt: float) -> None:
     """Enter one phase at place `p`; `plain_rows` (F, C). Where it is not linear, there is no basis."""
-    guard = phase.guards[0]
-    system.side[p] = phase.side
-    system.low[p], system.high[p] = guard.low, guard.high
+    guard, kind = phase.guards[0], system.phases[p]
+    kind.side, kind.low, kind.high, kind.linear = phase.side, guard.low, guard.high, basis is not None
     for bound, end in enumerate((guard.below, guard.above)):
-        system.event[p, bound] = -1 if end is None else end.event
+        system.links[p, EVENT + bound] = -1 if end is None else end.event
     system.plain_rows[p] = plain_rows
-    system.linear[p] = basis is not None
     arrow = phase.arrow
     if basis is None or arrow is None:
         return
-    system.coupling[p] = arrow.coupling
-    system.leverage[p] = arrow.leverage
-    system.flexibility[p] = arrow.flexibility
-    system.base_damping[p] = arrow.damping
-    system.base_stiffness[p] = arrow.stiffness
-    system.constant[p] = arrow.constant
-    system.drive[p] = arrow.drive
+    system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
+    system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
+    system.base[p, STIFFNESS] = arrow.stiffness
+    system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
     levels = levels_of(basis.fastest, dt)
     steps = system.steps[: levels + 1]
     core, own = basis.basis.shape[0], slice(levels + 1)
@@ -133,8 +130,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     forcing = moving @ basis.steady.T
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
-    system.dense[p] = basis.dense
-    system.levels[p], system.terms[p] = levels, terms_of(basis.fastest, dt)
+    kind.dense, kind.levels, kind.terms = basis.dense, levels, terms_of(basis.fastest, dt)
     system.basis[p] = basis.basis.T
     system.inverse[p] = basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T
@@ -148,7 +144,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
         bounds = _dense_bounds(basis, rows, steps)
     else:
         bounds = _bounds(basis, rows, first, steps)
-    system.sag[p, own], system.swing[p, own], system.ripple[p, own] = bounds
+    system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
     system.hold[p] = _pair_norm(rows)
 
 
