@@ -16,7 +16,7 @@ from rockflex.models._kept import accelerations, acting_side, rates_of, values_o
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
-from rockflex.models._named import floor_quantities, modal_displacement, quantities
+from rockflex.models._named import floor_quantities, modal_displacement, quantities, rotation_by_side
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import (
     HORIZONTAL,
@@ -31,6 +31,8 @@ from rockflex.models._observe import (
 )
 from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of
+from rockflex.models._reactions import Reactions, printed_reactions, reactions
+from rockflex.models._stored import floor_accelerations, stored_energies, stretch_per_arm, tendon_energy
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 
 __all__ = [
@@ -68,6 +70,7 @@ __all__ = [
     "Phase",
     "Posture",
     "Quantities",
+    "Reactions",
     "Restitution",
     "RockingModel",
     "SidedRestitution",
@@ -77,6 +80,7 @@ __all__ = [
     "accelerations",
     "acting_side",
     "field_rates",
+    "floor_accelerations",
     "floor_quantities",
     "housner",
     "impact_of",
@@ -91,10 +95,16 @@ __all__ = [
     "parse_model",
     "pivot_at",
     "posture_of",
+    "printed_reactions",
     "quantities",
     "rates_of",
+    "reactions",
+    "rotation_by_side",
     "rows_of",
     "stick",
+    "stored_energies",
+    "stretch_per_arm",
     "strike",
+    "tendon_energy",
     "values_of",
 ]

@@ -44,6 +44,11 @@ class LinearModel(ModalModel):
         least = min(abs(p.pivot(side).rocking_stiffness) for side in (1, -1))
         return self.lifts and least < NEUTRAL * p.l0r * GRAVITY
 
+    @property
+    def linear(self) -> "LinearModel":
+        """The model itself, as of every model its simplified, elastic one."""
+        return self
+
     def phase(self, key: Key) -> Phase:
         """Return one phase: the equations of motion on these branches, and what ends it."""
         return Phase(key, key[0], self.arrow(key), self.guards(key))

@@ -10,7 +10,7 @@ from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
 from rockflex.models._quantities import Quantities
 
-__all__ = ["floor_quantities", "modal_displacement", "quantities"]
+__all__ = ["floor_quantities", "modal_displacement", "quantities", "rotation_by_side"]
 
 Array = NDArray[np.float64]
 
@@ -77,8 +77,8 @@ def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]
     """Return quantities of the floors, N_floors each, by name.
 
     `story_drift` (m): displacement of a floor less that of the one below, relative to the rotated base. `story_shear`
-    (N): sum of the elastic forces from its floor up. `total_floor_displacement` (m): horizontal, relative to the ground.
-    `floor_acceleration` (m/s²): a + h θ'' + Σ Γ φ D'', for small rotations.
+    (N): sum of the elastic forces from its floor up. `total_floor_displacement` (m): horizontal, relative to the
+    ground. `floor_acceleration` (m/s²): a + h θ'' + Σ Γ φ D'', for small rotations.
     """
     p = model.properties
     count, n = floors.heights.size, p.n_modes
@@ -100,3 +100,8 @@ def modal_displacement(model: ModalModel, mode: int) -> Quantities:
     share = np.zeros(model.properties.n_modes)
     share[mode] = 1.0
     return Quantities.of(1, share.size, displacement=share)
+
+
+def rotation_by_side(model: ModalModel) -> Quantities:
+    """Return the rotation to the right in rad, which is zero to the left, and that to the left."""
+    return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])

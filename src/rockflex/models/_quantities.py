@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._values import Value
-from rockflex.models._elements import CLOSED
+from rockflex.models._elements import CLOSED, RIGHT
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
@@ -25,8 +25,8 @@ class Quantities(Value):
     ----------
     displacement, restoring, acceleration : ndarray, shape (F, N)
         Of D_n, of the restoring acceleration of each mode (ω_n² D_n, or that of Eq. 37), and of D''_n.
-    rotation, turn, ground : ndarray, shape (F,)
-        Of θ, θ'' and the ground acceleration.
+    rotation, right, turn, ground : ndarray, shape (F,)
+        Of θ, of θ while the base turns about its right pivot, of θ'' and of the ground acceleration.
     kinds : ndarray, shape (F,)
         What becomes of the quantity in large rotations: `rockflex.models.observe`.
     """
@@ -35,6 +35,7 @@ class Quantities(Value):
     restoring: Array
     acceleration: Array
     rotation: Array
+    right: Array
     turn: Array
     ground: Array
     kinds: NDArray[np.int64]
@@ -42,10 +43,9 @@ class Quantities(Value):
     @classmethod
     def of(cls, count: int, modes: int, kind: int = LINEAR, **shares: ArrayLike) -> "Quantities":
         """Return `count` quantities of a model with so many modes; shares that are not named are zero."""
-        values: dict[str, Any] = {
-            name: np.zeros((count, modes)) for name in ("displacement", "restoring", "acceleration")
-        }
-        values |= {name: np.zeros(count) for name in ("rotation", "turn", "ground")}
+        of_modes, of_base = ("displacement", "restoring", "acceleration"), ("rotation", "right", "turn", "ground")
+        values: dict[str, Any] = {name: np.zeros((count, modes)) for name in of_modes}
+        values |= {name: np.zeros(count) for name in of_base}
         for name, share in shares.items():
             values[name] += np.asarray(share, dtype=np.float64)
         return cls(**values, kinds=np.full(count, kind, dtype=np.int64))
@@ -82,6 +82,8 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     rows[:, :n] += quantities.displacement
     linear = quantities.kinds == LINEAR if large else np.ones(len(quantities), dtype=np.bool_)
     rows[linear, layout.rotation] += quantities.rotation[linear]
+    if key[0] == RIGHT:
+        rows[linear, layout.rotation] += quantities.right[linear]
     rows[linear, -2] += quantities.ground[linear]
     if large:
         return rows

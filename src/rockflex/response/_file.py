@@ -45,7 +45,7 @@ PROPERTIES = (
     "zeta",
     "translational_inertia",
 )
-KNOWN_OR_NOT = ("top_height", "base_mass")  # fmt: skip
+KNOWN_OR_NOT = ("top_height", "base_mass")
 LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "VVELSimplified": VVELSimplified,
     "VVELComplete": VVELComplete,
@@ -75,8 +75,8 @@ def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: 
         scalars["lifts"] = model.lifts
         scalars["law"] = _described(model.law)
         scalars["missing_mass"] = model.missing_mass
-        scalars |= {name: getattr(model.properties, name) for name in KNOWN_OR_NOT}
-        if isinstance(model, NonlinearModel):
+        scalars |= {name: getattr(model.properties, name) for name in (*KNOWN_OR_NOT, "eccentricity")}
+        if model.integrated:
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
         scalars["tendons"] = [asdict(tendon) for tendon in model.properties.tendons]
@@ -153,6 +153,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
     tendons = [Tendon(**each) for each in _typed(scalars, "tendons", list)]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
+    known["eccentricity"] = scalars.get("eccentricity", 0.0)  # files of symmetric bases may lack it
     properties = RockingProperties(**values, floors=floors, tendons=tendons, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)

@@ -119,7 +119,7 @@ def pace_of(model: RockingModel, rows: int) -> Pace:
 def quick_pace(model: RockingModel, rows: int) -> Pace:
     """Return the same from a bound of the highest frequency that needs no eigenvalues, some ten per cent too high."""
     traces = [float(np.trace(each)) for each in _stiffnesses(model)]
-    return _pace(model, rows, math.sqrt(max(0.0, *traces)) if np.all(np.isfinite(traces)) else math.inf)
+    return _pace(model, rows, math.sqrt(max((0.0, *traces))) if np.all(np.isfinite(traces)) else math.inf)
 
 
 def _pace(model: RockingModel, rows: int, fastest: float) -> Pace:
