@@ -6,7 +6,7 @@ that were tried.
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import Any, cast
 
 from numba import njit, typeof
 
@@ -21,7 +21,7 @@ WITHIN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 def compiled(function: Callable[..., Any], stamp: str, *, within: bool) -> Any:
     """Compile at the first call, and keep the result on disk for as long as the stamp is the same.
 
-    With `within`, only other kernels can call it.
+    With `within`, it is made for other kernels: Python can call it too, but must compile a way in.
 
     numba's own stamp sees a change of a kernel's own file alone, not of the kernels that were compiled into it. Where
     the stamp cannot be set, nothing is kept, for it could be out of date.
@@ -44,8 +44,25 @@ def _without_counts(function: Callable[..., Any], *, within: bool, cache: bool) 
     with suppress(Exception):  # whatever a version says of an option that it does not know
         kernel = jit(_nrt=False, cache=cache, **options)(function)
         if all(hasattr(kernel.targetdescr.options, name) for name in ("_nrt", *options)):  # today's numba complains at the first call only
-            return kernel
+            return _with_a_way_in(kernel) if within else kernel
     return jit(cache=cache, **OPTIONS)(function)
+
+
+def _with_a_way_in(kernel: Any) -> Any:
+    """Let Python call a kernel that was compiled for other kernels alone: which else would crash the process."""
+    if not hasattr(kernel, "overloads"):  # not compiled at all
+        return kernel
+    kind: Any = type(kernel)
+
+    class Within(kind):
+        def __call__(self, *arguments: Any) -> Any:
+            if not hasattr(self, "way_in"):
+                inner, jit = self, cast("Any", njit)
+                self.way_in = jit(nogil=True)(lambda *given: inner(*given))
+            return self.way_in(*arguments)
+
+    kernel.__class__ = Within
+    return kernel
 
 
 def direct(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[..., Any]:

@@ -18,7 +18,7 @@ from rockflex.solve._pace import Pace, quick_pace
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
 from rockflex.solve.adaptive.layout import Flow, Stages, stages_of
-from rockflex.solve.history import MARGIN, room_left
+from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import (
     IMPACTS,
@@ -162,7 +162,7 @@ class Engine:
                 break
             elif left < 0.0:
                 self._spent(at, dt, motion.state, task, work_limit)
-            elif room_left(log) < 0:
+            elif history and log.tally[KEPT] > log.history.shape[0] - MARGIN:
                 task.check_room(2 * log.history.shape[0])
                 log = log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
             check_interruption()
