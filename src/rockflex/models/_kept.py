@@ -79,7 +79,7 @@ def _by_side(model: RockingModel, states: Array, side: Array) -> list[tuple[NDAr
 
 @python_kernel
 def _rates_at(field: Field, side: Array, acceleration: Array, motion: Array, rates: Array) -> None:
-    n = field.omega2.size
+    n = field.modes.shape[1]
     for k in range(side.size):
         branch = 1.0 if n == 0 or motion[k, n] >= 0.0 else -1.0
         field_rates(field, side[k], branch, acceleration[k], motion[k], rates[k])

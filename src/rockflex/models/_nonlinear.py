@@ -70,17 +70,15 @@ class NonlinearModel(ModalModel):
         return Field(
             complete=self.complete,
             hysteretic=self.bouc_wen is not None,
-            omega2=p.omega**2,
-            damping=2.0 * p.zeta * p.omega,
-            height=p.effective_height.copy(),  # writable, as the kernels are compiled for
-            mass=p.effective_mass.copy(),
+            modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega, p.effective_height, p.effective_mass)),
+            pivots=np.array(
+                [
+                    (each.arm, each.i_theta, each.prestress_moment, each.tendon_stiffness, each.axial_stiffness_moment)
+                    for each in pivots
+                ]
+            ),
             weight_arm=p.l0r,
             total_mass=p.m_tot,
-            arm=np.array([each.arm for each in pivots]),
-            inertia=np.array([each.i_theta for each in pivots]),
-            prestress_moment=np.array([each.prestress_moment for each in pivots]),
-            tendon_stiffness=np.array([each.tendon_stiffness for each in pivots]),
-            tendon_pull=np.array([each.axial_stiffness_moment for each in pivots]),
             prestress=p.prestress,
             gravity=GRAVITY,
             yield_displacement=b.yield_displacement,

@@ -19,7 +19,7 @@ __all__ = ["nothing_hides"]
 def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:
     """True where the step just taken holds no event and no new peak but at its end, which is then noted."""
     rows, side, step = system.plain_rows, system.phases[phase].side, span.length
-    n, modes = rows.shape[2] - 2, flow.field.omega2.size
+    n, modes = rows.shape[2] - 2, flow.field.modes.shape[1]
     if flow.field.hysteretic:
         first, last = room.branch[0] * room.motion[modes], room.branch[0] * room.trial[modes]
         before, after = room.branch[0] * room.rates[0, modes], room.branch[0] * room.rates[LAST, modes]

@@ -35,7 +35,7 @@ def tell(
     system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array
 ) -> None:
     """Fill in the values of the curved rows; of the last one, as in `Log`, the loss of support."""
-    n, last, side = flow.field.omega2.size, system.plain_rows.shape[2] - 2, system.phases[phase].side
+    n, last, side = flow.field.modes.shape[1], system.plain_rows.shape[2] - 2, system.phases[phase].side
     posture = posture_of(flow.field, side, acceleration, motion, rates)
     for f in range(1, values.size):
         kind = flow.kinds[f]

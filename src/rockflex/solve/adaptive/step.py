@@ -73,7 +73,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
 @kernel
 def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) -> None:
     """Set the branch of the hysteresis by the sign of the velocity, or where it is zero, of what it will be."""
-    n = flow.field.omega2.size
+    n = flow.field.modes.shape[1]
     velocity = room.motion[n]
     if velocity == 0.0:
         field_rates(flow.field, side, 1.0, acceleration, room.motion, room.rates[0])

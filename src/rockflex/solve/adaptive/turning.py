@@ -15,7 +15,7 @@ BARELY = 1e-300  # m/s: what a velocity is set to where it turns, for its sign
 @kernel
 def turning(flow: Flow, stages: Stages) -> float:
     """Where the velocity of the hysteretic spring changes its sign, and its law its branch; inf where it does not."""
-    n = flow.field.omega2.size  # the place of D'_1
+    n = flow.field.modes.shape[1]  # the place of D'_1
     work = stages.polys.shape[0] - 1
     for j in range(TERMS - 1):
         stages.polys[work, j] = stages.branch[0] * stages.bends[j, n]
