@@ -43,7 +43,9 @@ def _without_counts(function: Callable[..., Any], *, within: bool, cache: bool) 
     options = {**OPTIONS, **WITHIN} if within else OPTIONS
     with suppress(Exception):  # whatever a version says of an option that it does not know
         kernel = jit(_nrt=False, cache=cache, **options)(function)
-        if all(hasattr(kernel.targetdescr.options, name) for name in ("_nrt", *options)):  # today's numba complains at the first call only
+        if all(
+            hasattr(kernel.targetdescr.options, name) for name in ("_nrt", *options)
+        ):  # today's numba complains at the first call only
             return _with_a_way_in(kernel) if within else kernel
     return jit(cache=cache, **OPTIONS)(function)
 

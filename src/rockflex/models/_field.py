@@ -84,7 +84,9 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
         restoring = field.modes[OMEGA2, i] * d
         if field.hysteretic:
             restoring *= field.post_yield_ratio
-            slip = field.modes[OMEGA2, i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
+            slip = (
+                field.modes[OMEGA2, i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
+            )
             restoring += slip
             rates[2 * n + 5] = field.modes[MASS, i] * slip * v
             rates[2 * n + 2] = hysteresis(field, branch, v, motion[2 * n + 2])

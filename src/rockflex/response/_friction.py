@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 from rockflex._checks import positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.models import GROUND, HEADER, SIDE, TIME, Reactions, RockingModel, accelerations, printed_reactions, reactions
+from rockflex.models import (
+    GROUND,
+    HEADER,
+    SIDE,
+    TIME,
+    Reactions,
+    RockingModel,
+    accelerations,
+    printed_reactions,
+    reactions,
+)
 from rockflex.response._energy import is_impact
 from rockflex.solve import ClosedForm
 

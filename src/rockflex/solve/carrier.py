@@ -17,6 +17,7 @@ from rockflex.solve.exits import phase_exit
 from rockflex.solve.layout import (
     CONSTANT,
     DAMPING,
+    DOUBT,
     DRAG,
     DRIVE,
     FLEXIBILITY,
@@ -109,7 +110,7 @@ def note_of_series(system: System, at: Progress, span: Span, stop: float, log: L
     if system.phases[p].side != 0.0:
         raise_peak(motion.polys, GUARD, stop, span, log)
     for f in range(1, log.peaks.size):
-        if at.fresh_rows or motion.doubt[f]:
+        if at.fresh_rows or motion.flags[DOUBT, f]:
             row_series(system, p, f, motion, span)
             raise_peak(motion.polys, f, stop, span, log)
 
@@ -151,7 +152,7 @@ def move(
         else:
             settle_on(stop, stages)
             if turns:
-                motion.state[system.layout.modes] = -stages.branch[0] * BARELY
+                motion.state[system.layout.modes] = -stages.at.branch * BARELY
 
 
 @kernel
@@ -159,7 +160,7 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
     advance(system, motion, stop, span.length)
     time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop
     for f in range(1, log.peaks.size):
-        if not (at.fresh_rows or motion.doubt[f]):
+        if not (at.fresh_rows or motion.flags[DOUBT, f]):
             raise_to(system, at.phase, f, ground, time, log, motion)
 
 

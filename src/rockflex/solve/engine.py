@@ -148,7 +148,7 @@ class Engine:
         while True:
             with preparing(self.model):
                 system = self._phases.system(dt)
-            motion, stages = self._room(system, start, log, motion, stages)
+            motion, stages = self._room(system, start, at, log, motion, stages)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
             status = self._carry(system, course, at, log, motion, stages)
@@ -180,14 +180,14 @@ class Engine:
         )
 
     def _room(
-        self, system: System, state: Array, log: Log, motion: Motion | None, stages: Stages | None
+        self, system: System, state: Array, at: Progress, log: Log, motion: Motion | None, stages: Stages | None
     ) -> tuple[Motion, Stages | None]:
         """Room for the motion; where it was there before, with as many terms as the phases now need."""
         terms = int(system.phases.terms.max(initial=4))
         if motion is None:
             motion = motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
             if self._flow is not None:
-                stages = stages_of(state, self.model.layout.moving, self._n_rows, log.work)
+                stages = stages_of(state, self.model.layout.moving, self._n_rows, log.work, at)
         elif motion.series.shape[1] < terms:
             motion = motion._replace(
                 series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))

@@ -26,6 +26,7 @@ from rockflex.solve.layout import (
     Progress,
     Span,
     System,
+    unit_of,
 )
 from rockflex.solve.status import Status
 
@@ -49,7 +50,7 @@ def enter(system: System, at: Progress, phase: int) -> None:
     """Go on in another phase from the present state; in a linear one the walk over the grid goes on at `at.place`."""
     at.phase, at.tuned, at.stated, at.started = phase, False, True, False
     levels = system.phases[phase].levels
-    at.place = min(int(at.begun / system.steps[levels]), (1 << levels) - 1)
+    at.place = min(int(at.begun / unit_of(system, levels)), (1 << levels) - 1)
 
 
 @kernel
@@ -104,7 +105,7 @@ def cross(
         now = min(sample.time + at.begun, sample.until)
         longest, unit = sample.length - at.begun, sample.length
         if linear:
-            unit = float(system.steps[system.phases[p].levels])
+            unit = float(unit_of(system, system.phases[p].levels))
             longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
         length = begin(system, flow, at, Span(now, sample.until, here, sample.slope, longest), motion, stages)
         if length == FAILED:

@@ -15,36 +15,50 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._kernel import kernel
 from rockflex.models import StateLayout
 
 __all__ = [
+    "ASKED",
     "BESIDE",
     "CARRY",
     "CONSTANT",
     "COUPLING",
     "DAMPING",
+    "DOUBT",
     "DRAG",
     "DRIVE",
+    "ENDS",
     "EVENT",
     "EVENTS",
+    "FINAL",
+    "FIRST",
     "FLEXIBILITY",
     "FOLLOWS",
     "GUARD",
+    "HELD",
     "IMPACTS",
+    "INTO",
     "KEPT",
     "LEFT",
     "LEVERAGE",
     "LINKS",
     "LOOK",
+    "LOWER",
+    "NOW",
     "OMEGA2",
+    "OUT",
     "PHASE",
     "RIPPLE",
     "SAG",
     "SERIES",
+    "SLOPES",
     "STEP",
     "STIFFNESS",
     "SWING",
     "UPLIFTS",
+    "UPPER",
+    "VALUES",
     "ZERO",
     "Array",
     "Course",
@@ -55,6 +69,7 @@ __all__ = [
     "System",
     "motion_of",
     "progress_at_start",
+    "unit_of",
 ]
 
 Array = NDArray[np.float64]
@@ -75,6 +90,15 @@ CONSTANT, DRIVE = 0, 1
 # Places in `System.links`, of two limits each: what happens there, and which phase follows; -1 for none, or for one that
 # was not met yet. Then the same branches with the base in contact, on its right pivot and on its left one.
 EVENT, FOLLOWS, BESIDE, LINKS = 0, 2, 4, 7
+
+# Places in `System.basis` and `System.rows`
+OUT, INTO = 0, 1
+VALUES, SLOPES = 0, 1
+
+# Places in `Motion.w`, `Motion.values` and `Motion.flags`
+NOW, ENDS, HELD = 0, 1, 2
+LOWER, UPPER, FIRST, FINAL = 0, 1, 2, 3
+DOUBT, ASKED = 0, 1
 
 # Places in `System.bounds`: how far a row may lie from its chord over a step, its slope from its own chord, and the row
 # from the cubic through the values and slopes at both ends.
@@ -102,6 +126,7 @@ class System(NamedTuple):
     """A model made ready for a time step: its phases, P of them, as many as were met; level j is the step dt / 2^j."""
 
     layout: StateLayout
+    dt: float
     modes: Array  # (2, N): ω² and 2ζω
     phases: Any  # (P,): records of `PHASE`
     links: NDArray[np.int64]  # (P, LINKS): what follows each phase
@@ -110,17 +135,13 @@ class System(NamedTuple):
     push: Array  # (P, 2, b): constant forces on them, and the factor of the ground acceleration
     # Its motion
     plain_rows: Array  # (P, F, C): the rows over the state, a and 1
-    basis: Array  # (P, S, S), S = 2 N + 2 b: transposed
-    inverse: Array  # (P, S, S): transposed
+    basis: Array  # (P, 2, S, S), S = 2 N + 2 b: out of the coordinates and into them, both transposed
     forced: Array  # (P, 3, S): the forced part's coefficients of a, a', 1
-    rows: Array  # (P, F, S): the rows over w
+    rows: Array  # (P, 2, F, S): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
     row_forcing: Array  # (P, F, 3): the rows' coefficients of a, a', 1
-    slope_rows: Array  # (P, F, S): the rows' time derivatives over w; `row_forcing[.., 0]` a' adds to them
     blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
     propagator: Array  # (P, J + 1, S, S): exp(B h) where some phase is dense; else (0, 0, 0, 0)
     bounds: Array  # (P, 3, J + 1, F, K): sag, swing and ripple of each row over a step, times |w| of the pair
-    hold: Array  # (P, F, K): bound of |row| for ever after in contact, times |w| of the pair
-    steps: Array  # (J + 1,): dt / 2^j
 
 
 class Course(NamedTuple):
@@ -157,17 +178,13 @@ class Motion(NamedTuple):
     """The motion as it is carried, with room for intermediate values."""
 
     state: Array  # (S',)
-    w: Array  # (S,)
-    w_end: Array  # (S,): after the step under examination
-    held: Array  # (S,): the same, while peaks are searched inside that step
+    w: Array  # (3, S): now, after the step under examination, and the same while peaks are searched inside that step
     norms: Array  # (K,)
-    lower: Array  # (F,): limits of the rows
-    upper: Array  # (F,)
-    start: Array  # (F,): values of the rows
-    end: Array  # (F,)
-    doubt: NDArray[np.bool_]  # (F,): rows that may leave their limits inside the step
-    asked: NDArray[np.bool_]  # (F,): rows that are looked at; all of them, but where peaks are searched
-    clear: NDArray[np.int64]  # (F,): up to which place on the grid that search is done
+    values: (
+        Array  # (4, F): lower and upper limits of the rows, and their values at the start and at the end of the step
+    )
+    flags: NDArray[np.bool_]  # (2, F): rows that may leave their limits inside the step, and rows that are looked at
+    clear: NDArray[np.int64]  # (F,): up to which place on the grid the search for peaks is done
     series: Array  # (N + b, terms)
     polys: Array  # (F + 1, terms): polynomials of the rows, and one to work on
     push: Array  # (b,): forces on the base's freedoms, coefficient by coefficient
@@ -199,6 +216,10 @@ _PROGRESS = np.dtype(
         ("lift", np.float64),  # θ'' at the instant of uplift, where it is known
         ("resume", np.float64),  # where contact is searched again after a guard that was touched but not passed
         ("fresh_rows", np.bool_),  # whether `doubt` no longer speaks of the motion ahead
+        ("step", np.float64),  # length that the error control proposes
+        ("branch", np.float64),  # sign of the hysteretic spring's velocity
+        ("known", np.bool_),  # whether the first stage of a step is the last one of the step before
+        ("told", np.bool_),  # whether the curved rows at the start of a step are known
         ("lacking", np.int64),  # place in `follows` or `beside` of the phase that is needed; -1
     ],
     align=True,
@@ -209,26 +230,29 @@ def progress_at_start(phase: int, stated: bool) -> Progress:
     """Return the progress of a run that is to begin in a phase."""
     at = np.zeros(1, dtype=_PROGRESS).view(np.recarray)[0]
     at.phase, at.last, at.lacking, at.lift, at.stated = phase, np.nan, -1, np.nan, stated
+    at.step, at.branch = np.inf, 1.0
     return at
 
 
 def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> Motion:
     """Room for a motion that starts from `state`, of which the first `core` entries are carried in closed form."""
     pairs = core // 2
+    flags = np.zeros((2, rows), dtype=np.bool_)
+    flags[ASKED] = True
     return Motion(
         state=state,
-        w=np.zeros(core),
-        w_end=np.zeros(core),
-        held=np.zeros(core),
+        w=np.zeros((3, core)),
         norms=np.zeros(pairs),
-        lower=np.zeros(rows),
-        upper=np.zeros(rows),
-        start=np.zeros(rows),
-        end=np.zeros(rows),
-        doubt=np.zeros(rows, dtype=np.bool_),
-        asked=np.ones(rows, dtype=np.bool_),
+        values=np.zeros((4, rows)),
+        flags=flags,
         clear=np.zeros(rows, dtype=np.int64),
         series=np.zeros((pairs, terms)),
         polys=np.zeros((rows + 1, terms)),
         push=np.zeros(freedoms),
     )
+
+
+@kernel
+def unit_of(system: System, level: int) -> float:
+    """Length of a step of one level, dt / 2^level, in s."""
+    return system.dt / (1 << level)

@@ -80,7 +80,7 @@ class CompiledPhases:
         if system is None:
             system = empty_system(self._model, rows, dt, max(CAPACITY, count), levels, dense=dense)
         else:
-            capacity, had = system.links.shape[0], system.steps.size - 1
+            capacity, had = system.links.shape[0], system.blocks.shape[1] - 1
             if count > capacity or levels > had or dense > (system.propagator.size > 0):
                 capacity = capacity if count <= capacity else 2 * count
                 larger = empty_system(self._model, rows, dt, capacity, max(levels, had), dense=dense)

@@ -10,14 +10,28 @@ import math
 from rockflex._kernel import kernel, python_kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.curves import values_of_rows
-from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.layout import TOLD, Flow, Stages
 from rockflex.solve.adaptive.step import forget
 from rockflex.solve.adaptive.steps import step_through
 from rockflex.solve.events import CROSSED, PAUSED
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.probe import NOTHING
 from rockflex.solve.history import MARGIN, keep, room_left
-from rockflex.solve.layout import CARRY, EVENTS, GUARD, LEFT, Array, Course, Log, Motion, Progress, Span, System
+from rockflex.solve.layout import (
+    CARRY,
+    EVENTS,
+    GUARD,
+    LEFT,
+    NOW,
+    VALUES,
+    Array,
+    Course,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+)
 from rockflex.solve.peaks import raise_row, raise_to_state
 from rockflex.solve.sample import cross_sample
 from rockflex.solve.status import Status
@@ -92,7 +106,7 @@ def begin_piece(
             forget(stages)
             values_of_rows(system, flow, at.phase, ground, stages)
             for f in range(GUARD if side != 0.0 else 1, log.peaks.size):
-                raise_row(f, stages.values[f], time, log)
+                raise_row(f, stages.rows[TOLD, f], time, log)
     return False
 
 
@@ -103,7 +117,8 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     for f in range(log.peaks.size):
         bound = 0.0
         for k in range(pairs):
-            bound += system.hold[p, f, k] * math.hypot(motion.w[k], motion.w[pairs + k])
+            size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
+            bound += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
         if bound > (min(system.phases[p].high, -system.phases[p].low) if f == GUARD else log.peaks[f]):
             return False
     return True

@@ -9,7 +9,7 @@ from rockflex.solve.exact.march import to_coordinates, to_state
 from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe, set_limits
 from rockflex.solve.exact.survey import survey
 from rockflex.solve.history import keep
-from rockflex.solve.layout import LEFT, LOOK, Log, Motion, Progress, Span, System
+from rockflex.solve.layout import ENDS, FINAL, LEFT, LOOK, NOW, Log, Motion, Progress, Span, System, unit_of
 from rockflex.solve.peaks import raise_peaks
 
 __all__ = ["cross_sample"]
@@ -45,7 +45,7 @@ def cross_sample(
             continue
         levels = system.phases[p].levels
         grid, stride = 1 << levels, 1 << (levels - at.level)
-        unit = float(system.steps[levels])
+        unit = unit_of(system, levels)
         here = sample.ground + sample.slope * unit * at.place
         now = sample.time + unit * at.place
         step = Span(now, sample.until, here, sample.slope, unit * stride)
@@ -70,11 +70,11 @@ def cross_sample(
                 at.begun, at.stated, at.tuned = unit * at.place, True, False
                 start_crossing(at, False)
                 continue
-            raise_peaks(motion.end, system.phases[p].side, now + unit * stride, log)
+            raise_peaks(motion.values[FINAL], system.phases[p].side, now + unit * stride, log)
         if at.finding == PEAK and not survey(system, at, step, log, motion):
             return PAUSED
-        for k in range(motion.w.size):
-            motion.w[k] = motion.w_end[k]
+        for k in range(motion.w.shape[1]):
+            motion.w[NOW, k] = motion.w[ENDS, k]
         at.stated = False
         at.place += stride
         at.begun = sample.length if at.place == grid else unit * at.place

@@ -7,7 +7,7 @@ own bend (for a harmonic of ω: (ωh)²/48); a fifth of the bend is allowed for.
 
 from rockflex._kernel import kernel
 from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
-from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
 from rockflex.solve.layout import GUARD, Log, Span, System
 from rockflex.solve.peaks import raise_peaks, size_of
@@ -21,14 +21,14 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, 
     rows, side, step = system.plain_rows, system.phases[phase].side, span.length
     n, modes = rows.shape[2] - 2, flow.field.modes.shape[1]
     if flow.field.hysteretic:
-        first, last = room.branch[0] * room.motion[modes], room.branch[0] * room.trial[modes]
-        before, after = room.branch[0] * room.rates[0, modes], room.branch[0] * room.rates[LAST, modes]
+        first, last = room.at.branch * room.motion[modes], room.at.branch * room.vectors[TRIAL, modes]
+        before, after = room.at.branch * room.rates[0, modes], room.at.branch * room.rates[LAST, modes]
         if stretch(first, last, step * before, step * after)[0] < 0.0:
             return False
     if (
         side != 0.0
         and flow.field.complete
-        and curves_hide(system, flow, phase, span, room.trial, room.rates[LAST], log, room)
+        and curves_hide(system, flow, phase, span, room.vectors[TRIAL], room.rates[LAST], log, room)
     ):
         return False
     low_limit, high_limit = system.phases[phase].low, system.phases[phase].high
@@ -42,7 +42,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, 
             weight = rows[phase, f, i]
             if weight != 0.0:
                 first += weight * room.motion[i]
-                last += weight * room.trial[i]
+                last += weight * room.vectors[TRIAL, i]
                 before += weight * room.rates[0, i]
                 after += weight * room.rates[LAST, i]
         low, high = stretch(first, last, step * before, step * after)
@@ -57,6 +57,6 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, 
             hidden = hidden or max(high, -low) > max(log.peaks[GUARD], abs(first), abs(last))
         if hidden:
             return False
-        room.ends[f] = last
-    raise_peaks(room.ends, side, span.time + step, log)
+        room.rows[AT_ENDS, f] = last
+    raise_peaks(room.rows[AT_ENDS], side, span.time + step, log)
     return True

@@ -8,7 +8,19 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.models import LINEAR, SWAY, VERTICAL, field_rates, observe, posture_of
-from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.layout import (
+    AT_ENDS,
+    AT_ENDS_AHEAD,
+    AT_STARTS,
+    AT_STARTS_AHEAD,
+    END,
+    END_RATES,
+    PLACE,
+    PLACE_RATES,
+    TOLD,
+    Flow,
+    Stages,
+)
 from rockflex.solve.adaptive.step import choose_branch, place_at
 from rockflex.solve.exact.probe import cubic_range
 from rockflex.solve.layout import Array, Log, Span, System
@@ -72,35 +84,38 @@ def curves_hide(
 ) -> bool:
     """Whether a curved row may hide a new peak between the motion and `end`, over a span.
 
-    The peaks at the start are noted, for forces jump at events; the values at the end are left in `room.ends`, and
+    The peaks at the start are noted, for forces jump at events; the values at the end are left in `room.rows[AT_ENDS]`, and
     `room.doubt` marks the rows in question.
     """
     there = span.ground + span.slope * span.length
-    if not room.told[0]:
-        tell(system, flow, phase, span.ground, room.motion, room.rates[0], room.starts)
-    room.told[0] = True
-    tell(system, flow, phase, there, end, end_rates, room.ends)
+    if not room.at.told:
+        tell(system, flow, phase, span.ground, room.motion, room.rates[0], room.rows[AT_STARTS])
+    room.at.told = True
+    tell(system, flow, phase, there, end, end_rates, room.rows[AT_ENDS])
     near = False
     for f in range(1, log.peaks.size):
         room.doubt[f] = False
         if flow.kinds[f] == LINEAR:
             continue
-        size = max(size_of(room.starts[f], f, log), size_of(room.ends[f], f, log))
+        size = max(size_of(room.rows[AT_STARTS, f], f, log), size_of(room.rows[AT_ENDS, f], f, log))
         scale = abs(log.peaks[f])
         if flow.kinds[f] == VERTICAL:
             scale = max(scale, LIGHT * flow.rest)
         room.doubt[f] = size > log.peaks[f] - (1.0 - NEAR) * scale
         near = near or room.doubt[f]
-        raise_row(f, room.starts[f], span.time, log)
+        raise_row(f, room.rows[AT_STARTS, f], span.time, log)
     if not near:
         return False
-    look_ahead(system, flow, phase, span.ground, span, room.motion, room.rates[0], room.starts_ahead, room)
-    look_ahead(system, flow, phase, there, span, end, end_rates, room.ends_ahead, room)
+    look_ahead(system, flow, phase, span.ground, span, room.motion, room.rates[0], room.rows[AT_STARTS_AHEAD], room)
+    look_ahead(system, flow, phase, there, span, end, end_rates, room.rows[AT_ENDS_AHEAD], room)
     hidden = False
     for f in range(1, log.peaks.size):
         if room.doubt[f]:
-            first, last = room.starts[f], room.ends[f]
-            before, after = (room.starts_ahead[f] - first) / AHEAD, (room.ends_ahead[f] - last) / AHEAD
+            first, last = room.rows[AT_STARTS, f], room.rows[AT_ENDS, f]
+            before, after = (
+                (room.rows[AT_STARTS_AHEAD, f] - first) / AHEAD,
+                (room.rows[AT_ENDS_AHEAD, f] - last) / AHEAD,
+            )
             low, high = stretch(first, last, before, after)
             known = max(log.peaks[f], size_of(last, f, log))
             room.doubt[f] = max(size_of(low, f, log), size_of(high, f, log)) > known
@@ -123,22 +138,26 @@ def look_ahead(
     """Values of the curved rows a little later."""
     later = ground + span.slope * AHEAD * span.length
     for i in range(motion.size):
-        room.place[i] = motion[i] + AHEAD * span.length * rates[i]
-    field_rates(flow.field, system.phases[phase].side, room.branch[0], later, room.place, room.place_rates)
-    tell(system, flow, phase, later, room.place, room.place_rates, values)
+        room.vectors[PLACE, i] = motion[i] + AHEAD * span.length * rates[i]
+    field_rates(
+        flow.field, system.phases[phase].side, room.at.branch, later, room.vectors[PLACE], room.vectors[PLACE_RATES]
+    )
+    tell(system, flow, phase, later, room.vectors[PLACE], room.vectors[PLACE_RATES], values)
 
 
 @kernel
 def raise_curves(system: System, flow: Flow, phase: int, span: Span, stop: float, log: Log, room: Stages) -> None:
     """Raise the peaks of all curved rows over [0, stop] of the step whose extension is in `room.bends`."""
     side, length = system.phases[phase].side, span.length * stop
-    place_at(stop, room, room.end)
-    field_rates(flow.field, side, room.branch[0], span.ground + span.slope * length, room.end, room.end_rates)
+    place_at(stop, room, room.vectors[END])
+    field_rates(
+        flow.field, side, room.at.branch, span.ground + span.slope * length, room.vectors[END], room.vectors[END_RATES]
+    )
     part = Span(span.time, span.until, span.ground, span.slope, length)
-    hidden = curves_hide(system, flow, phase, part, room.end, room.end_rates, log, room)
+    hidden = curves_hide(system, flow, phase, part, room.vectors[END], room.vectors[END_RATES], log, room)
     for f in range(1, log.peaks.size):
         if is_curved(flow, f, side):
-            raise_row(f, room.ends[f], span.time + length, log)
+            raise_row(f, room.rows[AT_ENDS, f], span.time + length, log)
             if hidden and room.doubt[f]:
                 raise_curve(system, flow, phase, f, span, stop, log, room)
 
@@ -175,25 +194,27 @@ def raise_curve(
 def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Span, room: Stages) -> float:
     """Value of a curved row at the fraction `u` of a step."""
     ground = span.ground + span.slope * span.length * u
-    place_at(u, room, room.place)
-    field_rates(flow.field, system.phases[phase].side, room.branch[0], ground, room.place, room.place_rates)
-    tell(system, flow, phase, ground, room.place, room.place_rates, room.values)
-    return room.values[f]
+    place_at(u, room, room.vectors[PLACE])
+    field_rates(
+        flow.field, system.phases[phase].side, room.at.branch, ground, room.vectors[PLACE], room.vectors[PLACE_RATES]
+    )
+    tell(system, flow, phase, ground, room.vectors[PLACE], room.vectors[PLACE_RATES], room.rows[TOLD])
+    return room.rows[TOLD, f]
 
 
 @kernel
 def values_of_rows(system: System, flow: Flow, phase: int, ground: float, room: Stages) -> None:
-    """Fill `room.values` with all rows at the present motion, where a stretch of acceleration begins."""
+    """Fill `room.rows[TOLD]` with all rows at the present motion, where a stretch of acceleration begins."""
     side, rows = system.phases[phase].side, system.plain_rows
     n = rows.shape[2] - 2
     if flow.field.hysteretic:
         choose_branch(flow, side, ground, room)
-    field_rates(flow.field, side, room.branch[0], ground, room.motion, room.rates[0])
+    field_rates(flow.field, side, room.at.branch, ground, room.motion, room.rates[0])
     if side != 0.0 and flow.field.complete:
-        tell(system, flow, phase, ground, room.motion, room.rates[0], room.values)
-    for f in range(room.values.size):
+        tell(system, flow, phase, ground, room.motion, room.rates[0], room.rows[TOLD])
+    for f in range(room.rows.shape[1]):
         if not is_curved(flow, f, side):
             value = rows[phase, f, n] * ground + rows[phase, f, n + 1]
             for i in range(n):
                 value += rows[phase, f, i] * room.motion[i]
-            room.values[f] = value
+            room.rows[TOLD, f] = value

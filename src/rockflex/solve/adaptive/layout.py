@@ -10,11 +10,31 @@ from numpy.typing import NDArray
 
 from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
-from rockflex.solve.layout import Array
+from rockflex.solve.layout import Array, Progress
 
-__all__ = ["TERMS", "Flow", "Stages", "stages_of"]
+__all__ = [
+    "AT_ENDS",
+    "AT_ENDS_AHEAD",
+    "AT_STARTS",
+    "AT_STARTS_AHEAD",
+    "END",
+    "END_RATES",
+    "PLACE",
+    "PLACE_RATES",
+    "TERMS",
+    "TOLD",
+    "TRIAL",
+    "Flow",
+    "Stages",
+    "stages_of",
+]
 
 TERMS = 8  # of the polynomial across a step
+
+# Places in `Stages.vectors`: the state at the end of the step, within it, and where a stretch of it ends, with the rates
+# of the latter two; and in `Stages.rows`: at the start of the step and at its end, a little after each, and within it.
+TRIAL, PLACE, PLACE_RATES, END, END_RATES = 0, 1, 2, 3, 4
+AT_STARTS, AT_ENDS, AT_STARTS_AHEAD, AT_ENDS_AHEAD, TOLD = 0, 1, 2, 3, 4
 
 
 class Flow(NamedTuple):
@@ -31,30 +51,19 @@ class Flow(NamedTuple):
 class Stages(NamedTuple):
     """Room for one step."""
 
-    motion: Array  # (2N + 6,), at the start of the step: `Motion.state`
-    trial: Array  # (2N + 6,)
-    rates: Array  # (16, 2N + 6)
-    bends: Array  # (7, 2N + 6): the continuous extension
+    motion: Array  # (S',): at the start of the step; `Motion.state`
+    vectors: Array  # (5, S'): states and rates beside it, at the places above
+    rates: Array  # (16, S')
+    bends: Array  # (7, S'): the continuous extension
     polys: Array  # (F + 1, 8)
-    ends: Array  # (F,): the rows at the end of the step
-    step: Array  # (1,): length that the error control proposes
-    branch: Array  # (1,): sign of the hysteretic spring's velocity
-    known: NDArray[np.bool_]  # (1,): whether the first stage is the last one of the step before
-    size: Array  # (2N + 3,): largest magnitude of each component so far
-    place: Array  # (2N + 6,): the motion within the step
-    place_rates: Array  # (2N + 6,)
-    end: Array  # (2N + 6,): the motion where the stretch under examination ends
-    end_rates: Array  # (2N + 6,)
-    starts: Array  # (F,): the curved rows at the start of the step
-    starts_ahead: Array  # (F,): a little later
-    ends_ahead: Array  # (F,): a little after its end
-    values: Array  # (F,): within it
-    told: NDArray[np.bool_]  # (1,): whether `starts` is filled in
+    rows: Array  # (5, F): values of the rows, at the places above
     doubt: NDArray[np.bool_]  # (F,): curved rows that may hide a peak
+    size: Array  # (2N + 3,): largest magnitude of each moving entry so far
     work: Array  # (5,): `Log.work`
+    at: Progress
 
 
-def stages_of(motion: Array, moving: int, rows: int, work: Array) -> Stages:
+def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) -> Stages:
     """Room for one run that starts from `motion`, whose first `moving` entries count in the errors.
 
     `work` is that of its log.
@@ -62,24 +71,13 @@ def stages_of(motion: Array, moving: int, rows: int, work: Array) -> Stages:
     n = motion.size
     return Stages(
         motion,
-        np.zeros(n),
+        np.zeros((5, n)),
         np.zeros((STAGES, n)),
         np.zeros((TERMS - 1, n)),
         np.zeros((rows + 1, TERMS)),
-        np.zeros(rows),
-        np.full(1, np.inf),
-        np.ones(1),
-        np.zeros(1, dtype=np.bool_),
-        np.zeros(moving),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(1, dtype=np.bool_),
+        np.zeros((5, rows)),
         np.zeros(rows, dtype=np.bool_),
+        np.zeros(moving),
         work,
+        at,
     )

@@ -4,7 +4,7 @@ import numpy as np
 
 from rockflex._kernel import kernel
 from rockflex.models import field_rates
-from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
+from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, TERMS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.layout import LEFT, STEP, Array, Span, System
@@ -31,41 +31,41 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`, also where no work is left.
 
-    `room.trial` holds the end of the step, `room.rates` the stages up to it.
+    `room.vectors[TRIAL]` holds the end of the step, `room.rates` the stages up to it.
     """
     longest = rest.length
-    step = min(room.step[0], longest)
-    if not room.known[0]:
-        room.told[0] = False
+    step = min(room.at.step, longest)
+    if not room.at.known:
+        room.at.told = False
         if flow.field.hysteretic:
             choose_branch(flow, side, rest.ground, room)
-        field_rates(flow.field, side, room.branch[0], rest.ground, room.motion, room.rates[0])
-    room.known[0] = True
+        field_rates(flow.field, side, room.at.branch, rest.ground, room.motion, room.rates[0])
+    room.at.known = True
     most = MOST
     while True:
         room.work[LEFT] -= room.work[STEP]
         if room.work[LEFT] < 0.0:
             return FAILED
         for stage in range(1, LAST + 1):
-            place_stage(stage, step, room.motion, room.rates, room.trial)
+            place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL])
             field_rates(
                 flow.field,
                 side,
-                room.branch[0],
+                room.at.branch,
                 rest.ground + rest.slope * step * C[stage],
-                room.trial,
+                room.vectors[TRIAL],
                 room.rates[stage],
             )
         error = error_of(flow, step, room)
         if error <= 1.0:
             grown = step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
             # A step cut short by a sample or an event says little about the next one.
-            room.step[0] = grown if step < longest else max(grown, room.step[0])
+            room.at.step = grown if step < longest else max(grown, room.at.step)
             return step
         most = 1.0
         shrunk = max(LEAST, SAFETY * error**-0.125) if error < np.inf else LEAST
         step *= shrunk
-        room.step[0] = step
+        room.at.step = step
         if not step > SHORTEST:
             return FAILED
 
@@ -78,7 +78,7 @@ def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) ->
     if velocity == 0.0:
         field_rates(flow.field, side, 1.0, acceleration, room.motion, room.rates[0])
         velocity = room.rates[0, n]
-    room.branch[0] = 1.0 if velocity >= 0.0 else -1.0
+    room.at.branch = 1.0 if velocity >= 0.0 else -1.0
 
 
 @kernel
@@ -90,7 +90,7 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
         for k in range(5, LAST):
             coarse += ERROR_3[k] * room.rates[k, i]
             fine += ERROR_5[k] * room.rates[k, i]
-        size = max(room.size[i], abs(room.motion[i]), abs(room.trial[i]), flow.scale[i])
+        size = max(room.size[i], abs(room.motion[i]), abs(room.vectors[TRIAL, i]), flow.scale[i])
         fifth += (fine / size) ** 2
         third += (coarse / size) ** 2
     if fifth == 0.0:
@@ -108,13 +108,13 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
         field_rates(
             flow.field,
             side,
-            room.branch[0],
+            room.at.branch,
             span.ground + span.slope * step * C[stage],
             room.bends[0],
             room.rates[stage],
         )
     for i in range(n):
-        rise = room.trial[i] - room.motion[i]
+        rise = room.vectors[TRIAL, i] - room.motion[i]
         room.bends[0, i] = rise
         room.bends[1, i] = step * room.rates[0, i] - rise
         room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
@@ -129,19 +129,19 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
 @kernel
 def forget(room: Stages) -> None:
     """Note that the motion is no longer where the last step left it, so that its rates are not known."""
-    room.known[0] = False
+    room.at.known = False
 
 
 @kernel
 def step_over(room: Stages) -> None:
     """Put the motion at the end of the step in place of that at its start."""
     for i in range(room.motion.size):
-        room.motion[i] = room.trial[i]
+        room.motion[i] = room.vectors[TRIAL, i]
         room.rates[0, i] = room.rates[LAST, i]
     for i in range(room.size.size):
         room.size[i] = max(room.size[i], abs(room.motion[i]))
-    for f in range(room.ends.size):
-        room.starts[f] = room.ends[f]
+    for f in range(room.rows.shape[1]):
+        room.rows[AT_STARTS, f] = room.rows[AT_ENDS, f]
 
 
 @kernel

@@ -18,7 +18,7 @@ def turning(flow: Flow, stages: Stages) -> float:
     n = flow.field.modes.shape[1]  # the place of D'_1
     work = stages.polys.shape[0] - 1
     for j in range(TERMS - 1):
-        stages.polys[work, j] = stages.branch[0] * stages.bends[j, n]
+        stages.polys[work, j] = stages.at.branch * stages.bends[j, n]
     expand_nested(stages.polys, work)
     size = 0.0
     for k in range(TERMS):

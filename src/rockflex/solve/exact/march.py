@@ -5,7 +5,24 @@ import math
 from rockflex._kernel import kernel
 from rockflex.solve.exact.probe import NOTHING, examine, probe, set_limits
 from rockflex.solve.history import keep
-from rockflex.solve.layout import SAG, ZERO, Array, Log, Motion, Progress, System
+from rockflex.solve.layout import (
+    ENDS,
+    FINAL,
+    FIRST,
+    INTO,
+    LOWER,
+    NOW,
+    OUT,
+    SAG,
+    UPPER,
+    VALUES,
+    ZERO,
+    Array,
+    Log,
+    Motion,
+    Progress,
+    System,
+)
 from rockflex.solve.peaks import raise_peaks
 
 __all__ = ["march", "to_coordinates", "to_state"]
@@ -16,26 +33,26 @@ WHOLE = ZERO  # the level of a whole sample
 @kernel
 def to_state(system: System, at: Progress, ground: float, motion: Motion) -> None:
     """State from the coordinates of the present phase."""
-    p, size = at.phase, motion.w.size
+    p, size = at.phase, motion.w.shape[1]
     for i in range(size):
         motion.state[i] = 0.0
     for k in range(size):
         forced = system.forced[p, 0, k] * ground + system.forced[p, 1, k] * at.slope
-        value = motion.w[k] + forced + system.forced[p, 2, k]
+        value = motion.w[NOW, k] + forced + system.forced[p, 2, k]
         for i in range(size):
-            motion.state[i] += system.basis[p, k, i] * value
+            motion.state[i] += system.basis[p, OUT, k, i] * value
 
 
 @kernel
 def to_coordinates(system: System, at: Progress, ground: float, motion: Motion) -> None:
     """Coordinates of the present phase from the state."""
-    p, size = at.phase, motion.w.size
+    p, size = at.phase, motion.w.shape[1]
     for k in range(size):
         forced = system.forced[p, 0, k] * ground + system.forced[p, 1, k] * at.slope
-        motion.w[k] = -forced - system.forced[p, 2, k]
+        motion.w[NOW, k] = -forced - system.forced[p, 2, k]
     for i in range(size):
         for k in range(size):
-            motion.w[k] += system.inverse[p, i, k] * motion.state[i]
+            motion.w[NOW, k] += system.basis[p, INTO, i, k] * motion.state[i]
 
 
 @kernel
@@ -57,42 +74,45 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
         here, there = piece[i], piece[i + 1]
         incline = (there - here) * rate
         for k in range(2 * pairs):
-            motion.w[k] -= system.forced[p, 1, k] * (incline - slope)
+            motion.w[NOW, k] -= system.forced[p, 1, k] * (incline - slope)
         slope = incline
         if started and uncoupled:
             for k in range(active):
-                x, y = motion.w[k], motion.w[pairs + k]
+                x, y = motion.w[NOW, k], motion.w[NOW, pairs + k]
                 motion.norms[k] = math.sqrt(x * x + y * y)
-                motion.w_end[k] = system.blocks[p, 0, 0, k] * x + system.blocks[p, 0, 1, k] * y
-                motion.w_end[pairs + k] = system.blocks[p, 0, 2, k] * x + system.blocks[p, 0, 3, k] * y
-            for f in range(motion.start.size):
+                motion.w[ENDS, k] = system.blocks[p, 0, 0, k] * x + system.blocks[p, 0, 1, k] * y
+                motion.w[ENDS, pairs + k] = system.blocks[p, 0, 2, k] * x + system.blocks[p, 0, 3, k] * y
+            for f in range(motion.values.shape[1]):
                 value = system.row_forcing[p, f, 0] * there + system.row_forcing[p, f, 1] * slope
                 value += system.row_forcing[p, f, 2]
                 for k in range(active):
-                    value += system.rows[p, f, k] * motion.w_end[k]
-                    value += system.rows[p, f, pairs + k] * motion.w_end[pairs + k]
-                motion.start[f] = motion.end[f]
-                motion.end[f] = value
+                    value += system.rows[p, VALUES, f, k] * motion.w[ENDS, k]
+                    value += system.rows[p, VALUES, f, pairs + k] * motion.w[ENDS, pairs + k]
+                motion.values[FIRST, f] = motion.values[FINAL, f]
+                motion.values[FINAL, f] = value
         else:
             examine(system, p, WHOLE, here, there, slope, motion)
             started = True
         safe = True
-        for f in range(motion.start.size):
+        for f in range(motion.values.shape[1]):
             sag = 0.0
             for k in range(active):
                 sag += system.bounds[p, SAG, 0, f, k] * motion.norms[k]
-            low, high = min(motion.start[f], motion.end[f]), max(motion.start[f], motion.end[f])
-            safe = safe and low - sag >= motion.lower[f] and high + sag <= motion.upper[f]
+            low, high = (
+                min(motion.values[FIRST, f], motion.values[FINAL, f]),
+                max(motion.values[FIRST, f], motion.values[FINAL, f]),
+            )
+            safe = safe and low - sag >= motion.values[LOWER, f] and high + sag <= motion.values[UPPER, f]
         if not safe:
             at.finding = probe(system, p, WHOLE, slope, motion)
             if at.finding != NOTHING:
                 at.stated = at.stated and i == first
                 at.slope, at.index, at.started = slope, i, False
                 return
-            raise_peaks(motion.end, system.phases[p].side, (at.offset + i + 1) * dt, log)
+            raise_peaks(motion.values[FINAL], system.phases[p].side, (at.offset + i + 1) * dt, log)
             set_limits(system, p, log, motion)
         for k in range(2 * pairs):
-            motion.w[k] = motion.w_end[k]
+            motion.w[NOW, k] = motion.w[ENDS, k]
         if log.history.shape[0] > 0:
             at.slope = slope
             to_state(system, at, there, motion)

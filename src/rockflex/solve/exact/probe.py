@@ -5,7 +5,26 @@ import math
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.solve.layout import GUARD, RIPPLE, SAG, SWING, Log, Motion, System
+from rockflex.solve.layout import (
+    ASKED,
+    DOUBT,
+    ENDS,
+    FINAL,
+    FIRST,
+    GUARD,
+    LOWER,
+    NOW,
+    RIPPLE,
+    SAG,
+    SLOPES,
+    SWING,
+    UPPER,
+    VALUES,
+    Log,
+    Motion,
+    System,
+    unit_of,
+)
 
 __all__ = ["EVENT", "NOTHING", "PEAK", "cubic_range", "examine", "probe", "set_limits"]
 
@@ -17,15 +36,15 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
     """Limits beyond which a row calls for an event (row 0) or a new peak (all others, and the rotation)."""
     support = log.peaks.size - 1
     for f in range(log.peaks.size):
-        motion.lower[f] = -log.peaks[f]
-        motion.upper[f] = log.peaks[f]
+        motion.values[LOWER, f] = -log.peaks[f]
+        motion.values[UPPER, f] = log.peaks[f]
     if system.phases[phase].side == 0.0:
-        motion.lower[GUARD] = system.phases[phase].low
-        motion.upper[GUARD] = system.phases[phase].high
+        motion.values[LOWER, GUARD] = system.phases[phase].low
+        motion.values[UPPER, GUARD] = system.phases[phase].high
     else:
-        motion.lower[GUARD] = max(system.phases[phase].low, -log.peaks[GUARD])
-        motion.upper[GUARD] = min(system.phases[phase].high, log.peaks[GUARD])
-    motion.lower[support] = -np.inf
+        motion.values[LOWER, GUARD] = max(system.phases[phase].low, -log.peaks[GUARD])
+        motion.values[UPPER, GUARD] = min(system.phases[phase].high, log.peaks[GUARD])
+    motion.values[LOWER, support] = -np.inf
 
 
 @kernel
@@ -34,28 +53,28 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
     pairs = motion.norms.size
     count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
     for k in range(count):
-        x, y = motion.w[k], motion.w[pairs + k]
+        x, y = motion.w[NOW, k], motion.w[NOW, pairs + k]
         motion.norms[k] = math.sqrt(x * x + y * y)
-        motion.w_end[k] = system.blocks[phase, level, 0, k] * x + system.blocks[phase, level, 1, k] * y
-        motion.w_end[pairs + k] = system.blocks[phase, level, 2, k] * x + system.blocks[phase, level, 3, k] * y
+        motion.w[ENDS, k] = system.blocks[phase, level, 0, k] * x + system.blocks[phase, level, 1, k] * y
+        motion.w[ENDS, pairs + k] = system.blocks[phase, level, 2, k] * x + system.blocks[phase, level, 3, k] * y
     if system.phases[phase].dense:
-        for i in range(motion.w.size):
-            motion.w_end[i] = 0.0
-            for k in range(motion.w.size):
-                motion.w_end[i] += system.propagator[phase, level, i, k] * motion.w[k]
-    for f in range(motion.start.size):
-        if not motion.asked[f]:
+        for i in range(motion.w.shape[1]):
+            motion.w[ENDS, i] = 0.0
+            for k in range(motion.w.shape[1]):
+                motion.w[ENDS, i] += system.propagator[phase, level, i, k] * motion.w[NOW, k]
+    for f in range(motion.values.shape[1]):
+        if not motion.flags[ASKED, f]:
             continue
         common = system.row_forcing[phase, f, 1] * slope + system.row_forcing[phase, f, 2]
         before = common + system.row_forcing[phase, f, 0] * here
         after = common + system.row_forcing[phase, f, 0] * there
         for k in range(count):
-            before += system.rows[phase, f, k] * motion.w[k]
-            before += system.rows[phase, f, pairs + k] * motion.w[pairs + k]
-            after += system.rows[phase, f, k] * motion.w_end[k]
-            after += system.rows[phase, f, pairs + k] * motion.w_end[pairs + k]
-        motion.start[f] = before
-        motion.end[f] = after
+            before += system.rows[phase, VALUES, f, k] * motion.w[NOW, k]
+            before += system.rows[phase, VALUES, f, pairs + k] * motion.w[NOW, pairs + k]
+            after += system.rows[phase, VALUES, f, k] * motion.w[ENDS, k]
+            after += system.rows[phase, VALUES, f, pairs + k] * motion.w[ENDS, pairs + k]
+        motion.values[FIRST, f] = before
+        motion.values[FINAL, f] = after
 
 
 @kernel
@@ -69,36 +88,36 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
     pairs = motion.norms.size
     count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
     finding = NOTHING
-    for f in range(motion.start.size):
-        motion.doubt[f] = False
-        if not motion.asked[f]:
+    for f in range(motion.values.shape[1]):
+        motion.flags[DOUBT, f] = False
+        if not motion.flags[ASKED, f]:
             continue
         sag = 0.0
         for k in range(count):
             sag += system.bounds[phase, SAG, level, f, k] * motion.norms[k]
-        first, last = motion.start[f], motion.end[f]
+        first, last = motion.values[FIRST, f], motion.values[FINAL, f]
         low, high = min(first, last), max(first, last)
-        if low - sag >= motion.lower[f] and high + sag <= motion.upper[f]:
+        if low - sag >= motion.values[LOWER, f] and high + sag <= motion.values[UPPER, f]:
             continue
         swing = ripple = 0.0
         before = after = system.row_forcing[phase, f, 0] * slope
         for k in range(count):
             swing += system.bounds[phase, SWING, level, f, k] * motion.norms[k]
             ripple += system.bounds[phase, RIPPLE, level, f, k] * motion.norms[k]
-            before += system.slope_rows[phase, f, k] * motion.w[k]
-            before += system.slope_rows[phase, f, pairs + k] * motion.w[pairs + k]
-            after += system.slope_rows[phase, f, k] * motion.w_end[k]
-            after += system.slope_rows[phase, f, pairs + k] * motion.w_end[pairs + k]
+            before += system.rows[phase, SLOPES, f, k] * motion.w[NOW, k]
+            before += system.rows[phase, SLOPES, f, pairs + k] * motion.w[NOW, pairs + k]
+            after += system.rows[phase, SLOPES, f, k] * motion.w[ENDS, k]
+            after += system.rows[phase, SLOPES, f, pairs + k] * motion.w[ENDS, pairs + k]
         hidden = min(before, after) <= swing and max(before, after) >= -swing
         if hidden:
-            step = float(system.steps[level])
+            step = unit_of(system, level)
             low, high = cubic_range(first, last, before * step, after * step)
-            hidden = low - ripple < motion.lower[f] or high + ripple > motion.upper[f]
+            hidden = low - ripple < motion.values[LOWER, f] or high + ripple > motion.values[UPPER, f]
         elif f == GUARD:
             # A rotation may start on its limit, where it has just left the ground, but not end there.
             hidden = first < system.phases[phase].low or first > system.phases[phase].high
             hidden = hidden or last <= system.phases[phase].low or last >= system.phases[phase].high
-        motion.doubt[f] = hidden
+        motion.flags[DOUBT, f] = hidden
         if hidden:
             finding = max(finding, EVENT if f == GUARD else PEAK)
     return finding

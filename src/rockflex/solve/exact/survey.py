@@ -7,7 +7,23 @@ from rockflex.solve.exact.grid import largest_step
 from rockflex.solve.exact.march import to_state
 from rockflex.solve.exact.probe import examine, probe, set_limits
 from rockflex.solve.exact.series import expand, row_series
-from rockflex.solve.layout import LEFT, LOOK, SERIES, Log, Motion, Progress, Span, System
+from rockflex.solve.layout import (
+    ASKED,
+    DOUBT,
+    ENDS,
+    FINAL,
+    HELD,
+    LEFT,
+    LOOK,
+    NOW,
+    SERIES,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+    unit_of,
+)
 from rockflex.solve.peaks import raise_peak, raise_row
 
 __all__ = ["survey"]
@@ -25,12 +41,12 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
     p, level = at.phase, at.level
     levels = system.phases[p].levels
     grid = 1 << (levels - level)
-    unit = float(system.steps[levels])
+    unit = unit_of(system, levels)
     if not at.searching:
-        for k in range(motion.w.size):
-            motion.held[k] = motion.w_end[k]
+        for k in range(motion.w.shape[1]):
+            motion.w[HELD, k] = motion.w[ENDS, k]
         for f in range(motion.clear.size):
-            motion.clear[f] = 0 if motion.doubt[f] else grid
+            motion.clear[f] = 0 if motion.flags[DOUBT, f] else grid
         at.searching, at.search_place, at.search_level, at.search_probed = True, 0, level, True
     place, depth, probed = at.search_place, at.search_level, at.search_probed
     while place < grid:
@@ -43,17 +59,17 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
         clear = False
         if not probed:
             for f in range(motion.clear.size):
-                motion.asked[f] = motion.clear[f] <= place
+                motion.flags[ASKED, f] = motion.clear[f] <= place
             set_limits(system, p, log, motion)
             examine(system, p, depth, start, start + span.slope * unit * stride, span.slope, motion)
             probe(system, p, depth, span.slope, motion)
             clear = True
             for f in range(motion.clear.size):
-                if motion.doubt[f]:
+                if motion.flags[DOUBT, f]:
                     clear = False
-                elif motion.asked[f]:
+                elif motion.flags[ASKED, f]:
                     motion.clear[f] = place + stride
-                    raise_row(f, motion.end[f], span.time + unit * (place + stride), log)
+                    raise_row(f, motion.values[FINAL, f], span.time + unit * (place + stride), log)
         if not clear and depth < levels:
             depth += 1
             probed = False
@@ -63,15 +79,15 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
             to_state(system, at, start, motion)
             time = span.time + unit * place
             survey_unit(system, p, Span(time, time + unit, start, span.slope, unit), log, motion)
-        for k in range(motion.w.size):
-            motion.w[k] = motion.w_end[k]
+        for k in range(motion.w.shape[1]):
+            motion.w[NOW, k] = motion.w[ENDS, k]
         place += stride
         depth = max(level, largest_step(place, levels))
         probed = False
-    for k in range(motion.w.size):
-        motion.w_end[k] = motion.held[k]
-    for f in range(motion.asked.size):
-        motion.asked[f] = True
+    for k in range(motion.w.shape[1]):
+        motion.w[ENDS, k] = motion.w[HELD, k]
+    for f in range(motion.values.shape[1]):
+        motion.flags[ASKED, f] = True
     at.searching = False
     return True
 
@@ -81,7 +97,7 @@ def survey_unit(system: System, phase: int, span: Span, log: Log, motion: Motion
     """Raise the peaks of the rows in doubt over a unit without events."""
     expand(system, phase, motion, span, np.nan)
     for f in range(1, log.peaks.size):
-        if motion.doubt[f]:
+        if motion.flags[DOUBT, f]:
             row_series(system, phase, f, motion, span)
             raise_peak(motion.polys, f, 1.0, span, log)
-            raise_row(f, motion.end[f], span.time + span.length, log)
+            raise_row(f, motion.values[FINAL, f], span.time + span.length, log)

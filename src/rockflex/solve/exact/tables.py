@@ -21,13 +21,17 @@ from rockflex.solve.layout import (
     DRIVE,
     EVENT,
     FLEXIBILITY,
+    INTO,
     LEVERAGE,
     LINKS,
+    OUT,
     PHASE,
     RIPPLE,
     SAG,
+    SLOPES,
     STIFFNESS,
     SWING,
+    VALUES,
     Array,
     System,
 )
@@ -77,6 +81,7 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
     links = np.full((capacity, LINKS), -1, dtype=np.int64)
     return System(
         layout=layout,
+        dt=dt,
         modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
         phases=np.zeros(capacity, dtype=PHASE).view(np.recarray),
         links=links,
@@ -84,23 +89,19 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
         base=np.zeros((capacity, 3, b, b)),
         push=np.zeros((capacity, 2, b)),
         plain_rows=np.zeros((capacity, rows, columns)),
-        basis=np.zeros((capacity, core, core)),
-        inverse=np.zeros((capacity, core, core)),
+        basis=np.zeros((capacity, 2, core, core)),
         forced=np.zeros((capacity, 3, core)),
-        rows=np.zeros((capacity, rows, core)),
+        rows=np.zeros((capacity, 2, rows, core)),
         row_forcing=np.zeros((capacity, rows, 3)),
-        slope_rows=np.zeros((capacity, rows, core)),
         blocks=np.zeros((*whole, 4, pairs)),
         propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
         bounds=np.zeros((capacity, 3, levels + 1, rows, pairs)),
-        hold=np.zeros((capacity, rows, pairs)),
-        steps=dt * 0.5 ** np.arange(levels + 1, dtype=np.float64),
     )
 
 
 def grown(system: System, larger: System) -> System:
     """Return `larger` with all that `system` holds."""
-    for old, new in zip(system[1:], larger[1:], strict=True):
+    for old, new in zip(system[2:], larger[2:], strict=True):
         if old.size and new.shape != old.shape:
             new[tuple(slice(length) for length in old.shape)] = old
         elif old.size:
@@ -123,7 +124,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     system.base[p, STIFFNESS] = arrow.stiffness
     system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
     levels = levels_of(basis.fastest, dt)
-    steps = system.steps[: levels + 1]
+    steps: Array = dt * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     core, own = basis.basis.shape[0], slice(levels + 1)
     moving = plain_rows[:, :core]
     rows = moving @ basis.basis
@@ -131,13 +132,11 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
     kind.dense, kind.levels, kind.terms = basis.dense, levels, terms_of(basis.fastest, dt)
-    system.basis[p] = basis.basis.T
-    system.inverse[p] = basis.inverse.T
+    system.basis[p, OUT], system.basis[p, INTO] = basis.basis.T, basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T
-    system.rows[p] = rows
     system.row_forcing[p] = forcing
     first = rows @ basis.matrix
-    system.slope_rows[p] = first
+    system.rows[p, VALUES], system.rows[p, SLOPES] = rows, first
     system.blocks[p, own] = _blocks(basis, steps)
     if basis.dense:
         system.propagator[p, own] = np.stack([expm(basis.matrix * h) for h in steps])
@@ -145,7 +144,6 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     else:
         bounds = _bounds(basis, rows, first, steps)
     system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
-    system.hold[p] = _pair_norm(rows)
 
 
 def _blocks(basis: Basis, steps: Array) -> Array:
