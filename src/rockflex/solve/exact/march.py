@@ -69,50 +69,51 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
     at.finding = NOTHING
     started, slope, first = at.started, at.slope, at.index
     last = min(first + most, piece.size - 1)
+    forced, blocks, sag = system.forced[p, 1], system.blocks[p, WHOLE], system.bounds[p, SAG, WHOLE]
+    rows, forcing = system.rows[p, VALUES], system.row_forcing[p]
+    now, ends = motion.w[NOW], motion.w[ENDS]
+    lower, upper = motion.values[LOWER], motion.values[UPPER]
+    begins, closes = motion.values[FIRST], motion.values[FINAL]
     set_limits(system, p, log, motion)
     for i in range(first, last):
         here, there = piece[i], piece[i + 1]
         incline = (there - here) * rate
         for k in range(2 * pairs):
-            motion.w[NOW, k] -= system.forced[p, 1, k] * (incline - slope)
+            now[k] -= forced[k] * (incline - slope)
         slope = incline
         if started and uncoupled:
             for k in range(active):
-                x, y = motion.w[NOW, k], motion.w[NOW, pairs + k]
+                x, y = now[k], now[pairs + k]
                 motion.norms[k] = math.sqrt(x * x + y * y)
-                motion.w[ENDS, k] = system.blocks[p, 0, 0, k] * x + system.blocks[p, 0, 1, k] * y
-                motion.w[ENDS, pairs + k] = system.blocks[p, 0, 2, k] * x + system.blocks[p, 0, 3, k] * y
-            for f in range(motion.values.shape[1]):
-                value = system.row_forcing[p, f, 0] * there + system.row_forcing[p, f, 1] * slope
-                value += system.row_forcing[p, f, 2]
+                ends[k] = blocks[0, k] * x + blocks[1, k] * y
+                ends[pairs + k] = blocks[2, k] * x + blocks[3, k] * y
+            for f in range(begins.size):
+                value = forcing[f, 0] * there + forcing[f, 1] * slope + forcing[f, 2]
                 for k in range(active):
-                    value += system.rows[p, VALUES, f, k] * motion.w[ENDS, k]
-                    value += system.rows[p, VALUES, f, pairs + k] * motion.w[ENDS, pairs + k]
-                motion.values[FIRST, f] = motion.values[FINAL, f]
-                motion.values[FINAL, f] = value
+                    value += rows[f, k] * ends[k]
+                    value += rows[f, pairs + k] * ends[pairs + k]
+                begins[f] = closes[f]
+                closes[f] = value
         else:
             examine(system, p, WHOLE, here, there, slope, motion)
             started = True
         safe = True
-        for f in range(motion.values.shape[1]):
-            sag = 0.0
+        for f in range(begins.size):
+            leeway = 0.0
             for k in range(active):
-                sag += system.bounds[p, SAG, 0, f, k] * motion.norms[k]
-            low, high = (
-                min(motion.values[FIRST, f], motion.values[FINAL, f]),
-                max(motion.values[FIRST, f], motion.values[FINAL, f]),
-            )
-            safe = safe and low - sag >= motion.values[LOWER, f] and high + sag <= motion.values[UPPER, f]
+                leeway += sag[f, k] * motion.norms[k]
+            low, high = min(begins[f], closes[f]), max(begins[f], closes[f])
+            safe = safe and low - leeway >= lower[f] and high + leeway <= upper[f]
         if not safe:
             at.finding = probe(system, p, WHOLE, slope, motion)
             if at.finding != NOTHING:
                 at.stated = at.stated and i == first
                 at.slope, at.index, at.started = slope, i, False
                 return
-            raise_peaks(motion.values[FINAL], system.phases[p].side, (at.offset + i + 1) * dt, log)
+            raise_peaks(closes, system.phases[p].side, (at.offset + i + 1) * dt, log)
             set_limits(system, p, log, motion)
         for k in range(2 * pairs):
-            motion.w[NOW, k] = motion.w[ENDS, k]
+            now[k] = ends[k]
         if log.history.shape[0] > 0:
             at.slope = slope
             to_state(system, at, there, motion)
