@@ -180,9 +180,22 @@ def test_folder(tmp_path):
     assert result.stderr == f"Written to {tmp_path / 'out'}\n"
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["mode-shapes.png", "modes.csv", "summary.json"]
     with (tmp_path / "out" / "modes.csv").open(newline="") as file:
-        omega = [float(row["omega"]) for row in csv.DictReader(file)]
+        table = csv.DictReader(file)
+        rows = [{name: float(value) for name, value in row.items()} for row in table]
     frame = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
-    np.testing.assert_array_equal(omega, frame.rocking(3).omega)
+    lifted = rf.uplifted_modes(frame.rocking(3))
+    columns = {
+        "mode": [1.0, 2.0, 3.0],
+        "omega": frame.rocking(3).omega,
+        "zeta": frame.rocking(3).zeta,
+        "uplifted_period": 2.0 * np.pi / lifted.omega,
+        "uplifted_omega": lifted.omega,
+        "uplifted_ratio": lifted.ratio,
+        "uplifted_zeta": lifted.damping_ratio,
+    }
+    for name, values in columns.items():
+        np.testing.assert_array_equal([row[name] for row in rows], values)
+    assert set(rows[0]) == {*columns, "period", "effective_mass", "mass_share", "effective_height", "top_ordinate"}
     assert (tmp_path / "out" / "mode-shapes.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -115,6 +115,35 @@ def test_clouds_hold_the_runs_that_rocked_and_stand(cloud, quantity):
         assert axes.transData.transform((1.0, shown.max()))[1] < lowest
 
 
+def test_a_cloud_without_a_fit_is_points_and_says_so(cloud):
+    """Of one motion, no line; a model without any solved run has its row alone."""
+    one = of(cloud, "#1", "MDOF-S").nlargest(1, "pgv").assign(status="rocking", max_rotation=0.02)
+    none = of(cloud, "#1", "2DOF-S")[:3].assign(status=pd.NA, max_rotation=np.nan)
+    axes = drawn(rf.plot_clouds(pd.concat([one, none]))).axes[0]
+    assert points(lines(axes, "_MDOF-S")).tolist() == [[one["pgv"].iloc[0], 0.02]]
+    assert not lines(axes, "MDOF-S")
+    assert [text.rstrip() for text in notes(axes)] == [
+        "   2DOF-S     –     –     –    0   0 (3 failed, no fit)",
+        "   MDOF-S     –     –     –    1   0 (no fit)",
+        "             c₁    c₂     σ    n  OV",
+    ]
+    assert len({len(text) for text in notes(axes)}) == 1  # the columns stand below each other
+    left, right = axes.get_xlim()
+    assert right / left == pytest.approx(4.0)  # wide enough for a label of 1, 2 or 5
+
+
+def test_clouds_that_cannot_be_drawn(cloud):
+    runs = of(cloud, "#1", "MDOF-S")
+    with pytest.raises(rf.InputError, match=r"^No run was solved\. See the column error of the table\.$"):
+        rf.plot_clouds(runs.assign(status=pd.NA))
+    with pytest.raises(rf.InputError) as refused:
+        rf.plot_clouds(runs.assign(pgv=0.0))
+    assert str(refused.value) == (
+        f"pgv must be positive, as its axis is logarithmic, but {len(runs)} of {len(runs)} values are not. Leave those "
+        "runs out: keep the rows with pgv > 0."
+    )
+
+
 def test_nominal_overturning_and_failed_runs_are_counted(cloud):
     runs = of(cloud, "#1", "2DOF-S").copy()
     rocking = runs.index[runs["status"] == "rocking"]

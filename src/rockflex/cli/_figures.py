@@ -92,8 +92,9 @@ def _figures(
     from rockflex import plot
 
     if study == "cloud":
-        table = _fitted(table, measure)
-        yield "fragility", lambda: plot.plot_fragility(table, measure)
+        fitted = _fitted(table, measure)
+        if len(fitted):
+            yield "fragility", lambda: plot.plot_fragility(fitted, measure)
         yield "rotation", lambda: plot.plot_clouds(table, "max_rotation", measure)
         yield "top_displacement", lambda: plot.plot_clouds(table, "max_top_displacement", measure)
         if table["max_total_top_displacement"].notna().any():
@@ -124,11 +125,9 @@ def _fitted(runs: "pd.DataFrame", measure: str) -> "pd.DataFrame":
     from rockflex.fragility import fit_each_cloud
 
     fits, reasons = fit_each_cloud(runs, measure)
-    told = [f"{structure} with {model}: {reason}" for (structure, model), reason in reasons.items()]
+    for (structure, model), reason in reasons.items():
+        note(f"No fit: {structure} with {model}: {reason}")
     if not fits:
-        message = f"There is nothing to draw, since no fit could be made. {' '.join(told)}"
-        raise InputError(message)
-    for reason in told:
-        note(f"No fit, and not drawn: {reason}")
+        note("No figure fragility, and clouds without lines: add records or scales to the study, and run it again")
     left_out = [pair in reasons for pair in zip(runs["structure"].astype(str), runs["model"].astype(str), strict=True)]
     return runs[[not out for out in left_out]]

@@ -250,7 +250,9 @@ def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", 
     built = loaded.built
     drawn = not isinstance(built, RockingProperties)
     with staged(folder, document, force=force) as stage:
-        pd.DataFrame(document["modes"]).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
+        # As the printed tables have them: beside each mode on a fixed base the one of the same number while uplifted.
+        lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")
+        pd.DataFrame(document["modes"]).join(lifted).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
         if drawn:
             from rockflex.plot import plot_mode_shapes, save_figure
 

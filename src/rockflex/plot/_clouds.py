@@ -1,7 +1,7 @@
 """Clouds of response over intensity, and the lines through them."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import CloudFits, fit_clouds
+from rockflex.fragility import CloudFits, fit_each_cloud
 from rockflex.plot._study_tables import (
     check_columns,
     keys_of,
@@ -45,6 +45,18 @@ _ROW = 0.056  # of the panel, from row to row of the numbers in it
 _CROSSES = 0.038  # and of the crosses
 
 
+class _Cloud(NamedTuple):
+    """The solved runs of one structure and model, and the line through those that rocked and stand, if there is one."""
+
+    structure: str
+    model: str
+    rocked: "pd.DataFrame"
+    fallen: "pd.DataFrame"
+    n_failed: int
+    line: "CloudFit | None"
+    fitted: bool
+
+
 def plot_clouds(
     runs: "pd.DataFrame",
     quantity: Literal["max_rotation", "max_top_displacement", "max_total_top_displacement"] = "max_rotation",
@@ -57,7 +69,8 @@ def plot_clouds(
 
     The figure is that of Silva & Stojadinović 2024, Figs. 6 and 7: lines log(y) = c1 + c2 log(IM), with natural
     logarithms, by least squares, and their dispersion σ. The numbers stand in the panel, with how many runs `n` rocked
-    and how many overturned (`OV`); those are crosses at the top, a row a model, as they have no peak to be shown.
+    and how many overturned (`OV`); those are crosses at the top, a row a model, as they have no peak to be shown. Where
+    there is no fit, as under motions of one intensity alone, the points stand without a line, and the panel says so.
 
     Parameters
     ----------
@@ -81,45 +94,70 @@ def plot_clouds(
     Raises
     ------
     InputError
-        If the quantity is unknown, the table lacks a column or holds no solved run of a structure and model, or there
+        If the quantity is unknown, the table lacks a column or holds no solved run, a measure is not positive, or there
         are too many structures or models.
     """
     if quantity not in _QUANTITIES:
         message = f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given."
         raise InputError(message)
+    import pandas as pd
+
     check_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
-    fits = fit_clouds(runs, measure, threshold=threshold, nominal=nominal)
-    looks = looks_of(names_in(fit.model for fit in fits))
-    names = names_in(fit.structure for fit in fits)
-    solved = runs[runs["status"].notna()]
-    structures, models = solved["structure"].astype(str), solved["model"].astype(str)
-    fell = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
-    rocked = ~fell & (solved["max_rotation"].to_numpy(dtype=float) > threshold)
+    clouds = _clouds(runs, quantity, measure, threshold, nominal=nominal)
+    looks = looks_of(names_in(cloud.model for cloud in clouds))
+    names = names_in(cloud.structure for cloud in clouds)
+    rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
     with styled():
         figure, panels = structure_panels(names, 2, 2.45, measure_name(measure), _QUANTITIES[quantity])
         panels[0].set_xscale("log")
         panels[0].set_yscale("log")
         for axes in panels:
             label_plainly(axes.xaxis)
-        _set_limits(panels[0], solved[rocked], solved[rocked | fell], quantity, measure, len(looks))
+        _set_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(looks))
         for axes, name in zip(panels, names, strict=True):
             rows: list[tuple[str, str]] = []
-            for fit in (fit for fit in fits if fit.structure == name):
-                look, marker = looks[fit.model]
-                mine = ((structures == name) & (models == fit.model)).to_numpy(dtype=bool)
-                line = _LINES[quantity](fit)
-                _draw(axes, solved[mine & rocked], quantity, fit, line, look, marker)
-                _mark_fallen(
-                    axes, solved[mine & fell][measure].to_numpy(dtype=float), look, list(looks).index(fit.model)
-                )
-                rows.append((_numbers(fit, line), look.color))
+            for cloud in (cloud for cloud in clouds if cloud.structure == name):
+                look, marker = looks[cloud.model]
+                _draw(axes, cloud, quantity, measure, look, marker)
+                _mark_fallen(axes, cloud.fallen[measure].to_numpy(dtype=float), look, list(looks).index(cloud.model))
+                rows.append((_numbers(cloud), look.color))
             _write(axes, rows)
         handles = keys_of(looks)
-        if fell.any():
+        if len(fallen):
             handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
         labels = [str(handle.get_label()) for handle in handles]
         figure.legend(handles=handles, loc="outside upper center", ncols=columns(labels, 40 + 40 * (len(names) > 1)))
     return figure
+
+
+def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool) -> list[_Cloud]:
+    """The clouds of all structures and models, in the order of the table."""
+    fits, _ = fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
+    fit_of = {(fit.structure, fit.model): fit for fit in fits}
+    _check_solved(runs[runs["status"].notna()], measure)
+    clouds: list[_Cloud] = []
+    for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
+        solved = group[group["status"].notna()]
+        fell = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
+        rocked = ~fell & (solved["max_rotation"].to_numpy(dtype=float) > threshold)
+        fit = fit_of.get((str(structure), str(model)))
+        line = fit and _LINES[quantity](fit)
+        failed = len(group) - len(solved)
+        clouds.append(_Cloud(str(structure), str(model), solved[rocked], solved[fell], failed, line, fit is not None))
+    return clouds
+
+
+def _check_solved(solved: "pd.DataFrame", measure: str) -> None:
+    if not len(solved):
+        message = "No run was solved. See the column error of the table."
+        raise InputError(message)
+    bad = ~(solved[measure].to_numpy(dtype=float) > 0.0)
+    if bad.any():
+        message = (
+            f"{measure} must be positive, as its axis is logarithmic, but {int(bad.sum())} of {bad.size} values are "
+            f"not. Leave those runs out: keep the rows with {measure} > 0."
+        )
+        raise InputError(message)
 
 
 def _set_limits(
@@ -134,21 +172,20 @@ def _set_limits(
     below, above = 0.06 + _ROW * (n_models + 1), 0.06 + _CROSSES * n_models
     height = max(float(np.log(high / low)), 0.5) / (1.0 - below - above)
     axes.set_ylim(low * np.exp(-below * height), high * np.exp(above * height))
-    axes.set_xlim(left / 1.15, right * 1.15)
+    margin = 1.15 if right > 2.0 * left else 2.0  # of one intensity alone, wide enough for labels
+    axes.set_xlim(left / margin, right * margin)
 
 
-def _draw(
-    axes: Axes, runs: "pd.DataFrame", quantity: str, fit: CloudFits, line: "CloudFit | None", look: Look, marker: str
-) -> None:
-    im = runs[fit.measure].to_numpy(dtype=float)
+def _draw(axes: Axes, cloud: _Cloud, quantity: str, measure: str, look: Look, marker: str) -> None:
+    im = cloud.rocked[measure].to_numpy(dtype=float)
     axes.plot(
-        im, runs[quantity].to_numpy(dtype=float), marker, color=look.color, markersize=2.4, markerfacecolor="none",
-        markeredgewidth=0.45, alpha=0.6, label=f"_{fit.model}",
+        im, cloud.rocked[quantity].to_numpy(dtype=float), marker, color=look.color, markersize=2.4,
+        markerfacecolor="none", markeredgewidth=0.45, alpha=0.6, label=f"_{cloud.model}",
     )  # fmt: skip
-    if line is not None:
+    if cloud.line is not None:
         ends = np.array([im.min(), im.max()])
         axes.plot(
-            ends, line.median(ends), color=look.color, linestyle=look.dashes, linewidth=1.3, label=fit.model,
+            ends, cloud.line.median(ends), color=look.color, linestyle=look.dashes, linewidth=1.3, label=cloud.model,
             zorder=3.0,
         )  # fmt: skip
 
@@ -161,18 +198,21 @@ def _mark_fallen(axes: Axes, im: NDArray[np.float64], look: Look, rank: int) -> 
     )  # fmt: skip
 
 
-def _numbers(fit: CloudFits, line: "CloudFit | None") -> str:
-    count, fallen = fit.outcomes.n_rocking, fit.outcomes.n_overturned
+def _numbers(cloud: _Cloud) -> str:
+    line = cloud.line
     three = "     –     –     –" if line is None else f"{line.c1:6.2f}{line.c2:6.2f}{line.dispersion:6.2f}"
-    failed = f" ({fit.n_failed} failed)" if fit.n_failed else ""
-    return f"{fit.model[:9]:>9}{three}{count:5d}{fallen:4d}{failed}".replace("-0.00", " 0.00")
+    remarks = [f"{cloud.n_failed} failed"] * bool(cloud.n_failed) + ["no fit"] * (not cloud.fitted)
+    remark = f" ({', '.join(remarks)})" if remarks else ""
+    return f"{cloud.model[:9]:>9}{three}{len(cloud.rocked):5d}{len(cloud.fallen):4d}{remark}".replace("-0.00", " 0.00")
 
 
 def _write(axes: Axes, rows: list[tuple[str, str]]) -> None:
     """The numbers of all models, the first on top, in the lower right corner."""
     header = f"{'':9}{'c₁':>6}{'c₂':>6}{'σ':>6}{'n':>5}{'OV':>4}"
+    width = max(len(text) for text, _ in rows)  # remarks stand behind, and move no column
     for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
         axes.text(
-            0.985, 0.025 + _ROW * place, text, transform=axes.transAxes, color=color, fontsize=_TINY, ha="right",
-            family="DejaVu Sans Mono", bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
+            0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color, fontsize=_TINY,
+            ha="right", family="DejaVu Sans Mono",
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
         )  # fmt: skip

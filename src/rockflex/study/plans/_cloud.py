@@ -1,7 +1,6 @@
 """Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 from pydantic import Field, field_validator
@@ -11,9 +10,9 @@ from rockflex.motion import GroundMotion
 from rockflex.study._arguments import WORK_LIMIT, factors_of
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
-from rockflex.study.plans._plan import ChunkedPlan, run_plan
+from rockflex.study.plans._cross import CrossPlan
+from rockflex.study.plans._plan import run_plan
 from rockflex.study.plans._spec import StructuresSpec
-from rockflex.study.plans._tables import Columns, Row
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,45 +52,16 @@ class CloudStudy(StructuresSpec):
 QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
 
 
-class CloudPlan(ChunkedPlan):
+class CloudPlan(CrossPlan):
     """The cross product of structures, records, models and scales, cut into chunks."""
 
     def __init__(self, bench: Bench, scales: Sequence[float], per_chunk: int) -> None:
         self.scales = factors_of(scales, max(bench.motions, key=lambda motion: motion.pga))
-        self.bench = bench
-        self._shape = (len(bench.names), len(bench.motions), len(bench.labels), len(self.scales))
-        super().__init__(bench.motions, math.prod(self._shape), per_chunk)
+        super().__init__(bench, len(self.scales), per_chunk)
 
-    @property
-    def n_runs(self) -> int:
-        """Number of runs."""
-        return self.n_units
-
-    @property
-    def columns(self) -> Columns:
-        """Columns of every chunk's table."""
-        return self.bench.columns
-
-    def rows(self, unit: int) -> Iterator[Row]:
-        """Simulate one run."""
-        yield self.bench.run(*self._run(unit))
-
-    def check_work(self) -> None:
-        """Refuse a study of which every run is more work than it may be.
-
-        Raises
-        ------
-        InputError
-            If there is no run that may be made.
-        """
-        self.bench.check_work(map(self._run, range(self.n_units)))
-
-    def _run(self, unit: int) -> tuple[int, int, int, float]:
-        """Structure, record and model of a run by their places, and its scale."""
-        rest, scale = divmod(unit, len(self.scales))
-        rest, model = divmod(rest, len(self.bench.labels))
-        structure, record = divmod(rest, len(self.bench.motions))
-        return structure, record, model, self.scales[scale]
+    def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002
+        """Factor on a record's acceleration, the same for all."""
+        return self.scales[level]
 
 
 def run_cloud(

@@ -12,9 +12,10 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
+from rockflex.study.plans._cross import CrossPlan
 from rockflex.study.plans._intensity import check_measure
 from rockflex.study.plans._ladder import Ladder, rungs, steps_between, steps_from_rest
-from rockflex.study.plans._plan import ChunkedPlan, run_plan
+from rockflex.study.plans._plan import run_plan
 from rockflex.study.plans._spec import StructuresSpec
 from rockflex.study.plans._tables import Columns, Row
 
@@ -68,7 +69,7 @@ class IncrementalStudy(StructuresSpec):
         )
 
 
-class IncrementalPlan(ChunkedPlan):
+class IncrementalPlan(CrossPlan):
     """A ladder of scales for every structure, record and model, cut into chunks."""
 
     def __init__(
@@ -86,12 +87,15 @@ class IncrementalPlan(ChunkedPlan):
             if not model.lifts:
                 message = f"models: {model.label} has a base that cannot lift, so nothing overturns it. Leave it out."
                 raise InputError(message)
-        self.bench, self.growth, self.tolerance, self.limit = bench, growth, tolerance, limit
+        self.growth, self.tolerance, self.limit = growth, tolerance, limit
         self.scales = rungs(smallest, largest, growth)
         most = len(self.scales) + steps_between(growth, tolerance) + steps_from_rest(tolerance)
         self._most = most
-        curves = len(bench.names) * len(bench.motions) * len(bench.labels)
-        super().__init__(bench.motions, curves, max(1, runs_per_chunk // most))
+        super().__init__(bench, 1, max(1, runs_per_chunk // most))
+
+    def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002
+        """The first factor of every ladder."""
+        return self.scales[0]
 
     @property
     def n_runs(self) -> int:
@@ -101,14 +105,14 @@ class IncrementalPlan(ChunkedPlan):
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
-        base = dict(self.bench.columns)
+        base = dict(super().columns)
         error = base.pop("error")
         ladder = {"overturned": bool, "first_overturning_scale": float, "last_survival_scale": float}
         return base | ladder | {"resurrections": int, "right_censored": bool, "error": error}
 
     def rows(self, unit: int) -> list[Row]:
         """Run one ladder."""
-        structure, record, model = self._ladder(unit)
+        structure, record, model, _ = self.run_of(unit)
         flag = "nominal_overturning" if self.limit == "nominal" else None
 
         def run(scale: float) -> Row:
@@ -118,21 +122,6 @@ class IncrementalPlan(ChunkedPlan):
             return row | {"overturned": row["status"] == "overturned" or (flag is not None and row[flag])}
 
         return Ladder(run, self.scales, self.growth, self.tolerance).climb()
-
-    def check_work(self) -> None:
-        """Refuse a study of which every ladder's first run is more work than it may be.
-
-        Raises
-        ------
-        InputError
-            If there is no run that may be made.
-        """
-        self.bench.check_work((*self._ladder(unit), self.scales[0]) for unit in range(self.n_units))
-
-    def _ladder(self, unit: int) -> tuple[int, int, int]:
-        """Structure, record and model of a ladder, by their places."""
-        rest, model = divmod(unit, len(self.bench.labels))
-        return (*divmod(rest, len(self.bench.motions)), model)
 
 
 def check_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:

@@ -11,8 +11,8 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.study._arguments import positive_numbers
 from rockflex.study.plans._bench import Bench
+from rockflex.study.plans._cross import CrossPlan
 from rockflex.study.plans._intensity import check_measure, factor_to
-from rockflex.study.plans._plan import ChunkedPlan
 from rockflex.study.plans._spec import StructuresSpec
 from rockflex.study.plans._tables import Columns, Row
 
@@ -44,12 +44,12 @@ class StripeStudy(StructuresSpec):
         return StripePlan(self.bench(), self.measure, self.levels, self.runs_per_chunk)
 
 
-class StripePlan(ChunkedPlan):
+class StripePlan(CrossPlan):
     """The cross product of structures, records, models and levels, cut into chunks."""
 
     def __init__(self, bench: Bench, measure: str, levels: Sequence[float], per_chunk: int) -> None:
         check_measure(measure)
-        self.bench, self.measure = bench, measure
+        self.measure = measure
         self.levels = positive_numbers("levels", levels, "")
         for structure, name in enumerate(bench.names):
             for record, motion in enumerate(bench.motions):
@@ -58,40 +58,21 @@ class StripePlan(ChunkedPlan):
                         f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
                     )
                     raise InputError(message)
-        runs = len(bench.names) * len(bench.motions) * len(bench.labels) * len(self.levels)
-        super().__init__(bench.motions, runs, per_chunk)
+        super().__init__(bench, len(self.levels), per_chunk)
 
-    @property
-    def n_runs(self) -> int:
-        """Number of runs."""
-        return self.n_units
+    def scale(self, structure: int, record: int, level: int) -> float:
+        """Factor that takes a record to a level of the measure."""
+        return factor_to(self.bench.measures(structure, record), self.measure, self.levels[level])
 
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
-        return {"level": float, **self.bench.columns}
+        return {"level": float, **super().columns}
 
     def rows(self, unit: int) -> Iterator[Row]:
         """Simulate one run."""
-        yield self.bench.run(*self._run(unit)) | {"level": self.levels[unit % len(self.levels)]}
-
-    def check_work(self) -> None:
-        """Refuse a study of which every run is more work than it may be.
-
-        Raises
-        ------
-        InputError
-            If there is no run that may be made.
-        """
-        self.bench.check_work(map(self._run, range(self.n_units)))
-
-    def _run(self, unit: int) -> tuple[int, int, int, float]:
-        """Structure, record and model of a run by their places, and its scale."""
-        rest, place = divmod(unit, len(self.levels))
-        rest, model = divmod(rest, len(self.bench.labels))
-        structure, record = divmod(rest, len(self.bench.motions))
-        scale = factor_to(self.bench.measures(structure, record), self.measure, self.levels[place])
-        return structure, record, model, scale
+        for row in super().rows(unit):
+            yield row | {"level": self.levels[unit % len(self.levels)]}
 
 
 def stripe_counts(
