@@ -69,6 +69,16 @@ class ModalModel(Value):
 
     def arrow(self, key: Key) -> Arrow:
         """Return the equations of motion of a phase that is linear (Eq. 15 or 23)."""
+        known = self._arrows.get(key)
+        if known is None:
+            known = self._arrows[key] = self._new_arrow(key)
+        return known
+
+    @cached_property
+    def _arrows(self) -> dict[Key, Arrow]:
+        return {}
+
+    def _new_arrow(self, key: Key) -> Arrow:
         p = self.properties
         b = len(FREEDOMS)
         leverage = (p.effective_mass * p.effective_height)[None]
@@ -94,6 +104,7 @@ class ModalModel(Value):
         p = self.properties
         return p.pivot(side).i_theta - float(np.sum(p.effective_mass * p.effective_height**2))
 
+    @cached_property
     def restoring(self) -> Array:
         """The restoring accelerations of the modes, ω² D or those of Eq. 37, in m/s²: rows, shape (N, C)."""
         n, omega2 = self.properties.n_modes, self.properties.omega**2
@@ -103,21 +114,23 @@ class ModalModel(Value):
             share = self.bouc_wen.post_yield_ratio
             rows[:, :n] *= share
             rows[:, self.layout.hysteresis] = omega2 * self.bouc_wen.yield_displacement * (1.0 - share)
+        rows.setflags(write=False)
         return rows
 
     def overturning_moment(self) -> Array:
         """Overturning moment in contact, the left-hand side of Eq. 24, or of Eq. 16, in N m: a row, shape (C,)."""
         p = self.properties
-        row = self._moment()
+        row = self._moment.copy()
         if self.complete:
             row[: p.n_modes] -= p.effective_mass * GRAVITY
         return row
 
+    @cached_property
     def _moment(self) -> Array:
         p = self.properties
         n = p.n_modes
         arm = p.effective_mass * p.effective_height
-        row = -(arm @ self.restoring()) if n else np.zeros(self.layout.columns)
+        row = -(arm @ self.restoring) if n else np.zeros(self.layout.columns)
         row[n : 2 * n] -= arm * 2.0 * p.zeta * p.omega
         row[-2] = p.l0r - arm.sum()
         return row
@@ -127,7 +140,7 @@ class ModalModel(Value):
         if key[0] == CLOSED:
             return np.zeros(self.layout.columns)
         arrow = self.arrow(key)
-        row = -self._moment()
+        row = -self._moment
         row[self.layout.rotation] -= arrow.stiffness[0, 0]
         row[self.layout.spin] -= arrow.damping[0, 0]
         row[-1] += arrow.constant[0]
@@ -137,7 +150,7 @@ class ModalModel(Value):
         """D'' of every mode in a phase, Eq. 15 or 23, in m/s²: rows, shape (N, C)."""
         p = self.properties
         n = p.n_modes
-        rows = -self.restoring()
+        rows = -self.restoring
         rows[:, n : 2 * n] -= np.diag(2.0 * p.zeta * p.omega)
         rows[:, -2] = -1.0
         return rows if key[0] == CLOSED else rows - np.outer(p.effective_height, self.angular_acceleration(key))

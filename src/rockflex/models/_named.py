@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rockflex.modal import FloorModes
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
-from rockflex.models._quantities import Quantities
+from rockflex.models._quantities import Quantities, joined
 
 __all__ = ["floor_quantities", "modal_displacement", "quantities", "rotation_by_side"]
 
@@ -22,10 +22,7 @@ def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
     missing mass where the model counts it; `total_top_displacement` (m), zero where the height of the top is not known;
     `horizontal_reaction` (N), Eq. 21 for small rotations.
     """
-    total = Quantities.none(model.properties.n_modes)
-    for name in names:
-        total = total + _WHOLE[name](model)
-    return total
+    return joined([_WHOLE[name](model) for name in names])
 
 
 def _top_displacement(model: ModalModel) -> Quantities:
@@ -88,11 +85,8 @@ def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]
         "total_floor_displacement": {"displacement": floors.displacement, "rotation": floors.heights},
         "floor_acceleration": {"acceleration": floors.displacement, "turn": floors.heights, "ground": 1.0},
     }
-    total = Quantities.none(n)
-    for name in names:
-        kind = SWAY if name == "total_floor_displacement" else LINEAR
-        total = total + Quantities.of(count, n, kind, **shapes[name])
-    return total
+    kinds = {"total_floor_displacement": SWAY}
+    return joined([Quantities.of(count, n, kinds.get(name, LINEAR), **shapes[name]) for name in names])
 
 
 def modal_displacement(model: ModalModel, mode: int) -> Quantities:

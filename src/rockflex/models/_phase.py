@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._values import Value
 
 __all__ = ["FREEDOMS", "LANDS", "LIFTS", "OVERTURNS", "Arrow", "Border", "Exit", "Guard", "Key", "Phase"]
 
@@ -19,7 +18,7 @@ LIFTS, LANDS, OVERTURNS = 0, 1, 2  # what happens where a guard is passed
 
 
 @dataclass(frozen=True, eq=False)
-class Border(Value):
+class Border:
     """What an element adds to the equations of the base: M q'' + .. + C q' + K q = f + a g, b freedoms q.
 
     Attributes
@@ -64,7 +63,7 @@ class Border(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class Arrow(Value):
+class Arrow:
     """The equations of motion of one phase: N oscillators bordered by the base's free freedoms q.
 
         D''_n + 2 ζ_n ω_n D'_n + ω_n² D_n + c_n · q'' = -a
@@ -100,8 +99,8 @@ class Arrow(Value):
     def alike(self, other: "Arrow") -> bool:
         """Whether both have the same eigenvectors: all but the constant forces agree."""
         return self.free == other.free and all(
-            np.array_equal(getattr(self, name), getattr(other, name))
-            for name in ("coupling", "flexibility", "damping", "stiffness", "drive")
+            bool((getattr(self, name) == getattr(other, name)).all())
+            for name in ("flexibility", "stiffness", "damping", "drive", "coupling")
         )
 
 
@@ -114,7 +113,7 @@ class Exit:
 
 
 @dataclass(frozen=True, eq=False)
-class Guard(Value):
+class Guard:
     """A row that stays between two limits as long as the phase lasts.
 
     Attributes
@@ -135,7 +134,7 @@ class Guard(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class Phase(Value):
+class Phase:
     """One branch of every element of a model.
 
     Attributes

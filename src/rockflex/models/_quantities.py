@@ -1,5 +1,6 @@
 """What is asked of a motion: sums of shares of what moves, whichever phase it is in, and their rows in each phase."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -12,7 +13,7 @@ from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
 
-__all__ = ["Quantities", "lost_support_row", "rows_of"]
+__all__ = ["Quantities", "joined", "lost_support_row", "rows_of"]
 
 Array = NDArray[np.float64]
 
@@ -59,15 +60,21 @@ class Quantities(Value):
         return self.rotation.size
 
     def __add__(self, other: "Quantities") -> "Quantities":
-        return Quantities(
-            *(np.concatenate((getattr(self, each.name), getattr(other, each.name))) for each in fields(self))
-        )
+        return joined((self, other))
 
     @property
     def levers(self) -> Array:
         """What a quantity that bends in large rotations needs beside its row: `rockflex.models.observe`, (F, 2)."""
         near = np.where(self.kinds == SWAY, self.rotation, np.where(self.kinds == LEFT_OUT, -self.ground, 0.0))
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -self.turn, 0.0)))
+
+
+NAMES = tuple(each.name for each in fields(Quantities))
+
+
+def joined(parts: Sequence[Quantities]) -> Quantities:
+    """Return all quantities of the parts, in their order."""
+    return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in NAMES))
 
 
 def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
@@ -78,7 +85,7 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     """
     n, layout = model.properties.n_modes, model.layout
     large = model.complete and key[0] != CLOSED
-    rows = quantities.restoring @ model.restoring()
+    rows = quantities.restoring @ model.restoring
     rows[:, :n] += quantities.displacement
     linear = quantities.kinds == LINEAR if large else np.ones(len(quantities), dtype=np.bool_)
     rows[linear, layout.rotation] += quantities.rotation[linear]

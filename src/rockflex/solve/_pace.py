@@ -118,8 +118,14 @@ def pace_of(model: RockingModel, rows: int) -> Pace:
 
 def quick_pace(model: RockingModel, rows: int) -> Pace:
     """Return the same from a bound of the highest frequency that needs no eigenvalues, some ten per cent too high."""
-    traces = [float(np.trace(each)) for each in _stiffnesses(model)]
-    return _pace(model, rows, math.sqrt(max((0.0, *traces))) if np.all(np.isfinite(traces)) else math.inf)
+    p = model.properties
+    squares, arms = p.omega**2, p.effective_mass * p.effective_height**2
+    traces = [
+        float((squares.sum() + (arms @ squares + pivot.rocking_stiffness) / (pivot.i_theta - arms.sum())))
+        for pivot in (p.pivots if model.lifts else ())
+    ]
+    bound = max(traces, default=0.0)
+    return _pace(model, rows, math.sqrt(max(bound, 0.0)) if bound < math.inf else math.inf)
 
 
 def _pace(model: RockingModel, rows: int, fastest: float) -> Pace:
@@ -137,8 +143,7 @@ def _stiffnesses(model: RockingModel) -> list[Array]:
     """Stiffness over mass of the undamped, elastic model on each pivot, (N + 1, N + 1): its squared frequencies."""
     p = model.properties
     found: list[Array] = []
-    for side in (1, -1) if model.lifts else ():
-        pivot = p.pivot(side)
+    for pivot in p.pivots if model.lifts else ():
         free = pivot.i_theta - float(np.sum(p.effective_mass * p.effective_height**2))
         turn = np.append(-p.effective_mass * p.effective_height * p.omega**2, pivot.rocking_stiffness) / free
         matrix = np.zeros((p.n_modes + 1, p.n_modes + 1))

@@ -131,8 +131,7 @@ class Engine:
         if state is not None:
             start[: layout.core] = state
         side = int(np.sign(start[layout.rotation]) or np.sign(start[layout.spin]))
-        with preparing(self.model):
-            at = progress_at_start(self._phases.place(self.model.start(side)), stated=True)
+        at = progress_at_start(self._place(side), stated=True)
         course = self._course(acceleration, dt, free_vibration)
         room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
         log = Log(
@@ -146,8 +145,10 @@ class Engine:
         left = math.inf if work_limit is None else work_limit
         motion, stages = None, None
         while True:
-            with preparing(self.model):
-                system = self._phases.system(dt)
+            system = self._phases.known_system(dt)
+            if system is None:
+                with preparing(self.model):
+                    system = self._phases.system(dt, self.pace.fastest)
             motion, stages = self._room(system, start, at, log, motion, stages)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
@@ -168,6 +169,14 @@ class Engine:
             check_interruption()
         self._complain(status, at, dt, motion.state)
         return self._solution(status, at, dt, log, history=history)
+
+    def _place(self, side: int) -> int:
+        """Place of the phase in which a run begins."""
+        key = self.model.start(side)
+        if self._phases.knows(key):
+            return self._phases.place(key)
+        with preparing(self.model):
+            return self._phases.place(key)
 
     def _course(self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
@@ -229,18 +238,17 @@ class Engine:
 
     def _complain(self, status: int, at: Progress, dt: float, state: Array) -> None:
         """Raise if the run could not be solved."""
+        if status >= 0 and np.isfinite(state[: self.model.layout.core]).all():
+            return
         law = shown(self.model.law)
         if status == Status.BROKEN:
             failure = self._failures.pop()
             message = f"{Status.BROKEN.what.format(law=law)}: {failure}"
             raise InputError(message) from failure
-        ended = Status(status)
-        if ended >= 0 and not np.all(np.isfinite(state[: self.model.layout.core])):
-            ended = Status.INFINITE
-        if ended < 0:
-            # A failure inside a sample is told with the sample's end.
-            time = (_samples(at) + (ended not in (Status.UNSETTLED, Status.INFINITE))) * dt
-            self._raise(ended.what.format(label=self.model.label, law=law, time=time), ended.mend, state)
+        ended = Status.INFINITE if status >= 0 else Status(status)
+        # A failure inside a sample is told with the sample's end.
+        time = (_samples(at) + (ended not in (Status.UNSETTLED, Status.INFINITE))) * dt
+        self._raise(ended.what.format(label=self.model.label, law=law, time=time), ended.mend, state)
 
     def _raise(self, what: str, mend: str, state: Array) -> None:
         values = ", ".join(f"{value:.6g}" for value in state[: self.model.layout.core])

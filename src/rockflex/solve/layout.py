@@ -226,11 +226,15 @@ _PROGRESS = np.dtype(
 )
 
 
-def progress_at_start(phase: int, stated: bool) -> Progress:
+_AT_START = np.zeros(1, dtype=_PROGRESS).view(np.recarray)
+_AT_START.last = _AT_START.lift = np.nan
+_AT_START.lacking, _AT_START.step, _AT_START.branch = -1, np.inf, 1.0
+
+
+def progress_at_start(phase: int, *, stated: bool) -> Progress:
     """Return the progress of a run that is to begin in a phase."""
-    at = np.zeros(1, dtype=_PROGRESS).view(np.recarray)[0]
-    at.phase, at.last, at.lacking, at.lift, at.stated = phase, np.nan, -1, np.nan, stated
-    at.step, at.branch = np.inf, 1.0
+    at = _AT_START.copy()[0]
+    at.phase, at.stated = phase, stated
     return at
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockflex.models import Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
+from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.closed_form import accelerations_in
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
@@ -10,6 +10,7 @@ from rockflex.solve.layout import BESIDE, FOLLOWS, Array, System
 
 __all__ = ["CompiledPhases"]
 
+MOST_LEVELS = 8  # that there is room for before they are needed
 CAPACITY = 3  # phases that there is room for at first: contact, and rocking on either side
 
 
@@ -30,6 +31,7 @@ class CompiledPhases:
         self._phases: list[Phase] = []
         self._bases: list[Basis | None] = []
         self._rows: list[Array] = []
+        self._twins: list[int] = []  # place of a phase whose motion differs by constant forces alone; -1
         self._places: dict[Key, int] = {}
         self._systems: dict[float, tuple[System, int]] = {}  # by time step, with the number of phases entered
 
@@ -41,21 +43,24 @@ class CompiledPhases:
         model = self._model
         phase = model.phase(key)
         rows = np.vstack((phase.guards[0].row, rows_of(model, self._quantities, key), lost_support_row(model, key)))
-        basis = None
+        basis, twin = None, -1
         if phase.arrow is not None:
-            accelerations = accelerations_in(model, key)
-            alike = (
-                basis
-                for other, basis in zip(self._phases, self._bases, strict=True)
-                if basis is not None and other.arrow is not None and other.arrow.alike(phase.arrow)
-            )
-            twin = next(alike, None)
-            basis = with_constant(twin, accelerations) if twin else basis_of(model, phase.arrow, accelerations)
+            twin = self._alike(phase.arrow)
+            known = None if twin < 0 else self._bases[twin]
+            if known is None:
+                basis = basis_of(model, phase.arrow, accelerations_in(model, key))
+            else:
+                basis = with_constant(known, phase.arrow)
         self._phases.append(phase)
         self._bases.append(basis)
         self._rows.append(rows)
+        self._twins.append(twin)
         self._places[key] = len(self._phases) - 1
         return self._places[key]
+
+    def knows(self, key: Key) -> bool:
+        """Whether a phase was met before."""
+        return key in self._places
 
     def meet(self, phase: int, lacking: int) -> None:
         """Compile the phase that a run lacks: `Progress.lacking`, at a place of `beside` or, after those, `follows`."""
@@ -68,16 +73,26 @@ class CompiledPhases:
         if leads is not None:
             self.place(leads.key)
 
-    def system(self, dt: float) -> System:
-        """Tables of all phases met so far, for one time step."""
+    def known_system(self, dt: float) -> System | None:
+        """Tables of all phases met so far, for one time step; None where they are not ready."""
+        system, entered = self._systems.get(dt, (None, 0))
+        return system if entered == len(self._phases) else None
+
+    def system(self, dt: float, fastest: float) -> System:
+        """Tables of all phases met so far, for one time step; `fastest` bounds the frequencies that are still to come.
+
+        In rad/s; the tables only grow where the bound was too low.
+        """
+        known = self.known_system(dt)
+        if known is not None:
+            return known
         system, entered = self._systems.get(dt, (None, 0))
         count = len(self._phases)
-        if system is not None and entered == count:
-            return system
         levels = max((levels_of(basis.fastest, dt) for basis in self._bases if basis is not None), default=0)
         dense = any(basis is not None and basis.dense for basis in self._bases)
         rows = self._rows[0].shape[0]
         if system is None:
+            levels = max(levels, min(levels_of(fastest, dt), MOST_LEVELS))
             system = empty_system(self._model, rows, dt, max(CAPACITY, count), levels, dense=dense)
         else:
             capacity, had = system.links.shape[0], system.blocks.shape[1] - 1
@@ -89,10 +104,17 @@ class CompiledPhases:
             basis = self._bases[p]
             if basis is not None:
                 check_step(basis, dt)
-            put_phase(system, p, self._phases[p], basis, self._rows[p], dt)
+            put_phase(system, p, self._phases[p], basis, self._rows[p], self._twins[p])
         self._link(system)
         self._systems[dt] = system, count
         return system
+
+    def _alike(self, arrow: Arrow) -> int:
+        """Place of a phase whose motion differs by constant forces alone; -1 where there is none."""
+        for place, other in enumerate(self._phases):
+            if other.arrow is not None and other.arrow.alike(arrow):
+                return place
+        return -1
 
     @property
     def dense(self) -> bool:

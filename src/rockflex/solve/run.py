@@ -56,6 +56,7 @@ def run(
     stages: Stages | None,
 ) -> int:
     """Carry the motion on from where it is; return how the run ended, or why it stops in between."""
+    rate = 1.0 / course.dt
     while True:
         remaining = course.free + course.record.size - 1 - at.offset
         piece = course.record
@@ -67,9 +68,25 @@ def run(
             if begin_piece(system, flow, course, piece[0], at, log, motion, stages):
                 return SETTLED
             at.stage = CARRYING
-        status = cross_piece(system, flow, impact, piece, course.dt, at, log, motion, stages)
-        if status != CROSSED:
-            return status
+        last = piece.size - 1
+        while at.index < last:
+            if at.stage == CARRYING:
+                if log.work[LEFT] < 0.0 or room_left(log) < 0:
+                    return PAUSED
+                if not carry(system, flow, piece, course.dt, at, log, motion, stages):
+                    continue
+                # In a linear phase the whole sample has been examined.
+                at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.phases[at.phase].linear
+                at.slope = (piece[at.index + 1] - piece[at.index]) * rate
+                log.tally[EVENTS] = 0
+            i = at.index
+            time, until = (at.offset + i) * course.dt, (at.offset + i + 1) * course.dt
+            sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, course.dt)
+            status = cross_sample(system, flow, impact, sample, piece[i + 1], at, log, motion, stages)
+            if status != CROSSED:
+                return status
+            log.work[LEFT] -= log.work[CARRY]
+            at.index, at.stage, at.begun, at.started = i + 1, CARRYING, 0.0, False
         if system.phases[at.phase].linear and not at.stated:
             to_state(system, at, piece[piece.size - 1], motion)
             at.stated = True
@@ -122,41 +139,6 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
         if bound > (min(system.phases[p].high, -system.phases[p].low) if f == GUARD else log.peaks[f]):
             return False
     return True
-
-
-@kernel
-def cross_piece(
-    system: System,
-    flow: Flow | None,
-    impact: Impact,
-    piece: Array,
-    dt: float,
-    at: Progress,
-    log: Log,
-    motion: Motion,
-    stages: Stages | None,
-) -> int:
-    """Carry the motion through one stretch of acceleration."""
-    rate, last = 1.0 / dt, piece.size - 1
-    while at.index < last:
-        if at.stage == CARRYING:
-            if log.work[LEFT] < 0.0 or room_left(log) < 0:
-                return PAUSED
-            if not carry(system, flow, piece, dt, at, log, motion, stages):
-                continue
-            # In a linear phase the whole sample has been examined.
-            at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.phases[at.phase].linear
-            at.slope = (piece[at.index + 1] - piece[at.index]) * rate
-            log.tally[EVENTS] = 0
-        i = at.index
-        time, until = (at.offset + i) * dt, (at.offset + i + 1) * dt
-        sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, dt)
-        status = cross_sample(system, flow, impact, sample, piece[i + 1], at, log, motion, stages)
-        if status != CROSSED:
-            return status
-        log.work[LEFT] -= log.work[CARRY]
-        at.index, at.stage, at.begun, at.started = i + 1, CARRYING, 0.0, False
-    return CROSSED
 
 
 @kernel

@@ -46,11 +46,13 @@ def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:
     return _rocking_basis(accelerations, _energy_scale(p.effective_mass, omega2, arrow))
 
 
-def with_constant(known: Basis, accelerations: Array) -> Basis:
-    """Return the basis of a phase that differs from a known one in its constant forces alone."""
-    matrix, _, constant = _first_order(accelerations)
+def with_constant(known: Basis, arrow: Arrow) -> Basis:
+    """Return the basis of a phase whose arrow differs from that of a known one in its constant forces alone."""
     steady = known.steady.copy()
-    steady[2, _positions_and_speeds(accelerations.shape[0])] = -np.linalg.solve(matrix, constant)
+    steady[2] = 0.0
+    places = known.steady.shape[1] // 2 - arrow.constant.size
+    # At rest the modes are still, and the stiffness of the base balances the constant forces.
+    steady[2, 2 * places :: 2] = np.linalg.solve(arrow.stiffness, arrow.constant)
     return replace(known, steady=steady)
 
 

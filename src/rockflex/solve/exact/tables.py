@@ -109,34 +109,41 @@ def grown(system: System, larger: System) -> System:
     return larger
 
 
-def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_rows: Array, dt: float) -> None:
-    """Enter one phase at place `p`; `plain_rows` (F, C). Where it is not linear, there is no basis."""
-    guard, kind = phase.guards[0], system.phases[p]
-    kind.side, kind.low, kind.high, kind.linear = phase.side, guard.low, guard.high, basis is not None
+def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_rows: Array, twin: int) -> None:
+    """Enter one phase at place `p`; `plain_rows` (F, C). Where it is not linear, there is no basis.
+
+    `twin` is the place of a phase whose motion differs by constant forces alone, or -1: what both share is copied.
+    """
+    guard, arrow, dt = phase.guards[0], phase.arrow, system.dt
     for bound, end in enumerate((guard.below, guard.above)):
         system.links[p, EVENT + bound] = -1 if end is None else end.event
     system.plain_rows[p] = plain_rows
-    arrow = phase.arrow
     if basis is None or arrow is None:
+        system.phases[p] = phase.side, guard.low, guard.high, 0, 0, False, False
         return
+    levels = levels_of(basis.fastest, dt)
+    system.phases[p] = phase.side, guard.low, guard.high, levels, terms_of(basis.fastest, dt), True, basis.dense
     system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
     system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
-    levels = levels_of(basis.fastest, dt)
-    steps: Array = dt * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     core, own = basis.basis.shape[0], slice(levels + 1)
     moving = plain_rows[:, :core]
     rows = moving @ basis.basis
+    first = rows @ basis.matrix
     forcing = moving @ basis.steady.T
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
-    kind.dense, kind.levels, kind.terms = basis.dense, levels, terms_of(basis.fastest, dt)
     system.basis[p, OUT], system.basis[p, INTO] = basis.basis.T, basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T
-    system.row_forcing[p] = forcing
-    first = rows @ basis.matrix
     system.rows[p, VALUES], system.rows[p, SLOPES] = rows, first
+    system.row_forcing[p] = forcing
+    if twin >= 0 and np.array_equal(np.abs(moving), np.abs(system.plain_rows[twin, :, :core])):
+        system.blocks[p], system.bounds[p] = system.blocks[twin], system.bounds[twin]
+        if basis.dense:
+            system.propagator[p] = system.propagator[twin]
+        return
+    steps: Array = dt * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     system.blocks[p, own] = _blocks(basis, steps)
     if basis.dense:
         system.propagator[p, own] = np.stack([expm(basis.matrix * h) for h in steps])
@@ -165,7 +172,7 @@ def _blocks(basis: Basis, steps: Array) -> Array:
 def _pair_norm(rows: Array) -> Array:
     """Norm of each row over each pair of coordinates (k, K + k)."""
     half = rows.shape[-1] // 2
-    return np.hypot(rows[..., :half], rows[..., half:])
+    return np.sqrt(rows[..., :half] ** 2 + rows[..., half:] ** 2)
 
 
 def _bounds(basis: Basis, rows: Array, first: Array, steps: Array) -> tuple[Array, Array, Array]:
