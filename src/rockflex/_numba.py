@@ -60,7 +60,7 @@ def _with_a_way_in(kernel: Any) -> Any:
         def __call__(self, *arguments: Any) -> Any:
             if not hasattr(self, "way_in"):
                 inner, jit = self, cast("Any", njit)
-                self.way_in = jit(nogil=True)(lambda *given: inner(*given))
+                self.way_in = jit(nogil=True)(lambda *given: inner(*given))  # pyright: ignore[reportUnknownLambdaType]
             return self.way_in(*arguments)
 
     kernel.__class__ = Within

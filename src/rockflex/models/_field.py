@@ -89,7 +89,7 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
             )
             restoring += slip
             rates[2 * n + 5] = field.modes[MASS, i] * slip * v
-            rates[2 * n + 2] = hysteresis(field, branch, v, motion[2 * n + 2])
+            rates[2 * n + 2] = hysteresis(field, branch, float(v), float(motion[2 * n + 2]))
         rest = -restoring - drag - acceleration * cosine
         if side != 0.0 and field.complete:
             rest += field.gravity * sine - spin * spin * (offset - d)

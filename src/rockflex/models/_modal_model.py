@@ -85,9 +85,9 @@ class ModalModel(Value):
         coupling = p.effective_height[None]
         free = key[0] != CLOSED
         border = border_of(self.elements, key) if free else Border.on_rotation()
-        flexibility = np.zeros((b, b))
+        flexibility: Array = np.zeros((b, b))
         if free:
-            flexibility = np.linalg.inv(border.inertia - leverage @ coupling.T)
+            flexibility[:] = np.linalg.inv(border.inertia - leverage @ coupling.T)
         return Arrow(
             coupling=coupling.copy(),
             leverage=leverage,

@@ -40,7 +40,7 @@ class Posture(NamedTuple):
 def posture_of(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
     """Posture of a motion while rocking; `rates` holds D'' and θ''."""
     n = field.modes.shape[1]
-    spin, turn = motion[2 * n + 1], rates[2 * n + 1]
+    spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
     sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
     upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
     half = 0.5 * sine / upright

@@ -12,8 +12,8 @@ from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, accelerati
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
 from rockflex.response._floors import floor_histories
 from rockflex.response._friction import IMPACT_WINDOW, Friction
-from rockflex.response._missing import MissingQuantityError
 from rockflex.response._global import GLOBAL
+from rockflex.response._missing import MissingQuantityError
 from rockflex.response._tendons import tendon_forces
 
 __all__ = ["History"]

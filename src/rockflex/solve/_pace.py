@@ -121,7 +121,7 @@ def quick_pace(model: RockingModel, rows: int) -> Pace:
     p = model.properties
     squares, arms = p.omega**2, p.effective_mass * p.effective_height**2
     traces = [
-        float((squares.sum() + (arms @ squares + pivot.rocking_stiffness) / (pivot.i_theta - arms.sum())))
+        float(squares.sum() + (arms @ squares + pivot.rocking_stiffness) / (pivot.i_theta - arms.sum()))
         for pivot in (p.pivots if model.lifts else ())
     ]
     bound = max(traces, default=0.0)

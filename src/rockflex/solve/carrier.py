@@ -1,7 +1,7 @@
 """What carries the motion over one stretch of time: a power series where the phase is linear, else a Runge-Kutta step.
 
 A carrier begins a stretch and gives the guard's polynomial over it, then raises the peaks up to where the stretch is
-cut, and puts the motion there. Models without a vector field (`flow` is None) are compiled with the series alone.
+cut, and puts the motion there. Models without a vector field (`steps` is None) are compiled with the series alone.
 """
 
 import math
@@ -9,7 +9,7 @@ import math
 from rockflex._kernel import kernel
 from rockflex.models import field_rates, inertia_left
 from rockflex.solve.adaptive.curves import is_curved, raise_curves
-from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.layout import Flow, Integrator, Stages
 from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.turning import BARELY
 from rockflex.solve.exact.series import advance, expand, row_series
@@ -37,25 +37,23 @@ __all__ = ["begin", "first_exit", "free_inertia", "move", "note_peaks", "prepare
 
 
 @kernel
-def begin(system: System, flow: Flow | None, at: Progress, rest: Span, motion: Motion, stages: Stages | None) -> float:
+def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) -> float:
     """Begin a stretch over the `rest` of a linear phase's unit, or of the sample; return its length.
 
     It is `step.FAILED` where no step is short enough.
     """
-    if flow is None:
+    if steps is None:
         return rest.length
     if system.phases[at.phase].linear:
         return rest.length
-    return take_step(flow, system.phases[at.phase].side, rest, stages)
+    return take_step(steps.flow, system.phases[at.phase].side, rest, steps.room)
 
 
 @kernel
-def prepare_guard(
-    system: System, flow: Flow | None, at: Progress, span: Span, motion: Motion, stages: Stages | None
-) -> None:
+def prepare_guard(system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion) -> None:
     """Fill in the guard's polynomial over the stretch."""
     p = at.phase
-    if flow is None:
+    if steps is None:
         expand(system, p, motion, span, at.lift)
         row_series(system, p, GUARD, motion, span)
     else:
@@ -63,45 +61,36 @@ def prepare_guard(
             expand(system, p, motion, span, at.lift)
             row_series(system, p, GUARD, motion, span)
         else:
-            extend(flow, system.phases[p].side, span, stages)
-            row_poly(system, p, GUARD, span, stages)
+            extend(steps.flow, system.phases[p].side, span, steps.room)
+            row_poly(system, p, GUARD, span, steps.room)
             if not math.isnan(at.lift):
                 # θ and θ' start from zero and θ'' from what the guard says, all of them exactly.
-                stages.polys[GUARD, 0] = stages.polys[GUARD, 1] = 0.0
-                stages.polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
+                steps.room.polys[GUARD, 0] = steps.room.polys[GUARD, 1] = 0.0
+                steps.room.polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
 
 
 @kernel
-def first_exit(
-    system: System, flow: Flow | None, at: Progress, motion: Motion, stages: Stages | None
-) -> tuple[float, int, float]:
+def first_exit(system: System, steps: Integrator | None, at: Progress, motion: Motion) -> tuple[float, int, float]:
     """Where the phase ends: see `phase_exit`."""
-    if flow is None:
+    if steps is None:
         return phase_exit(system, at, motion.polys)
     if system.phases[at.phase].linear:
         return phase_exit(system, at, motion.polys)
-    return phase_exit(system, at, stages.polys)
+    return phase_exit(system, at, steps.room.polys)
 
 
 @kernel
 def note_peaks(
-    system: System,
-    flow: Flow | None,
-    at: Progress,
-    span: Span,
-    stop: float,
-    log: Log,
-    motion: Motion,
-    stages: Stages | None,
+    system: System, steps: Integrator | None, at: Progress, span: Span, stop: float, log: Log, motion: Motion
 ) -> None:
     """Raise the peaks over [0, stop] of the stretch."""
-    if flow is None:
+    if steps is None:
         note_of_series(system, at, span, stop, log, motion)
     else:
         if system.phases[at.phase].linear:
             note_of_series(system, at, span, stop, log, motion)
         else:
-            note_of_step(system, flow, at, span, stop, log, stages)
+            note_of_step(system, steps.flow, at, span, stop, log, steps.room)
 
 
 @kernel
@@ -116,43 +105,42 @@ def note_of_series(system: System, at: Progress, span: Span, stop: float, log: L
 
 
 @kernel
-def note_of_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, stages: Stages) -> None:
+def note_of_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, room: Stages) -> None:
     p = at.phase
     side = system.phases[p].side
     if side != 0.0:
-        raise_peak(stages.polys, GUARD, stop, span, log)
+        raise_peak(room.polys, GUARD, stop, span, log)
         if flow.field.complete:
-            raise_curves(system, flow, p, span, stop, log, stages)
+            raise_curves(system, flow, p, span, stop, log, room)
     for f in range(1, log.peaks.size):
         if not is_curved(flow, f, side):
-            row_poly(system, p, f, span, stages)
-            raise_peak(stages.polys, f, stop, span, log)
+            row_poly(system, p, f, span, room)
+            raise_peak(room.polys, f, stop, span, log)
 
 
 @kernel
 def move(
     system: System,
-    flow: Flow | None,
+    steps: Integrator | None,
     at: Progress,
     span: Span,
     stop: float,
     turns: bool,
     log: Log,
     motion: Motion,
-    stages: Stages | None,
 ) -> None:
     """Put the motion at the fraction `stop` of the stretch; `turns`: a hysteretic spring turns there."""
-    if flow is None:
+    if steps is None:
         move_by_series(system, at, span, stop, log, motion)
     else:
         if system.phases[at.phase].linear:
             move_by_series(system, at, span, stop, log, motion)
         elif stop == 1.0:
-            step_over(stages)
+            step_over(steps.room)
         else:
-            settle_on(stop, stages)
+            settle_on(stop, steps.room)
             if turns:
-                motion.state[system.layout.modes] = -stages.at.branch * BARELY
+                motion.state[system.layout.modes] = -steps.room.at.branch * BARELY
 
 
 @kernel
@@ -165,19 +153,17 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
 
 
 @kernel
-def free_inertia(system: System, flow: Flow | None, phase: int, state: Array) -> float:
+def free_inertia(system: System, steps: Integrator | None, phase: int, state: Array) -> float:
     """What is left to the rotation while the modes move freely: I_θ - Σ m* h*², and what D adds in complete models."""
-    if flow is None:
+    if steps is None:
         return 1.0 / system.base[phase, FLEXIBILITY, 0, 0]
-    return inertia_left(flow.field, system.phases[phase].side, state)
+    return inertia_left(steps.flow.field, system.phases[phase].side, state)
 
 
 @kernel
-def turning_rate(
-    system: System, flow: Flow | None, phase: int, ground: float, motion: Motion, stages: Stages | None
-) -> float:
+def turning_rate(system: System, steps: Integrator | None, phase: int, ground: float, motion: Motion) -> float:
     """θ'' in a phase that the motion may go on with, at θ = 0."""
-    if flow is None:
+    if steps is None:
         n = system.layout.modes
         moment = system.push[phase, CONSTANT, 0] + system.push[phase, DRIVE, 0] * ground
         moment -= system.base[phase, DAMPING, 0, 0] * motion.state[system.layout.spin]
@@ -185,6 +171,6 @@ def turning_rate(
             restoring = system.modes[DRAG, i] * motion.state[n + i] + system.modes[OMEGA2, i] * motion.state[i]
             moment += system.border[phase, 0, LEVERAGE, i] * restoring
         return moment * system.base[phase, FLEXIBILITY, 0, 0]
-    forget(stages)
-    field_rates(flow.field, system.phases[phase].side, 1.0, ground, motion.state, stages.rates[0])
-    return stages.rates[0, system.layout.spin]
+    forget(steps.room)
+    field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0])
+    return steps.room.rates[0, system.layout.spin]

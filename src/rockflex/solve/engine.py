@@ -13,11 +13,11 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
-from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, Quantities, RockingModel, impact_of
+from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, NonlinearModel, Quantities, RockingModel, impact_of
 from rockflex.solve._pace import Pace, quick_pace
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
-from rockflex.solve.adaptive.layout import Flow, Stages, stages_of
+from rockflex.solve.adaptive.layout import Flow, Integrator, stages_of
 from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import (
@@ -83,7 +83,7 @@ class Engine:
             # Of a model that is integrated all phases are few and cheap; else each waits until it is met.
             for side in model.sides if model.integrated else (0,):
                 self._phases.place(model.start(side))
-            self._flow = _flow_of(model, quantities, tolerance) if model.integrated else None
+            self._flow = _flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
 
     @cached_property
     def pace(self) -> Pace:
@@ -143,16 +143,17 @@ class Engine:
         )
         log.peaks[-1] = -np.inf
         left = math.inf if work_limit is None else work_limit
-        motion, stages = None, None
+        motion, steps = None, None
         while True:
             system = self._phases.known_system(dt)
             if system is None:
                 with preparing(self.model):
                     system = self._phases.system(dt, self.pace.fastest)
-            motion, stages = self._room(system, start, at, log, motion, stages)
+            motion = self._room(system, start, motion)
+            steps = steps or self._integrator(start, log, at)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
-            status = self._carry(system, course, at, log, motion, stages)
+            status = self._carry(system, steps, course, at, log, motion)
             left -= given - float(log.work[LEFT])
             if status == Status.LACKS_PHASE:
                 with preparing(self.model):
@@ -188,27 +189,27 @@ class Engine:
             settle=free_vibration is None,
         )
 
-    def _room(
-        self, system: System, state: Array, at: Progress, log: Log, motion: Motion | None, stages: Stages | None
-    ) -> tuple[Motion, Stages | None]:
+    def _room(self, system: System, state: Array, motion: Motion | None) -> Motion:
         """Room for the motion; where it was there before, with as many terms as the phases now need."""
         terms = int(system.phases.terms.max(initial=4))
         if motion is None:
-            motion = motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
-            if self._flow is not None:
-                stages = stages_of(state, self.model.layout.moving, self._n_rows, log.work, at)
-        elif motion.series.shape[1] < terms:
-            motion = motion._replace(
-                series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))
-            )
-        return motion, stages
+            return motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
+        if motion.series.shape[1] >= terms:
+            return motion
+        return motion._replace(
+            series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))
+        )
+
+    def _integrator(self, state: Array, log: Log, at: Progress) -> Integrator | None:
+        if self._flow is None:
+            return None
+        return Integrator(self._flow, stages_of(state, self.model.layout.moving, self._n_rows, log.work, at))
 
     def _carry(
-        self, system: System, course: Course, at: Progress, log: Log, motion: Motion, stages: Stages | None
+        self, system: System, steps: Integrator | None, course: Course, at: Progress, log: Log, motion: Motion
     ) -> int:
-        if self._flow is None:
-            return _closed_form(system, None, self._impact, course, at, log, motion, None)
-        return _integrated(system, self._flow, self._impact, course, at, log, motion, stages)
+        carry = _closed_form if steps is None else _integrated
+        return carry(system, steps, self._impact, course, at, log, motion)
 
     def _patience(self) -> float:
         """Longest free vibration that is waited for, s."""
@@ -241,7 +242,7 @@ class Engine:
         if status >= 0 and np.isfinite(state[: self.model.layout.core]).all():
             return
         law = shown(self.model.law)
-        if status == Status.BROKEN:
+        if Status(status) is Status.BROKEN:
             failure = self._failures.pop()
             message = f"{Status.BROKEN.what.format(law=law)}: {failure}"
             raise InputError(message) from failure
@@ -261,7 +262,7 @@ def _samples(at: Progress) -> int:
     return int(at.offset + at.index)
 
 
-def _flow_of(model: RockingModel, quantities: Quantities, tolerance: float) -> Flow:
+def _flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) -> Flow:
     """What the integrated phases of a model need beside their rows."""
     own = VERTICAL if model.complete else LINEAR
     kinds = quantities.kinds if model.complete else np.full(len(quantities), LINEAR, dtype=np.int64)

@@ -5,7 +5,7 @@ import numpy as np
 from rockflex._kernel import kernel
 from rockflex.models import LANDS, OVERTURNS, Impact, kinetic_energy, may_pass, stick, strike
 from rockflex.solve.adaptive.check import nothing_hides
-from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.adaptive.step import FAILED, forget, step_over
 from rockflex.solve.adaptive.turning import turning
 from rockflex.solve.carrier import begin, first_exit, free_inertia, move, note_peaks, prepare_guard, turning_rate
@@ -81,19 +81,11 @@ def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) 
 
 @kernel
 def cross(
-    system: System,
-    flow: Flow | None,
-    impact: Impact,
-    sample: Span,
-    at: Progress,
-    log: Log,
-    motion: Motion,
-    stages: Stages | None,
+    system: System, steps: Integrator | None, impact: Impact, sample: Span, at: Progress, log: Log, motion: Motion
 ) -> int:
-    """Carry the state on from `at.begun`, event by event: to the next place on the grid, in a linear phase, or to the
-    sample's end.
+    """Carry the state on from `at.begun`, event by event, to a place on the grid or to the sample's end.
 
-    Where it pauses, `at` holds all that it must know to go on.
+    It ends on the grid where the phase is linear, and nothing else is to happen up to there. Where it pauses, `at` holds all that it must know to go on.
     """
     while at.begun < sample.length:
         if log.work[LEFT] < 0.0 or room_left(log) < 0:
@@ -107,17 +99,22 @@ def cross(
         if linear:
             unit = float(unit_of(system, system.phases[p].levels))
             longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
-        length = begin(system, flow, at, Span(now, sample.until, here, sample.slope, longest), motion, stages)
+        length = begin(system, steps, at, Span(now, sample.until, here, sample.slope, longest))
         if length == FAILED:
             return PAUSED if log.work[LEFT] < 0.0 else STALLED
         span = Span(now, sample.until, here, sample.slope, length)
         whole = length == longest
-        if flow is not None and not linear and at.onset == INSIDE and nothing_hides(system, flow, p, span, log, stages):
-            step_over(stages)
+        if (
+            steps is not None
+            and not linear
+            and at.onset == INSIDE
+            and nothing_hides(system, steps.flow, p, span, log, steps.room)
+        ):
+            step_over(steps.room)
             at.begun = sample.length if whole else at.begun + length
             continue
-        prepare_guard(system, flow, at, span, motion, stages)
-        stop, bound, excess = first_exit(system, flow, at, motion, stages)
+        prepare_guard(system, steps, at, span, motion)
+        stop, bound, excess = first_exit(system, steps, at, motion)
         event = system.links[p, EVENT + bound]
         if stop < 0.0:
             at.lacking = lacks(system, at, event, bound, impact)
@@ -129,19 +126,19 @@ def cross(
                 at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
             else:
                 enter(system, at, system.links[p, FOLLOWS + bound])
-                inertia = free_inertia(system, flow, at.phase, motion.state)
+                inertia = free_inertia(system, steps, at.phase, motion.state)
                 at.onset, at.lift = LIFTED, system.phases[at.phase].side * excess / inertia
             at.fresh_rows = True
-            if flow is not None:
-                forget(stages)
+            if steps is not None:
+                forget(steps.room)
             continue
         tipped = event == OVERTURNS and stop < 1.0
         ends = not tipped and stop > 1.0 - SNAP * (unit / length if linear else 1.0)
         if ends:
             stop = 1.0
         turns = False
-        if flow is not None and flow.field.hysteretic:
-            turn = turning(flow, stages)
+        if steps is not None and steps.flow.field.hysteretic:
+            turn = turning(steps.flow, steps.room)
             turns = turn < stop
             if turns:
                 stop, ends, tipped = turn, True, False
@@ -154,8 +151,8 @@ def cross(
             log.tally[EVENTS] += 1
             keep(log, now, 0.0, here, motion.state)
             keep(log, now, side, here, motion.state)
-        note_peaks(system, flow, at, span, stop, log, motion, stages)
-        move(system, flow, at, span, stop, turns, log, motion, stages)
+        note_peaks(system, steps, at, span, stop, log, motion)
+        move(system, steps, at, span, stop, turns, log, motion)
         at.begun = sample.length if whole and stop == 1.0 and not linear else at.begun + stop * length
         at.onset, at.lift = INSIDE, np.nan
         if ends:
@@ -177,7 +174,7 @@ def cross(
         motion.state[system.layout.rotation] = 0.0
         if event == LANDS:
             keep(log, now, side, here, motion.state)
-            status, next_side = land(system, flow, impact, p, here, motion, stages)
+            status, next_side = land(system, steps, impact, p, here, motion)
             if status != CROSSED:
                 return status
             log.tally[EVENTS] += 1
@@ -188,13 +185,13 @@ def cross(
         else:
             motion.state[system.layout.spin] = 0.0
             enter(system, at, system.links[p, FOLLOWS + bound])
-            inertia = free_inertia(system, flow, at.phase, motion.state)
+            inertia = free_inertia(system, steps, at.phase, motion.state)
             at.lift = system.phases[at.phase].side * excess / inertia
             at.onset = LIFTED if excess > 0.0 else TOUCHED
         at.resume = 0.0
         at.fresh_rows = True
-        if flow is not None:
-            forget(stages)
+        if steps is not None:
+            forget(steps.room)
         if log.tally[EVENTS] > MOST_EVENTS:
             return CHATTER
     at.crossing = False
@@ -203,20 +200,14 @@ def cross(
 
 @kernel
 def land(
-    system: System,
-    flow: Flow | None,
-    impact: Impact,
-    phase: int,
-    ground: float,
-    motion: Motion,
-    stages: Stages | None,
+    system: System, steps: Integrator | None, impact: Impact, phase: int, ground: float, motion: Motion
 ) -> tuple[int, float]:
     """Apply the impact law; return status and the side to which the rotation goes on, 0 for contact.
 
     It stays in contact once its next excursion would be too short to count.
     """
     state, spin_place = motion.state, system.layout.spin
-    before = kinetic_energy(impact, free_inertia(system, flow, phase, state), state)
+    before = kinetic_energy(impact, free_inertia(system, steps, phase, state), state)
     if not strike(impact, state):
         return BROKEN, 0.0
     spin = state[spin_place]
@@ -225,10 +216,10 @@ def land(
         return (GAINED if after > before * (1.0 + GAIN) else CROSSED), 0.0
     next_side = 1.0 if spin > 0.0 else -1.0
     following = system.links[phase, BESIDE + beside(next_side)]
-    after = kinetic_energy(impact, free_inertia(system, flow, following, state), state)
+    after = kinetic_energy(impact, free_inertia(system, steps, following, state), state)
     if after > before * (1.0 + GAIN):
         return GAINED, next_side
-    back = -next_side * turning_rate(system, flow, following, ground, motion, stages)
+    back = -next_side * turning_rate(system, steps, following, ground, motion)
     if 2.0 * abs(spin) < back * impact.shortest:
         stick(impact, state)
         if kinetic_energy(impact, 0.0, state) > before * (1.0 + GAIN):

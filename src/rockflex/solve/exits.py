@@ -69,7 +69,7 @@ def band_exit(polys: Array, low: float, high: float, start: float) -> tuple[floa
 
 @kernel
 def landing(polys: Array, side: float, zeros: int) -> float:
-    """Where the rotation returns to zero; `BEFORE` where it never left. The `zeros` that it has at 0 are divided out."""
+    """Where the rotation returns to zero; `BEFORE` where it never left. Its `zeros` at 0 are divided out."""
     work, terms = polys.shape[0] - 1, polys.shape[1]
     for k in range(terms):
         polys[work, k] = side * polys[GUARD, k + zeros] if k + zeros < terms else 0.0

@@ -1,6 +1,6 @@
 """Stopping runs from outside: whoever started them can ask for it, and they end within a slice of their work."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
@@ -14,7 +14,7 @@ class RunStoppedError(Exception):
 
 
 @contextmanager
-def stopping_when(asked: Callable[[], bool]) -> Iterator[None]:
+def stopping_when(asked: Callable[[], bool]) -> Generator[None]:
     """Stop the runs within this context, in this thread, as soon as `asked()` is true.
 
     `asked` is called between the slices of a run, some ten times a second; for example an event's ``is_set``.

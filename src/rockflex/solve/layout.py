@@ -2,12 +2,12 @@
 
 The state is that of `rockflex.models.StateLayout`. A *row* is a linear functional of its moving entries, the ground
 acceleration and 1, one set of rows a phase. Row 0 of each phase is its guard; while the base rocks it is the rotation
-as well. The last row is what the base has lost of its support: it has a largest value and no least. The rows between are
-the quantities whose peaks are wanted.
+as well. The last row is what the base has lost of its support: it has a largest value and no least. The rows between
+are the quantities whose peaks are wanted.
 
 Each linear phase is uncoupled into K pairs of coordinates w, where state = basis · (w + forced part); pair k is
-``(w[k], w[K + k])``. Under an acceleration that is linear in time, w moves without forcing, ``w(t + h) = exp(B h) w(t)``,
-and it jumps by ``-forced[1] Δa'`` where the acceleration's slope a' changes.
+``(w[k], w[K + k])``. Under an acceleration that is linear in time, w moves without forcing, ``w(t + h) = exp(B h)
+w(t)``, and it jumps by ``-forced[1] Δa'`` where the acceleration's slope a' changes.
 """
 
 from typing import Any, NamedTuple, cast
@@ -87,8 +87,8 @@ COUPLING, LEVERAGE = 0, 1
 FLEXIBILITY, DAMPING, STIFFNESS = 0, 1, 2
 CONSTANT, DRIVE = 0, 1
 
-# Places in `System.links`, of two limits each: what happens there, and which phase follows; -1 for none, or for one that
-# was not met yet. Then the same branches with the base in contact, on its right pivot and on its left one.
+# Places in `System.links`, of two limits each: what happens there, and which phase follows; -1 for none, or for one
+# that was not met yet. Then the same branches with the base in contact, on its right pivot and on its left one.
 EVENT, FOLLOWS, BESIDE, LINKS = 0, 2, 4, 7
 
 # Places in `System.basis` and `System.rows`

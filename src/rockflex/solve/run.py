@@ -10,7 +10,7 @@ import math
 from rockflex._kernel import kernel, python_kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.curves import values_of_rows
-from rockflex.solve.adaptive.layout import TOLD, Flow, Stages
+from rockflex.solve.adaptive.layout import TOLD, Integrator
 from rockflex.solve.adaptive.step import forget
 from rockflex.solve.adaptive.steps import step_through
 from rockflex.solve.events import CROSSED, PAUSED
@@ -46,14 +46,7 @@ BLOCK = 4096  # samples that are carried at once, at most
 
 @python_kernel
 def run(
-    system: System,
-    flow: Flow | None,
-    impact: Impact,
-    course: Course,
-    at: Progress,
-    log: Log,
-    motion: Motion,
-    stages: Stages | None,
+    system: System, steps: Integrator | None, impact: Impact, course: Course, at: Progress, log: Log, motion: Motion
 ) -> int:
     """Carry the motion on from where it is; return how the run ended, or why it stops in between."""
     rate = 1.0 / course.dt
@@ -65,7 +58,7 @@ def run(
                 return UNSETTLED if course.settle else ENDED
             piece = course.quiet[: min(course.quiet.size - 1, remaining) + 1]
         if at.stage == BEGINNING:
-            if begin_piece(system, flow, course, piece[0], at, log, motion, stages):
+            if begin_piece(system, steps, course, piece[0], at, log, motion):
                 return SETTLED
             at.stage = CARRYING
         last = piece.size - 1
@@ -73,7 +66,7 @@ def run(
             if at.stage == CARRYING:
                 if log.work[LEFT] < 0.0 or room_left(log) < 0:
                     return PAUSED
-                if not carry(system, flow, piece, course.dt, at, log, motion, stages):
+                if not carry(system, steps, piece, course.dt, at, log, motion):
                     continue
                 # In a linear phase the whole sample has been examined.
                 at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.phases[at.phase].linear
@@ -82,7 +75,7 @@ def run(
             i = at.index
             time, until = (at.offset + i) * course.dt, (at.offset + i + 1) * course.dt
             sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, course.dt)
-            status = cross_sample(system, flow, impact, sample, piece[i + 1], at, log, motion, stages)
+            status = cross_sample(system, steps, impact, sample, piece[i + 1], at, log, motion)
             if status != CROSSED:
                 return status
             log.work[LEFT] -= log.work[CARRY]
@@ -97,14 +90,7 @@ def run(
 
 @kernel
 def begin_piece(
-    system: System,
-    flow: Flow | None,
-    course: Course,
-    ground: float,
-    at: Progress,
-    log: Log,
-    motion: Motion,
-    stages: Stages | None,
+    system: System, steps: Integrator | None, course: Course, ground: float, at: Progress, log: Log, motion: Motion
 ) -> bool:
     """Prepare for a stretch of acceleration; True where a run that is to settle has done so."""
     time, side = at.offset * course.dt, system.phases[at.phase].side
@@ -117,13 +103,13 @@ def begin_piece(
             return True
     if ground != at.last:  # the start, or a jump of the acceleration at the record's end
         keep(log, time, side, ground, motion.state)
-        if flow is None:
+        if steps is None:
             raise_to_state(system, at.phase, ground, time, log, motion)
         else:
-            forget(stages)
-            values_of_rows(system, flow, at.phase, ground, stages)
+            forget(steps.room)
+            values_of_rows(system, steps.flow, at.phase, ground, steps.room)
             for f in range(GUARD if side != 0.0 else 1, log.peaks.size):
-                raise_row(f, stages.rows[TOLD, f], time, log)
+                raise_row(f, steps.room.rows[TOLD, f], time, log)
     return False
 
 
@@ -143,18 +129,11 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
 
 @kernel
 def carry(
-    system: System,
-    flow: Flow | None,
-    piece: Array,
-    dt: float,
-    at: Progress,
-    log: Log,
-    motion: Motion,
-    stages: Stages | None,
+    system: System, steps: Integrator | None, piece: Array, dt: float, at: Progress, log: Log, motion: Motion
 ) -> bool:
     """Carry the motion over whole samples; True where the next one needs a closer look."""
-    if flow is not None and not system.phases[at.phase].linear:
-        return step_through(system, flow, piece, dt, at, log, stages)
+    if steps is not None and not system.phases[at.phase].linear:
+        return step_through(system, steps.flow, piece, dt, at, log, steps.room)
     first = at.index
     most = BLOCK
     if log.history.shape[0] > 0:

@@ -2,7 +2,7 @@
 
 from rockflex._kernel import kernel
 from rockflex.models import Impact
-from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.events import CROSSED, PAUSED, cross, start_crossing
 from rockflex.solve.exact.grid import largest_step
 from rockflex.solve.exact.march import to_coordinates, to_state
@@ -18,14 +18,13 @@ __all__ = ["cross_sample"]
 @kernel
 def cross_sample(
     system: System,
-    flow: Flow | None,
+    steps: Integrator | None,
     impact: Impact,
     sample: Span,
     last: float,
     at: Progress,
     log: Log,
     motion: Motion,
-    stages: Stages | None,
 ) -> int:
     """Carry the motion over the rest of a sample, at whose end the ground's acceleration becomes `last`.
 
@@ -38,7 +37,7 @@ def cross_sample(
         if at.crossing or not system.phases[p].linear:
             if not at.crossing:
                 start_crossing(at, True)
-            status = cross(system, flow, impact, sample, at, log, motion, stages)
+            status = cross(system, steps, impact, sample, at, log, motion)
             if status != CROSSED:
                 return status
             at.level, at.probed = largest_step(at.place, system.phases[at.phase].levels), False

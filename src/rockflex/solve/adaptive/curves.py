@@ -84,8 +84,8 @@ def curves_hide(
 ) -> bool:
     """Whether a curved row may hide a new peak between the motion and `end`, over a span.
 
-    The peaks at the start are noted, for forces jump at events; the values at the end are left in `room.rows[AT_ENDS]`, and
-    `room.doubt` marks the rows in question.
+    The peaks at the start are noted, for forces jump at events; the values at the end are left in
+    `room.rows[AT_ENDS]`, and `room.doubt` marks the rows in question.
     """
     there = span.ground + span.slope * span.length
     if not room.at.told:

@@ -31,8 +31,9 @@ __all__ = [
 
 TERMS = 8  # of the polynomial across a step
 
-# Places in `Stages.vectors`: the state at the end of the step, within it, and where a stretch of it ends, with the rates
-# of the latter two; and in `Stages.rows`: at the start of the step and at its end, a little after each, and within it.
+# Places in `Stages.vectors`: the state at the end of the step, within it, and where a stretch of it ends, with the
+# rates of the latter two; and in `Stages.rows`: at the start of the step and at its end, a little after each, and
+# within it.
 TRIAL, PLACE, PLACE_RATES, END, END_RATES = 0, 1, 2, 3, 4
 AT_STARTS, AT_ENDS, AT_STARTS_AHEAD, AT_ENDS_AHEAD, TOLD = 0, 1, 2, 3, 4
 
@@ -81,3 +82,10 @@ def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) 
         work,
         at,
     )
+
+
+class Integrator(NamedTuple):
+    """What carries a phase that is not linear."""
+
+    flow: Flow
+    room: Stages

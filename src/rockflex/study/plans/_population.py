@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
-import numpy as np
 from pydantic import Field, field_validator
 
 from rockflex._checks import whole_number
