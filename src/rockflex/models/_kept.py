@@ -40,8 +40,7 @@ def accelerations(model: RockingModel, states: Array) -> Array:
         return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
     found = np.zeros((states.shape[0], n + 1))
     for chosen, key, vector in _by_side(model, states, side):
-        rows = np.vstack((model.modal_accelerations(key), model.angular_acceleration(key)))
-        found[chosen] = vector @ rows.T
+        found[chosen] = vector @ model.accelerations(key).T
     return found
 
 

@@ -137,23 +137,40 @@ class ModalModel(Value):
 
     def angular_acceleration(self, key: Key) -> Array:
         """θ'' in a phase of a simplified model, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (C,)."""
-        if key[0] == CLOSED:
-            return np.zeros(self.layout.columns)
-        arrow = self.arrow(key)
-        row = -self._moment
-        row[self.layout.rotation] -= arrow.stiffness[0, 0]
-        row[self.layout.spin] -= arrow.damping[0, 0]
-        row[-1] += arrow.constant[0]
-        return row * arrow.flexibility[0, 0]
+        return self.accelerations(key)[-1]
 
     def modal_accelerations(self, key: Key) -> Array:
         """D'' of every mode in a phase, Eq. 15 or 23, in m/s²: rows, shape (N, C)."""
+        return self.accelerations(key)[:-1]
+
+    def accelerations(self, key: Key) -> Array:
+        """D'' of every mode and θ'' in a phase: rows, shape (N + 1, C); read-only."""
+        known = self._accelerations.get(key)
+        if known is None:
+            known = self._accelerations[key] = self._new_accelerations(key)
+            known.setflags(write=False)
+        return known
+
+    @cached_property
+    def _accelerations(self) -> dict[Key, Array]:
+        return {}
+
+    def _new_accelerations(self, key: Key) -> Array:
         p = self.properties
-        n = p.n_modes
-        rows = -self.restoring
-        rows[:, n : 2 * n] -= np.diag(2.0 * p.zeta * p.omega)
-        rows[:, -2] = -1.0
-        return rows if key[0] == CLOSED else rows - np.outer(p.effective_height, self.angular_acceleration(key))
+        n, modes = p.n_modes, np.arange(p.n_modes)
+        rows = np.zeros((n + 1, self.layout.columns))
+        rows[:n] -= self.restoring
+        rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
+        rows[:n, -2] = -1.0
+        if key[0] != CLOSED:
+            arrow, turn = self.arrow(key), rows[n]
+            turn -= self._moment
+            turn[self.layout.rotation] -= arrow.stiffness[0, 0]
+            turn[self.layout.spin] -= arrow.damping[0, 0]
+            turn[-1] += arrow.constant[0]
+            turn *= arrow.flexibility[0, 0]
+            rows[:n] -= np.outer(p.effective_height, turn)
+        return rows
 
     def guards(self, key: Key) -> tuple[Guard, ...]:
         """Return what ends a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rockflex.modal import FloorModes
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
-from rockflex.models._quantities import Quantities, joined
+from rockflex.models._quantities import Quantities, Share, collected, joined
 
 __all__ = ["floor_quantities", "modal_displacement", "quantities", "rotation_by_side"]
 
@@ -22,46 +22,44 @@ def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
     missing mass where the model counts it; `total_top_displacement` (m), zero where the height of the top is not known;
     `horizontal_reaction` (N), Eq. 21 for small rotations.
     """
-    return joined([_WHOLE[name](model) for name in names])
+    return collected(model.properties.n_modes, [_WHOLE[name](model) for name in names])
 
 
-def _top_displacement(model: ModalModel) -> Quantities:
-    p = model.properties
-    return Quantities.of(1, p.n_modes, displacement=p.top_ordinate)
+def _top_displacement(model: ModalModel) -> Share:
+    return LINEAR, {"displacement": model.properties.top_ordinate}
 
 
-def _base_moment(model: ModalModel) -> Quantities:
+def _base_moment(model: ModalModel) -> Share:
     p = model.properties
     return _base_force(model, p.effective_mass * p.effective_height, 1)
 
 
-def _base_shear(model: ModalModel) -> Quantities:
+def _base_shear(model: ModalModel) -> Share:
     return _base_force(model, model.properties.effective_mass, 0)
 
 
-def _base_force(model: ModalModel, masses: Array, moment: int) -> Quantities:
+def _base_force(model: ModalModel, masses: Array, moment: int) -> Share:
     """Σ m* h*^k ω² D, less Σ m_i h_i^k (a + h_i θ'') of the masses left out, which move with the base."""
-    n = model.properties.n_modes
     if not model.missing_mass:
-        return Quantities.of(1, n, restoring=masses)
+        return LINEAR, {"restoring": masses}
     left = model.properties.mass_left_out
-    return Quantities.of(1, n, LEFT_OUT, restoring=masses, ground=-left[moment], turn=-left[moment + 1])
+    return LEFT_OUT, {"restoring": masses, "ground": -left[moment], "turn": -left[moment + 1]}
 
 
-def _total_top_displacement(model: ModalModel) -> Quantities:
+def _total_top_displacement(model: ModalModel) -> Share:
     p = model.properties
     if not p.top_height:
-        return Quantities.of(1, p.n_modes)
-    return Quantities.of(1, p.n_modes, SWAY, displacement=p.top_ordinate, rotation=p.top_height)
+        return LINEAR, {}
+    return SWAY, {"displacement": p.top_ordinate, "rotation": p.top_height}
 
 
-def _horizontal_reaction(model: ModalModel) -> Quantities:
+def _horizontal_reaction(model: ModalModel) -> Share:
     """ΣF_x = m_tot a + L_0^r θ'' + Σ m* D''."""
     p = model.properties
-    return Quantities.of(1, p.n_modes, HORIZONTAL, acceleration=p.effective_mass, turn=p.l0r, ground=p.m_tot)
+    return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.m_tot}
 
 
-_WHOLE: dict[str, Callable[[ModalModel], Quantities]] = {
+_WHOLE: dict[str, Callable[[ModalModel], Share]] = {
     "top_displacement": _top_displacement,
     "base_moment": _base_moment,
     "base_shear": _base_shear,

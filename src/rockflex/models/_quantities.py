@@ -7,19 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._values import Value
 from rockflex.models._elements import CLOSED, RIGHT
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
 
-__all__ = ["Quantities", "joined", "lost_support_row", "rows_of"]
+__all__ = ["Quantities", "Share", "collected", "joined", "lost_support_row", "rows_of"]
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Quantities(Value):
+class Quantities:
     """F quantities, each a sum of these shares.
 
     Attributes
@@ -67,6 +66,19 @@ class Quantities(Value):
         """What a quantity that bends in large rotations needs beside its row: `rockflex.models.observe`, (F, 2)."""
         near = np.where(self.kinds == SWAY, self.rotation, np.where(self.kinds == LEFT_OUT, -self.ground, 0.0))
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -self.turn, 0.0)))
+
+
+Share = tuple[int, dict[str, Any]]  # the kind of one quantity, and its shares by name
+
+
+def collected(modes: int, shares: Sequence[Share]) -> Quantities:
+    """Return one quantity for each kind and its shares."""
+    total = Quantities.of(len(shares), modes)
+    for k, (kind, values) in enumerate(shares):
+        total.kinds[k] = kind
+        for name, share in values.items():
+            getattr(total, name)[k] = share
+    return total
 
 
 NAMES = tuple(each.name for each in fields(Quantities))

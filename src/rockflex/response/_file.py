@@ -22,6 +22,7 @@ from rockflex.models import (
     NonlinearModel,
     Restitution,
     RockingModel,
+    SidedRestitution,
     VVELComplete,
     VVELSimplified,
 )
@@ -50,6 +51,7 @@ LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "VVELSimplified": VVELSimplified,
     "VVELComplete": VVELComplete,
     "Restitution": Restitution,
+    "SidedRestitution": SidedRestitution,
     "ForgottenLaw": ForgottenLaw,
 }
 FLOOR_MODES = ("heights", "displacement", "force")
@@ -145,6 +147,13 @@ def _described(law: ImpactLaw) -> dict[str, Any]:
     return {"law": "ForgottenLaw", "description": repr(law), "keeps": str(law.keeps), "loses": str(law.loses)}
 
 
+def _law(parameters: dict[str, Any]) -> ImpactLaw:
+    name = parameters.pop("law")
+    if name == "SidedRestitution":
+        parameters = {edge: Restitution(**each) for edge, each in parameters.items()}
+    return LAWS[name](**parameters)
+
+
 def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     values = {name: arrays[f"properties.{name}"] for name in PROPERTIES}
     values = {name: value if value.ndim else float(value) for name, value in values.items()}
@@ -157,7 +166,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     properties = RockingProperties(**values, floors=floors, tendons=tendons, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
-    law = LAWS[parameters.pop("law")](**parameters)
+    law = _law(parameters)
     if "complete" not in scalars:
         return LinearModel(scalars["model"], properties, lifts, law, missing)
     bouc_wen = None if scalars["bouc_wen"] is None else BoucWen(**scalars["bouc_wen"])

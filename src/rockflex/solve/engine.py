@@ -53,9 +53,13 @@ _closed_form, _integrated = Entry(run), Entry(run)
 
 def preparing(model: RockingModel) -> AbstractContextManager[None]:
     """Tell failures of arithmetic, met while an engine is made ready, in terms of the model's parameters."""
+    return computable(lambda: _described(model))
+
+
+def _described(model: RockingModel) -> str:
     p = model.properties
     modes = f"omega from {p.omega.min():.3g} to {p.omega.max():.3g} rad/s, " if p.n_modes else ""
-    return computable(
+    return (
         f"The motion of {model.label} with {modes}i_theta = {p.i_theta:.3g} kg m², l0r = {p.l0r:.3g} kg m, "
         f"m_tot = {p.m_tot:.3g} kg and half_width = {p.half_width:.3g} m"
     )

@@ -4,7 +4,6 @@ import numpy as np
 
 from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
-from rockflex.solve.exact.closed_form import accelerations_in
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
 from rockflex.solve.layout import BESIDE, FOLLOWS, Array, System
 
@@ -48,7 +47,7 @@ class CompiledPhases:
             twin = self._alike(phase.arrow)
             known = None if twin < 0 else self._bases[twin]
             if known is None:
-                basis = basis_of(model, phase.arrow, accelerations_in(model, key))
+                basis = basis_of(model, phase.arrow, model.accelerations(key))
             else:
                 basis = with_constant(known, phase.arrow)
         self._phases.append(phase)

@@ -5,17 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
-from rockflex.models import GROUND, HEADER, SIDE, TIME, Key, LinearModel, RockingModel
+from rockflex.models import GROUND, HEADER, SIDE, TIME, LinearModel
 from rockflex.solve.exact.basis import Basis, basis_of
 from rockflex.solve.exact.tables import propagate
 from rockflex.solve.layout import Array
 
-__all__ = ["ClosedForm", "accelerations_in"]
-
-
-def accelerations_in(model: RockingModel, key: Key) -> Array:
-    """D'' and q'' in a phase: rows, shape (N + b, C)."""
-    return np.vstack((model.modal_accelerations(key), model.angular_acceleration(key)))
+__all__ = ["ClosedForm"]
 
 
 class ClosedForm:
@@ -34,7 +29,7 @@ class ClosedForm:
     def _bases(self) -> dict[int, Basis]:
         keys = {side: self._model.start(side) for side in self._model.sides}
         return {
-            side: basis_of(self._model, self._model.arrow(key), accelerations_in(self._model, key))
+            side: basis_of(self._model, self._model.arrow(key), self._model.accelerations(key))
             for side, key in keys.items()
         }
 

@@ -58,18 +58,22 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
         elif k == 1:
             drive = square * step * span.slope
         pair = 1.0 / ((k + 2.0) * (k + 1.0))
-        for j in range(freedoms):
+        # The first freedom's sum is kept in a register, and the others' in memory.
+        pushed = 0.0
+        for j in range(1, freedoms):
             motion.push[j] = 0.0
         for i in range(n):
             restoring = system.modes[DRAG, i] * step * (k + 1.0) * series[i, k + 1]
             restoring += system.modes[OMEGA2, i] * square * series[i, k]
             series[i, k + 2] = -(restoring + drive) * pair
-            for j in range(freedoms):
+            pushed += system.border[phase, 0, LEVERAGE, i] * restoring
+            for j in range(1, freedoms):
                 motion.push[j] += system.border[phase, j, LEVERAGE, i] * restoring
         for j in range(freedoms):
             series[n + j, k + 2] = 0.0
         if not free:
             continue
+        motion.push[0] = pushed
         for j in range(freedoms):
             force = system.push[phase, DRIVE, j] * drive
             for m in range(freedoms):
