@@ -29,8 +29,9 @@ def computable(what: str | Callable[[], str]) -> Generator[None]:
             yield
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         words = error.args[-1] if error.args else type(error).__name__
+        subject = what if isinstance(what, str) else what()
         message = (
-            f"{what if isinstance(what, str) else what()} cannot be computed: numbers arise that double precision cannot hold ({words}). Check the units "
+            f"{subject} cannot be computed: numbers arise that double precision cannot hold ({words}). Check the units "
             "(kg, m, s, N, rad throughout), and whether values that belong together are many orders of magnitude apart."
         )
         raise InputError(message) from error

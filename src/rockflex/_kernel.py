@@ -22,8 +22,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 def kernel(function: F) -> F:
     """Compile with numba: no interpreter lock, cached on disk, fused multiply-adds allowed.
 
-    A kernel writes into the arrays that it is given; it can neither make an array nor return one. Other kernels can call
-    it, and Python cannot: see `python_kernel`.
+    A kernel writes into the arrays that it is given; it can neither make an array nor return one. It is made for other
+    kernels; Python can call it too, after compiling a way in: see `python_kernel`.
     """
     return cast("F", compiled(function, sources_digest(), within=True))
 

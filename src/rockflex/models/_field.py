@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 
 EXTRA = 4  # components after those of the simplified models
 
-# Places in `Field.modes`, and of each pivot in `Field.pivots`: its distance B from the axis of the masses, I_θ about it,
-# and over the tendons Σ F_0 r, Σ k r² and Σ k r, where r is the distance of a tendon.
+# Places in `Field.modes`, and of each pivot in `Field.pivots`: its distance B from the axis of the masses, I_θ about
+# it, and over the tendons Σ F_0 r, Σ k r² and Σ k r, where r is the distance of a tendon.
 OMEGA2, DRAG, HEIGHT, MASS = 0, 1, 2, 3
 ARM, INERTIA, PRESTRESS, STIFFNESS, PULL = 0, 1, 2, 3, 4
 

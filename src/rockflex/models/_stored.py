@@ -49,7 +49,7 @@ def tendon_energy(model: RockingModel, states: Array) -> Array:
 
 
 def stretch_per_arm(model: RockingModel, turn: Array) -> Array:
-    """Elongation of a tendon over its distance from the pivot, at |θ| in rad: 2 sin(|θ|/2), or |θ| where it is small."""
+    """Elongation of a tendon over its distance from the pivot, at |θ| in rad: 2 sin(|θ|/2), or |θ| if it is small."""
     return 2.0 * np.sin(0.5 * turn) if model.complete else turn
 
 

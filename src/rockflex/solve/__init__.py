@@ -5,7 +5,7 @@ from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.engine import Engine, preparing
 from rockflex.solve.exact.closed_form import ClosedForm
-from rockflex.solve.interruption import RunStoppedError, stopping_when
+from rockflex.solve.interruption import RunStoppedError, asked_to_stop, stopping_when
 
 __all__ = [
     "ClosedForm",
@@ -16,6 +16,7 @@ __all__ = [
     "Task",
     "Work",
     "WorkLimitError",
+    "asked_to_stop",
     "pace_of",
     "preparing",
     "stopping_when",

@@ -33,7 +33,7 @@ from rockflex.solve.layout import (
 )
 from rockflex.solve.peaks import raise_peak, raise_to
 
-__all__ = ["begin", "first_exit", "free_inertia", "move", "note_peaks", "prepare_guard", "turning_rate"]
+__all__ = ["begin", "first_exit", "free_inertia", "move", "turning_rate"]
 
 
 @kernel
@@ -50,72 +50,34 @@ def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) ->
 
 
 @kernel
-def prepare_guard(system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion) -> None:
-    """Fill in the guard's polynomial over the stretch."""
-    p = at.phase
+def first_exit(
+    system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion
+) -> tuple[float, int, float]:
+    """Where the phase ends within the stretch, by the polynomial of its guard: see `phase_exit`."""
     if steps is None:
-        expand(system, p, motion, span, at.lift)
-        row_series(system, p, GUARD, motion, span)
-    else:
-        if system.phases[p].linear:
-            expand(system, p, motion, span, at.lift)
-            row_series(system, p, GUARD, motion, span)
-        else:
-            extend(steps.flow, system.phases[p].side, span, steps.room)
-            row_poly(system, p, GUARD, span, steps.room)
-            if not math.isnan(at.lift):
-                # θ and θ' start from zero and θ'' from what the guard says, all of them exactly.
-                steps.room.polys[GUARD, 0] = steps.room.polys[GUARD, 1] = 0.0
-                steps.room.polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
-
-
-@kernel
-def first_exit(system: System, steps: Integrator | None, at: Progress, motion: Motion) -> tuple[float, int, float]:
-    """Where the phase ends: see `phase_exit`."""
-    if steps is None:
-        return phase_exit(system, at, motion.polys)
+        return exit_of_series(system, at, span, motion)
     if system.phases[at.phase].linear:
-        return phase_exit(system, at, motion.polys)
-    return phase_exit(system, at, steps.room.polys)
+        return exit_of_series(system, at, span, motion)
+    return exit_of_step(system, steps.flow, at, span, steps.room)
 
 
 @kernel
-def note_peaks(
-    system: System, steps: Integrator | None, at: Progress, span: Span, stop: float, log: Log, motion: Motion
-) -> None:
-    """Raise the peaks over [0, stop] of the stretch."""
-    if steps is None:
-        note_of_series(system, at, span, stop, log, motion)
-    else:
-        if system.phases[at.phase].linear:
-            note_of_series(system, at, span, stop, log, motion)
-        else:
-            note_of_step(system, steps.flow, at, span, stop, log, steps.room)
+def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> tuple[float, int, float]:
+    expand(system, at.phase, motion, span, at.lift)
+    row_series(system, at.phase, GUARD, motion, span)
+    return phase_exit(system, at, motion.polys)
 
 
 @kernel
-def note_of_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
-    p = at.phase
-    if system.phases[p].side != 0.0:
-        raise_peak(motion.polys, GUARD, stop, span, log)
-    for f in range(1, log.peaks.size):
-        if at.fresh_rows or motion.flags[DOUBT, f]:
-            row_series(system, p, f, motion, span)
-            raise_peak(motion.polys, f, stop, span, log)
-
-
-@kernel
-def note_of_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, room: Stages) -> None:
-    p = at.phase
-    side = system.phases[p].side
-    if side != 0.0:
-        raise_peak(room.polys, GUARD, stop, span, log)
-        if flow.field.complete:
-            raise_curves(system, flow, p, span, stop, log, room)
-    for f in range(1, log.peaks.size):
-        if not is_curved(flow, f, side):
-            row_poly(system, p, f, span, room)
-            raise_peak(room.polys, f, stop, span, log)
+def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Stages) -> tuple[float, int, float]:
+    p, polys = at.phase, room.polys
+    extend(flow, system.phases[p].side, span, room)
+    row_poly(system, p, GUARD, span, room)
+    if not math.isnan(at.lift):
+        # θ and θ' start from zero and θ'' from what the guard says, all of them exactly.
+        polys[GUARD, 0] = polys[GUARD, 1] = 0.0
+        polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
+    return phase_exit(system, at, polys)
 
 
 @kernel
@@ -129,27 +91,49 @@ def move(
     log: Log,
     motion: Motion,
 ) -> None:
-    """Put the motion at the fraction `stop` of the stretch; `turns`: a hysteretic spring turns there."""
-    if steps is None:
+    """Put the motion at the fraction `stop` of the stretch, and raise the peaks up to there.
+
+    `turns`: a hysteretic spring turns there.
+    """
+    if steps is None or system.phases[at.phase].linear:
         move_by_series(system, at, span, stop, log, motion)
     else:
-        if system.phases[at.phase].linear:
-            move_by_series(system, at, span, stop, log, motion)
-        elif stop == 1.0:
-            step_over(steps.room)
-        else:
-            settle_on(stop, steps.room)
-            if turns:
-                motion.state[system.layout.modes] = -steps.room.at.branch * BARELY
+        move_by_step(system, steps.flow, at, span, stop, log, steps.room)
+        if turns:
+            motion.state[system.layout.modes] = -steps.room.at.branch * BARELY
 
 
 @kernel
 def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
+    p = at.phase
+    if system.phases[p].side != 0.0:
+        raise_peak(motion.polys, GUARD, stop, span, log)
     advance(system, motion, stop, span.length)
     time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop
     for f in range(1, log.peaks.size):
-        if not (at.fresh_rows or motion.flags[DOUBT, f]):
-            raise_to(system, at.phase, f, ground, time, log, motion)
+        if at.fresh_rows or motion.flags[DOUBT, f]:
+            row_series(system, p, f, motion, span)
+            raise_peak(motion.polys, f, stop, span, log)
+        else:
+            raise_to(system, p, f, ground, time, log, motion)
+
+
+@kernel
+def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, room: Stages) -> None:
+    p = at.phase
+    side = system.phases[p].side
+    if side != 0.0:
+        raise_peak(room.polys, GUARD, stop, span, log)
+        if flow.field.complete:
+            raise_curves(system, flow, p, span, stop, log, room)
+    for f in range(1, log.peaks.size):
+        if not is_curved(flow, f, side):
+            row_poly(system, p, f, span, room)
+            raise_peak(room.polys, f, stop, span, log)
+    if stop == 1.0:
+        step_over(room)
+    else:
+        settle_on(stop, room)
 
 
 @kernel

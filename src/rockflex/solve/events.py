@@ -8,7 +8,7 @@ from rockflex.solve.adaptive.check import nothing_hides
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.adaptive.step import FAILED, forget, step_over
 from rockflex.solve.adaptive.turning import turning
-from rockflex.solve.carrier import begin, first_exit, free_inertia, move, note_peaks, prepare_guard, turning_rate
+from rockflex.solve.carrier import begin, first_exit, free_inertia, move, turning_rate
 from rockflex.solve.exits import INSIDE, LIFTED, PASSING, TOUCHED
 from rockflex.solve.history import keep, room_left
 from rockflex.solve.layout import (
@@ -85,7 +85,8 @@ def cross(
 ) -> int:
     """Carry the state on from `at.begun`, event by event, to a place on the grid or to the sample's end.
 
-    It ends on the grid where the phase is linear, and nothing else is to happen up to there. Where it pauses, `at` holds all that it must know to go on.
+    It ends on the grid where the phase is linear and nothing else is to happen up to there. Where it pauses, `at` holds
+    all that it must know to go on.
     """
     while at.begun < sample.length:
         if log.work[LEFT] < 0.0 or room_left(log) < 0:
@@ -113,8 +114,7 @@ def cross(
             step_over(steps.room)
             at.begun = sample.length if whole else at.begun + length
             continue
-        prepare_guard(system, steps, at, span, motion)
-        stop, bound, excess = first_exit(system, steps, at, motion)
+        stop, bound, excess = first_exit(system, steps, at, span, motion)
         event = system.links[p, EVENT + bound]
         if stop < 0.0:
             at.lacking = lacks(system, at, event, bound, impact)
@@ -151,7 +151,6 @@ def cross(
             log.tally[EVENTS] += 1
             keep(log, now, 0.0, here, motion.state)
             keep(log, now, side, here, motion.state)
-        note_peaks(system, steps, at, span, stop, log, motion)
         move(system, steps, at, span, stop, turns, log, motion)
         at.begun = sample.length if whole and stop == 1.0 and not linear else at.begun + stop * length
         at.onset, at.lift = INSIDE, np.nan

@@ -4,7 +4,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-__all__ = ["RunStoppedError", "check_interruption", "stopping_when"]
+__all__ = ["RunStoppedError", "asked_to_stop", "check_interruption", "stopping_when"]
 
 _ASKED: ContextVar[Callable[[], bool] | None] = ContextVar("asked", default=None)
 
@@ -24,6 +24,15 @@ def stopping_when(asked: Callable[[], bool]) -> Generator[None]:
         yield
     finally:
         _ASKED.reset(token)
+
+
+def asked_to_stop() -> Callable[[], bool]:
+    """Return the question that the runs of this thread are stopped by, for those that it starts in other threads."""
+    return _ASKED.get() or _never
+
+
+def _never() -> bool:
+    return False
 
 
 def check_interruption() -> None:
