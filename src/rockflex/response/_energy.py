@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.models import GROUND, HEADER, SIDE, TIME, LinearModel, RockingModel, stored_energies, tendon_energy
+from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, stored_energies, tendon_energy
 from rockflex.solve import ClosedForm
 
 __all__ = ["EnergyLedger", "energy_ledger", "is_impact"]
@@ -91,7 +91,7 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
     losses = kinetic[impact] - kinetic[impact + 1]
     lost = np.zeros(nodes.shape[0])
     np.add.at(lost, impact + 1, losses)
-    damped, work = _work(model.linear, nodes)
+    damped, work = _work(model, nodes)
     yielded = np.zeros(damped.size)
     if model.integrated:
         integrated = (nodes[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
@@ -119,7 +119,7 @@ def is_impact(model: RockingModel, nodes: Array) -> NDArray[np.bool_]:
     return same_time & rocking & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
 
 
-def _work(model: LinearModel, nodes: Array) -> tuple[Array, Array]:
+def _work(model: RockingModel, nodes: Array) -> tuple[Array, Array]:
     """Energy damped and put in between neighbouring nodes, (n_nodes - 1,) each, by Gauss quadrature."""
     p = model.properties
     n = p.n_modes

@@ -48,7 +48,7 @@ class Friction:
         self._nodes = nodes
         self._printed = printed
         self._rates = accelerations(model, nodes)
-        self._linear = None if model.bouc_wen is not None else ClosedForm(model.linear)
+        self._linear = None if model.bouc_wen is not None else ClosedForm(model)
         p = model.properties
         # By which the frequencies rise at most, once uplifted.
         scale = max(math.sqrt(p.pivot(side).i_theta / model.free_inertia(side)) for side in (1, -1))
