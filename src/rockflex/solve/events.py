@@ -102,7 +102,7 @@ def cross(
             longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
         length = begin(system, steps, at, Span(now, sample.until, here, sample.slope, longest))
         if length == FAILED:
-            return PAUSED if log.work[LEFT] < 0.0 else STALLED
+            return STALLED
         span = Span(now, sample.until, here, sample.slope, length)
         whole = length == longest
         if (

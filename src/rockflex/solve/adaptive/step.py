@@ -29,9 +29,10 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 @kernel
 def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
-    """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`, also where no work is left.
+    """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`.
 
-    `room.vectors[TRIAL]` holds the end of the step, `room.rates` the stages up to it.
+    `room.vectors[TRIAL]` holds the end of the step, `room.rates` the stages up to it. The work is counted, and looked at
+    between steps alone: what was learnt of a step in the midst of its tries would be lost.
     """
     longest = rest.length
     step = min(room.at.step, longest)
@@ -44,8 +45,6 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     most = MOST
     while True:
         room.work[LEFT] -= room.work[STEP]
-        if room.work[LEFT] < 0.0:
-            return FAILED
         for stage in range(1, LAST + 1):
             place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL])
             field_rates(
