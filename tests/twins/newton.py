@@ -273,7 +273,7 @@ def _phase(model, result, y, side, start, first, last, dt):
         top = seen[k, f]
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
         room = np.ptp(seen[max(k - 1, 0) : k + 2, f])
-        if low < grid[k] < high and top + room > best[f]:
+        if low < high and top + room > best[f]:  # also beside an end of the piece
             found = minimize_scalar(lambda t, f=f: -values(t)[f], bounds=(low, high), method="bounded",
                                     options={"xatol": 1e-9})  # fmt: skip
             top = max(top, -found.fun)
