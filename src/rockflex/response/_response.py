@@ -216,14 +216,15 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
     p = model.properties
     rotation, peaks = float(solution.peaks[0]), solution.peaks[1:]
     right = left = rotation
-    end = len(GLOBAL)
+    end = count = len(GLOBAL)
     if not p.symmetric:
         right, left = peaks[end : end + 2].tolist()
         end += 2
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0 or rotation > 0.0
     status = "rocking" if left_ground else "no_uplift"
-    known = {f"max_{name}": float(peaks[k]) for k, name in enumerate(GLOBAL)}
-    times = {f"time_of_max_{name}": float(solution.peak_times[1 + k]) for k, name in enumerate(GLOBAL)}
+    known = {f"max_{name}": value for name, value in zip(GLOBAL, peaks[:count].tolist(), strict=True)}
+    at = solution.peak_times[1 : 1 + count].tolist()
+    times = {f"time_of_max_{name}": value for name, value in zip(GLOBAL, at, strict=True)}
     if p.top_height is None:
         known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
     force, utilisation = largest_tendon_force(model, right, left)
