@@ -41,9 +41,9 @@ def compiled():
 
 def test_a_run_that_is_asked_to_stop():
     begun = monotonic()
-    with pytest.raises(RunStoppedError, match=r"^The run was stopped before its end\.$"):
-        with stopping_when(lambda: monotonic() - begun > ASKED):
-            long_run()
+    expected = pytest.raises(RunStoppedError, match=r"^The run was stopped before its end\.$")
+    with expected, stopping_when(lambda: monotonic() - begun > ASKED):
+        long_run()
     assert monotonic() - begun < SOON
 
 
@@ -66,10 +66,9 @@ def test_threads_stop_with_the_map_and_with_whoever_started_it():
     runs.close()
     assert monotonic() - begun < SOON
     asked = Event()
-    with stopping_when(asked.is_set):
-        Timer(ASKED, asked.set).start()
-        with pytest.raises(RunStoppedError):
-            list(map_runs(run, [1, 2], 2))
+    Timer(ASKED, asked.set).start()
+    with stopping_when(asked.is_set), pytest.raises(RunStoppedError):
+        list(map_runs(run, [1, 2], 2))
     assert monotonic() - begun < 2.0 * SOON
 
 
