@@ -68,7 +68,9 @@ def test_an_arrow_solved_for_the_rotation_is_its_angular_acceleration(n, name, s
     row[:n], row[n : 2 * n] = arrow.leverage[0] * p.omega**2, arrow.leverage[0] * 2.0 * p.zeta * p.omega
     row[2 * n], row[2 * n + 1] = -arrow.stiffness[0, 0], -arrow.damping[0, 0]
     row[-2], row[-1] = arrow.drive[0], arrow.constant[0]
-    np.testing.assert_allclose(row / left, tied.angular_acceleration(key), rtol=1e-12, atol=1e-12 * np.abs(row).max() / left)
+    np.testing.assert_allclose(
+        row / left, tied.angular_acceleration(key), rtol=1e-12, atol=1e-12 * np.abs(row).max() / left
+    )
     assert arrow.free
 
 
@@ -122,7 +124,8 @@ def test_borders_of_tendons_add_up_to_those_of_the_pivot(name, side):
     assert sum(each.stiffness[0, 0] for each in borders) == pytest.approx(pivot.tendon_stiffness, rel=1e-13)
     assert sum(each.constant[0] for each in borders) == pytest.approx(-side * pivot.prestress_moment, rel=1e-13)
     for each in borders:
-        assert not (each.inertia.any() or each.damping.any() or each.ground.any())
+        for nothing in (each.inertia, each.damping, each.ground):
+            assert not nothing.any()
     whole = border_of(tied.elements, key)
     assert whole.inertia[0, 0] == pivot.i_theta
     assert whole.stiffness[0, 0] == pytest.approx(pivot.rocking_stiffness, rel=1e-12)

@@ -52,7 +52,7 @@ def assert_uncoupled(bases, system, places):
     assert [each.dense for each in bases] == [False, False]
     assert not system.phases.dense.any()
     assert system.propagator.size == 0
-    assert not places[0] == places[1]
+    assert places[0] != places[1]
 
 
 def assert_same_peaks(one, other, rtol):

@@ -121,7 +121,11 @@ def test_forced_motion_under_a_linear_acceleration(name, phase):
     out, into = system.basis[phase, OUT], system.basis[phase, INTO]
     fastest, side = engine._phases._bases[phase].fastest, SIDES[phase]
     by_a, by_slope, by_side = system.forced[phase] @ out
-    for steady, rate, push in ((by_a, 0.0, drive[:, 0]), (by_slope, by_a, drive[:, 1]), (by_side, 0.0, side * drive[:, 2])):
+    for steady, rate, push in (
+        (by_a, 0.0, drive[:, 0]),
+        (by_slope, by_a, drive[:, 1]),
+        (by_side, 0.0, side * drive[:, 2]),
+    ):
         left = (moved @ steady + push - rate) @ into
         size = fastest * np.abs(steady @ into).max() + np.abs(push @ into).max()
         assert np.abs(left).max() <= 1e-12 * size
