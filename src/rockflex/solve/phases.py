@@ -47,9 +47,9 @@ class CompiledPhases:
             twin = self._alike(phase.arrow)
             known = None if twin < 0 else self._bases[twin]
             if known is None:
-                basis = basis_of(model, phase.arrow, model.accelerations(key))
-            else:
-                basis = with_constant(known, phase.arrow)
+                known = basis_of(model, phase.arrow, model.accelerations(key))
+            # Every phase takes the constant forces in the same way: the bits must not depend on which was met first.
+            basis = with_constant(known, phase.arrow) if phase.arrow.free else known
         self._phases.append(phase)
         self._bases.append(basis)
         self._rows.append(rows)

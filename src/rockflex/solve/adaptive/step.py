@@ -31,7 +31,7 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`.
 
-    `room.vectors[TRIAL]` holds the end of the step, `room.rates` the stages up to it. The work is counted, and looked at
+    `room.vectors[TRIAL]` holds the end of the step, `room.rates` the stages up to it. The work is counted and looked at
     between steps alone: what was learnt of a step in the midst of its tries would be lost.
     """
     longest = rest.length
