@@ -163,7 +163,8 @@ class Engine:
                 with preparing(self.model):
                     self._phases.meet(int(at.phase), int(at.lacking))
                 if self._phases.dense:
-                    replace(task, pace=replace(self.pace, dense=True)).check(work_limit)
+                    fastest = max(self.pace.fastest, self._phases.fastest)
+                    replace(task, pace=replace(self.pace, fastest=fastest, dense=True)).check(work_limit)
             elif status != Status.PAUSED:
                 break
             elif left < 0.0:

@@ -1,5 +1,7 @@
 """The phases of a model, compiled as they are met, and their tables for a time step."""
 
+from threading import RLock
+
 import numpy as np
 
 from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
@@ -16,6 +18,8 @@ CAPACITY = 3  # phases that there is room for at first: contact, and rocking on 
 class CompiledPhases:
     """All phases of one model that were met so far.
 
+    Threads may run on the same phases: a phase is entered under a lock, at a place that no run knows of before it is whole.
+
     Parameters
     ----------
     model
@@ -25,6 +29,7 @@ class CompiledPhases:
     """
 
     def __init__(self, model: RockingModel, quantities: Quantities) -> None:
+        self._lock = RLock()
         self._model = model
         self._quantities = quantities
         self._phases: list[Phase] = []
@@ -39,6 +44,10 @@ class CompiledPhases:
         known = self._places.get(key)
         if known is not None:
             return known
+        with self._lock:
+            return self._places[key] if key in self._places else self._compiled(key)
+
+    def _compiled(self, key: Key) -> int:
         model = self._model
         phase = model.phase(key)
         rows = np.vstack((phase.guards[0].row, rows_of(model, self._quantities, key), lost_support_row(model, key)))
@@ -82,9 +91,11 @@ class CompiledPhases:
 
         In rad/s; the tables only grow where the bound was too low.
         """
-        known = self.known_system(dt)
-        if known is not None:
-            return known
+        with self._lock:
+            known = self.known_system(dt)
+            return self._entered(dt, fastest) if known is None else known
+
+    def _entered(self, dt: float, fastest: float) -> System:
         system, entered = self._systems.get(dt, (None, 0))
         count = len(self._phases)
         levels = max((levels_of(basis.fastest, dt) for basis in self._bases if basis is not None), default=0)
@@ -118,7 +129,12 @@ class CompiledPhases:
     @property
     def dense(self) -> bool:
         """Whether some phase met so far does not uncouple, so that its bounds are computed point by point."""
-        return any(basis is not None and basis.dense for basis in self._bases)
+        return any(basis.dense for basis in self._bases if basis is not None)
+
+    @property
+    def fastest(self) -> float:
+        """Largest eigenvalue magnitude of the linear phases met so far, rad/s."""
+        return max((basis.fastest for basis in self._bases if basis is not None), default=0.0)
 
     def _link(self, system: System) -> None:
         """Enter which phase leads to which, as far as they were met."""
