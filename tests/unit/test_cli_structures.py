@@ -270,7 +270,7 @@ def test_not_toml(failing, tmp_path):
 def test_file_that_cannot_be_read(tmp_path):
     with pytest.raises(InputError, match=r"The structure file .*x\.toml does not exist \(working directory: "):
         load_structure(tmp_path / "x.toml", NO_FLAGS)
-    with pytest.raises(InputError, match=r"The structure file .* cannot be read: Is a directory\."):
+    with pytest.raises(InputError, match=r" is a folder, but a regular file is expected\. Give a file in it\.$"):
         load_structure(tmp_path, NO_FLAGS)
 
 
