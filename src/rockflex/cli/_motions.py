@@ -9,15 +9,7 @@ from typing import Any, Literal
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import (
-    GroundMotion,
-    OnError,
-    folder_files,
-    load_suite,
-    quiet_motion,
-    read_files,
-    suite_names,
-)
+from rockflex.motion import GroundMotion, OnError, folder_files, load_suite, quiet_motion, read_files, suite_names
 
 __all__ = ["FoundMotion", "embedded_suites", "find_motions", "quiet_ground"]
 
