@@ -14,7 +14,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
 from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, NonlinearModel, Quantities, RockingModel, impact_of
-from rockflex.solve._pace import Pace, quick_pace
+from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
 from rockflex.solve.adaptive.layout import Flow, Integrator, stages_of
@@ -92,7 +92,7 @@ class Engine:
     @cached_property
     def pace(self) -> Pace:
         """What the work of its runs grows with."""
-        return quick_pace(self.model, self._n_rows)
+        return pace_of(self.model, self._n_rows)
 
     def task(
         self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None = 0.0, *, history: bool = False
