@@ -10,44 +10,56 @@ from typing import Any, cast
 
 from numba import njit, typeof
 
-__all__ = ["compiled", "direct"]
+__all__ = ["compiled", "compiled_within", "direct"]
 
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
 # A kernel that only kernels call needs no way in from Python, which takes as long to compile as the kernel.
 WITHIN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+PIPELINE: dict[str, Any] = {}
+with suppress(ImportError, AttributeError):  # else every kernel is compiled on its own
+    from rockflex._numba_pipeline import Intermediate
+
+    PIPELINE["pipeline_class"] = Intermediate
 
 
-def compiled(function: Callable[..., Any], stamp: str, *, within: bool) -> Any:
-    """Compile at the first call, and keep the result on disk for as long as the stamp is the same.
-
-    With `within`, it is made for other kernels: Python can call it too, but must compile a way in.
+def compiled(function: Callable[..., Any], stamp: str) -> Any:
+    """Compile for Python at the first call, and keep the result on disk for as long as the stamp is the same.
 
     numba's own stamp sees a change of a kernel's own file alone, not of the kernels that were compiled into it. Where
     the stamp cannot be set, nothing is kept, for it could be out of date.
     """
     try:
-        kernel = _without_counts(function, within=within, cache=True)
+        kernel = _without_counts(function, {"cache": True})
     except RuntimeError:  # numba finds no folder that it may write
-        return _without_counts(function, within=within, cache=False)
+        return _without_counts(function, {})
     file: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
     if not hasattr(file, "_source_stamp"):
-        return _without_counts(function, within=within, cache=False)
+        return _without_counts(function, {})
     file._source_stamp = (file._source_stamp, stamp)
     return kernel
 
 
-def _without_counts(function: Callable[..., Any], *, within: bool, cache: bool) -> Any:
+def compiled_within(function: Callable[..., Any], *, inlined: bool) -> Any:
+    """Compile for other kernels, at the first call of one that Python calls; only the whole is kept on disk.
+
+    Python can call it too, but must compile a way in. With `inlined` its code becomes part of its callers.
+    """
+    options = {**WITHIN, **PIPELINE, "forceinline": inlined}
+    return _with_a_way_in(_without_counts(function, options))
+
+
+def _without_counts(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     """Without reference counts, whose atomic updates cost more than the arithmetic: kernels allocate nothing."""
     jit: Any = njit
-    options = {**OPTIONS, **WITHIN} if within else OPTIONS
     with suppress(Exception):  # whatever a version says of an option that it does not know
-        kernel = jit(_nrt=False, cache=cache, **options)(function)
+        kernel = jit(_nrt=False, **OPTIONS, **options)(function)
+        given = {"_nrt", *options} - {"cache", "pipeline_class"}
         if all(
-            hasattr(kernel.targetdescr.options, name) for name in ("_nrt", *options)
-        ):  # today's numba complains at the first call only
-            return _with_a_way_in(kernel) if within else kernel
-    return jit(cache=cache, **OPTIONS)(function)
+            hasattr(kernel.targetdescr.options, name) for name in given
+        ):  # today's numba complains at the first call
+            return kernel
+    return jit(**OPTIONS, **{name: value for name, value in options.items() if name == "cache"})(function)
 
 
 def _with_a_way_in(kernel: Any) -> Any:

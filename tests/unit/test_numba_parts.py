@@ -27,13 +27,14 @@ def missing():
         "a source stamp, without which kernels compile anew in every process": hasattr(
             getattr(getattr(run, "_cache", None), "_cache_file", None), "_source_stamp"
         ),
+        "a pipeline to change, without which kernels compile for twice as long and run slower": bool(_numba.PIPELINE),
         "an entry point, without which every call looks at all its arguments": direct_entry_is_had(),
     }
     return [name for name, there in parts.items() if not there]
 
 
 def direct_entry_is_had():
-    kernel, given = _numba.compiled(doubled, "stamp", within=False), (np.ones(2),)
+    kernel, given = _numba.compiled(doubled, "stamp"), (np.ones(2),)
     kernel(*given)
     return _numba.direct(kernel, given) is not kernel
 
@@ -65,7 +66,11 @@ def doubled(x):
     return x.size
 
 
-WITHIN = pytest.mark.parametrize("within", [False, True])
+def for_kernels(function, _stamp):
+    return _numba.compiled_within(function, inlined=False)
+
+
+FOR_ALL = pytest.mark.parametrize("compiled", [_numba.compiled, for_kernels])
 
 
 def says_the_same(kernel):
@@ -77,19 +82,19 @@ def options_of_numba():
     return [each for each in type(run).targetdescr.options.__mro__ if "_nrt" in vars(each)]
 
 
-@WITHIN
-def test_without_the_option_kernels_count_references(monkeypatch, within):
+@FOR_ALL
+def test_without_the_option_kernels_count_references(monkeypatch, compiled):
     """As numba is today, which refuses an option that it does not know at the first call."""
     for each in options_of_numba():
         monkeypatch.delattr(each, "_nrt")
-    kernel = _numba.compiled(unit_responses.py_func, "without the option", within=within)
+    kernel = compiled(unit_responses.py_func, "without the option")
     assert "_nrt" not in kernel.targetoptions
     assert says_the_same(kernel)
 
 
-@WITHIN
-@pytest.mark.parametrize("option", ["_nrt", "no_cpython_wrapper"])
-def test_an_option_that_is_refused_at_once_is_not_given(monkeypatch, option, within):
+@FOR_ALL
+@pytest.mark.parametrize("option", ["_nrt", "no_cpython_wrapper", "forceinline", "pipeline_class"])
+def test_an_option_that_is_refused_at_once_is_not_given(monkeypatch, option, compiled):
     def refuses(**options):
         if option in options:
             message = f"got an unexpected keyword argument {option!r}"
@@ -97,9 +102,9 @@ def test_an_option_that_is_refused_at_once_is_not_given(monkeypatch, option, wit
         return numba.njit(**options)
 
     monkeypatch.setattr(_numba, "njit", refuses)
-    kernel = _numba.compiled(doubled, "refused", within=within)
+    kernel = compiled(doubled, "refused")
     assert kernel.targetoptions["nogil"]
-    assert kernel.stats.cache_path is not None
+    assert (kernel.stats.cache_path is not None) == (compiled is _numba.compiled)
     assert kernel(np.ones(3)) == 3
 
 
@@ -111,9 +116,9 @@ def without_cache_file(kernel):
     kernel._cache = None
 
 
-@WITHIN
+@FOR_ALL
 @pytest.mark.parametrize("take_away", [without_stamp, without_cache_file])
-def test_without_a_stamp_nothing_is_kept_on_disk(monkeypatch, take_away, within):
+def test_without_a_stamp_nothing_is_kept_on_disk(monkeypatch, take_away, compiled):
     def later(**options):
         def decorate(function):
             kernel = numba.njit(**options)(function)
@@ -124,14 +129,14 @@ def test_without_a_stamp_nothing_is_kept_on_disk(monkeypatch, take_away, within)
         return decorate
 
     monkeypatch.setattr(_numba, "njit", later)
-    kernel = _numba.compiled(unit_responses.py_func, "stamp", within=within)
+    kernel = compiled(unit_responses.py_func, "stamp")
     assert kernel.stats.cache_path is None
     assert kernel.targetoptions["_nrt"] is False
     assert says_the_same(kernel)
 
 
-@WITHIN
-def test_without_a_folder_to_write_nothing_is_kept_on_disk(monkeypatch, within):
+@FOR_ALL
+def test_without_a_folder_to_write_nothing_is_kept_on_disk(monkeypatch, compiled):
     def homeless(**options):
         if options.get("cache"):
             message = "cannot cache function 'doubled': no locator available for file 'kernel.py'"
@@ -139,7 +144,7 @@ def test_without_a_folder_to_write_nothing_is_kept_on_disk(monkeypatch, within):
         return numba.njit(**options)
 
     monkeypatch.setattr(_numba, "njit", homeless)
-    kernel = _numba.compiled(doubled, "stamp", within=within)
+    kernel = compiled(doubled, "stamp")
     assert kernel.stats.cache_path is None
     assert kernel(np.ones(3)) == 3
 
@@ -164,7 +169,7 @@ def test_without_an_entry_point_the_kernel_itself_is_called():
 
 
 def test_a_kernel_of_several_types_has_one_entry_for_each():
-    kernel = _numba.compiled(doubled, "two", within=False)
+    kernel = _numba.compiled(doubled, "two")
     plain, strided = (np.ones(2),), (np.ones(4)[::2],)
     kernel(*plain)
     first = _numba.direct(kernel, plain)
@@ -181,7 +186,7 @@ def test_a_kernel_of_several_types_has_one_entry_for_each():
 
 def test_a_kernel_for_other_kernels_can_be_called_by_all():
     """It has no way in of its own, through which Python would crash; one is compiled at its first call."""
-    inner = _numba.compiled(doubled, "within", within=True)
+    inner = _numba.compiled_within(doubled, inlined=False)
     assert inner.targetoptions["no_cpython_wrapper"]
     first, second = np.ones(3), np.ones(4)[::2]
     assert [inner(first), inner(second), inner(first)] == [3, 2, 3]
@@ -190,10 +195,38 @@ def test_a_kernel_for_other_kernels_can_be_called_by_all():
     def twice(x):
         return inner(x) + inner(x)
 
-    outer = _numba.compiled(twice, "outer", within=False)
+    outer = _numba.compiled(twice, "outer")
     third = np.ones(2)
     assert outer(third) == 4
     assert third.tolist() == [4.0, 4.0]
+
+
+@pytest.mark.parametrize("pipeline", [True, False])
+@pytest.mark.parametrize("inlined", [True, False])
+def test_kernels_compute_the_same_however_they_are_compiled(monkeypatch, pipeline, inlined):
+    if not pipeline:
+        monkeypatch.setattr(_numba, "PIPELINE", {})
+    inner = _numba.compiled_within(doubled, inlined=inlined)
+
+    def thrice(x):
+        return inner(x) + inner(x) + inner(x)
+
+    middle = _numba.compiled_within(thrice, inlined=inlined)
+    outer = _numba.compiled(lambda x: middle(x), "whole")
+    x = np.ones(2)
+    assert outer(x) == 6
+    assert x.tolist() == [8.0, 8.0]
+    assert inner(x) == 2  # after it was compiled into others
+    assert x.tolist() == [16.0, 16.0]
+
+
+def test_only_the_whole_is_made_into_machine_code():
+    inner = _numba.compiled_within(doubled, inlined=False)
+    outer = _numba.compiled(lambda x: inner(x), "outer")
+    outer(np.ones(2))
+    (part,), (whole,) = inner.overloads.values(), outer.overloads.values()
+    assert whole.library.get_pointer_to_function(whole.fndesc.llvm_cpython_wrapper_name)
+    assert not part.library.get_pointer_to_function(part.fndesc.llvm_func_name)
 
 
 def calls(function, address, count):
@@ -203,7 +236,7 @@ def calls(function, address, count):
 def test_a_callback_is_called_by_kernels_and_by_python():
     callback = Callback(lambda address, count: int(address) + 10 * count)
     assert callback(3, 4) == 43
-    kernel = _numba.compiled(calls, "callback", within=False)
+    kernel = _numba.compiled(calls, "callback")
     assert kernel(callback, np.uint64(3), 4) == 43
     assert kernel(Callback(lambda _address, _count: 1), np.uint64(3), 4) == 1
     assert len(kernel.overloads) == 1  # all callbacks are of one type

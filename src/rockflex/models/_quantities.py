@@ -1,7 +1,7 @@
 """What is asked of a motion: sums of shares of what moves, whichever phase it is in, and their rows in each phase."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,39 +16,37 @@ __all__ = ["Quantities", "Share", "collected", "joined", "lost_support_row", "ro
 
 Array = NDArray[np.float64]
 
+Share = tuple[int, dict[str, Any]]  # the kind of one quantity, and its shares by name
+
+OF_MODES = ("displacement", "restoring", "acceleration")
+OF_BASE = ("rotation", "right", "turn", "ground")
+ROTATION, RIGHT_ROTATION, TURN, GROUND = -4, -3, -2, -1  # columns of `Quantities.shares`
+
 
 @dataclass(frozen=True, eq=False)
 class Quantities:
-    """F quantities, each a sum of these shares.
+    """F quantities, each a sum of shares of what moves.
 
     Attributes
     ----------
-    displacement, restoring, acceleration : ndarray, shape (F, N)
-        Of D_n, of the restoring acceleration of each mode (ω_n² D_n, or that of Eq. 37), and of D''_n.
-    rotation, right, turn, ground : ndarray, shape (F,)
-        Of θ, of θ while the base turns about its right pivot, of θ'' and of the ground acceleration.
+    shares : ndarray, shape (F, 3 N + 4)
+        Of D_n (`displacement`), of the restoring acceleration of each mode (`restoring`: ω_n² D_n, or that of Eq. 37),
+        of D''_n (`acceleration`), of θ (`rotation`), of θ while the base turns about its right pivot (`right`), of θ''
+        (`turn`) and of the ground acceleration (`ground`).
     kinds : ndarray, shape (F,)
         What becomes of the quantity in large rotations: `rockflex.models.observe`.
     """
 
-    displacement: Array
-    restoring: Array
-    acceleration: Array
-    rotation: Array
-    right: Array
-    turn: Array
-    ground: Array
+    shares: Array
     kinds: NDArray[np.int64]
 
     @classmethod
     def of(cls, count: int, modes: int, kind: int = LINEAR, **shares: ArrayLike) -> "Quantities":
         """Return `count` quantities of a model with so many modes; shares that are not named are zero."""
-        of_modes, of_base = ("displacement", "restoring", "acceleration"), ("rotation", "right", "turn", "ground")
-        values: dict[str, Any] = {name: np.zeros((count, modes)) for name in of_modes}
-        values |= {name: np.zeros(count) for name in of_base}
+        values = np.zeros((count, 3 * modes + len(OF_BASE)))
         for name, share in shares.items():
-            values[name] += np.asarray(share, dtype=np.float64)
-        return cls(**values, kinds=np.full(count, kind, dtype=np.int64))
+            values[:, _column(name, modes)] = share
+        return cls(values, np.full(count, kind, dtype=np.int64))
 
     @classmethod
     def none(cls, modes: int) -> "Quantities":
@@ -56,7 +54,7 @@ class Quantities:
         return cls.of(0, modes)
 
     def __len__(self) -> int:
-        return self.rotation.size
+        return self.kinds.size
 
     def __add__(self, other: "Quantities") -> "Quantities":
         return joined((self, other))
@@ -64,11 +62,16 @@ class Quantities:
     @property
     def levers(self) -> Array:
         """What a quantity that bends in large rotations needs beside its row: `rockflex.models.observe`, (F, 2)."""
-        near = np.where(self.kinds == SWAY, self.rotation, np.where(self.kinds == LEFT_OUT, -self.ground, 0.0))
-        return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -self.turn, 0.0)))
+        rotation, turn, ground = (self.shares[:, column] for column in (ROTATION, TURN, GROUND))
+        near = np.where(self.kinds == SWAY, rotation, np.where(self.kinds == LEFT_OUT, -ground, 0.0))
+        return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
 
 
-Share = tuple[int, dict[str, Any]]  # the kind of one quantity, and its shares by name
+def _column(name: str, modes: int) -> slice | int:
+    if name in OF_MODES:
+        first = OF_MODES.index(name) * modes
+        return slice(first, first + modes)
+    return OF_BASE.index(name) - len(OF_BASE)
 
 
 def collected(modes: int, shares: Sequence[Share]) -> Quantities:
@@ -77,16 +80,13 @@ def collected(modes: int, shares: Sequence[Share]) -> Quantities:
     for k, (kind, values) in enumerate(shares):
         total.kinds[k] = kind
         for name, share in values.items():
-            getattr(total, name)[k] = share
+            total.shares[k, _column(name, modes)] = share
     return total
-
-
-NAMES = tuple(each.name for each in fields(Quantities))
 
 
 def joined(parts: Sequence[Quantities]) -> Quantities:
     """Return all quantities of the parts, in their order."""
-    return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in NAMES))
+    return Quantities(np.concatenate([part.shares for part in parts]), np.concatenate([part.kinds for part in parts]))
 
 
 def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
@@ -95,20 +95,30 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     While a complete model rocks, a quantity that bends has the row of its displacements and forces alone; the rest is
     `rockflex.models.observe`'s.
     """
-    n, layout = model.properties.n_modes, model.layout
+    shares = quantities.shares
     large = model.complete and key[0] != CLOSED
-    rows = quantities.restoring @ model.restoring
-    rows[:, :n] += quantities.displacement
-    linear = quantities.kinds == LINEAR if large else np.ones(len(quantities), dtype=np.bool_)
-    rows[linear, layout.rotation] += quantities.rotation[linear]
-    if key[0] == RIGHT:
-        rows[linear, layout.rotation] += quantities.right[linear]
-    rows[linear, -2] += quantities.ground[linear]
     if large:
-        return rows
-    rows += quantities.acceleration @ model.modal_accelerations(key)
-    if key[0] != CLOSED:
-        rows += np.outer(quantities.turn, model.angular_acceleration(key))
+        bends = quantities.kinds != LINEAR
+        shares = shares.copy()
+        for column in (ROTATION, RIGHT_ROTATION, GROUND):
+            shares[bends, column] = 0.0
+    return shares @ _moving(model, key, large=large)
+
+
+def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
+    """What `Quantities.shares` are shares of, as rows of one phase, shape (3 N + 4, C); no accelerations if `large`."""
+    n, layout = model.properties.n_modes, model.layout
+    rows = np.zeros((3 * n + len(OF_BASE), layout.columns))
+    modes = np.arange(n)
+    rows[modes, modes] = 1.0
+    rows[n : 2 * n] = model.restoring
+    rows[ROTATION, layout.rotation] = 1.0
+    rows[RIGHT_ROTATION, layout.rotation] = key[0] == RIGHT
+    rows[GROUND, -2] = 1.0
+    if not large:
+        rows[2 * n : 3 * n] = model.modal_accelerations(key)
+        if key[0] != CLOSED:
+            rows[TURN] = model.angular_acceleration(key)
     return rows
 
 

@@ -6,7 +6,7 @@ cut, and puts the motion there. Models without a vector field (`steps` is None) 
 
 import math
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates, inertia_left
 from rockflex.solve.adaptive.curves import is_curved, raise_curves
 from rockflex.solve.adaptive.layout import Flow, Integrator, Stages
@@ -36,7 +36,7 @@ from rockflex.solve.peaks import raise_peak, raise_to
 __all__ = ["begin", "first_exit", "free_inertia", "move", "turning_rate"]
 
 
-@kernel
+@inlined_kernel
 def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) -> float:
     """Begin a stretch over the `rest` of a linear phase's unit, or of the sample; return its length.
 
@@ -49,7 +49,7 @@ def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) ->
     return take_step(steps.flow, system.phases[at.phase].side, rest, steps.room)
 
 
-@kernel
+@inlined_kernel
 def first_exit(
     system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion
 ) -> tuple[float, int, float]:
@@ -61,14 +61,14 @@ def first_exit(
     return exit_of_step(system, steps.flow, at, span, steps.room)
 
 
-@kernel
+@inlined_kernel
 def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> tuple[float, int, float]:
     expand(system, at.phase, motion, span, at.lift)
     row_series(system, at.phase, GUARD, motion, span)
     return phase_exit(system, at, motion.polys)
 
 
-@kernel
+@inlined_kernel
 def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Stages) -> tuple[float, int, float]:
     p, polys = at.phase, room.polys
     extend(flow, system.phases[p].side, span, room)
@@ -80,7 +80,7 @@ def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Sta
     return phase_exit(system, at, polys)
 
 
-@kernel
+@inlined_kernel
 def move(
     system: System,
     steps: Integrator | None,
@@ -103,7 +103,7 @@ def move(
             motion.state[system.layout.modes] = -steps.room.at.branch * BARELY
 
 
-@kernel
+@inlined_kernel
 def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
     p = at.phase
     if system.phases[p].side != 0.0:
@@ -118,7 +118,7 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
             raise_to(system, p, f, ground, time, log, motion)
 
 
-@kernel
+@inlined_kernel
 def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, room: Stages) -> None:
     p = at.phase
     side = system.phases[p].side

@@ -134,7 +134,8 @@ class Engine:
         start = np.zeros(layout.size)
         if state is not None:
             start[: layout.core] = state
-        side = int(np.sign(start[layout.rotation]) or np.sign(start[layout.spin]))
+        outward = float(start[layout.rotation] or start[layout.spin])
+        side = (outward > 0.0) - (outward < 0.0)
         at = progress_at_start(self._place(side), stated=True)
         course = self._course(acceleration, dt, free_vibration)
         room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
@@ -196,7 +197,7 @@ class Engine:
 
     def _room(self, system: System, state: Array, motion: Motion | None) -> Motion:
         """Room for the motion; where it was there before, with as many terms as the phases now need."""
-        terms = int(system.phases.terms.max(initial=4))
+        terms = int(system.phases["terms"].max(initial=4))
         if motion is None:
             return motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
         if motion.series.shape[1] >= terms:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import LANDS, OVERTURNS, Impact, kinetic_energy, may_pass, stick, strike
 from rockflex.solve.adaptive.check import nothing_hides
 from rockflex.solve.adaptive.layout import Integrator
@@ -79,7 +79,7 @@ def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) 
     return -1
 
 
-@kernel
+@inlined_kernel
 def cross(
     system: System, steps: Integrator | None, impact: Impact, sample: Span, at: Progress, log: Log, motion: Motion
 ) -> int:

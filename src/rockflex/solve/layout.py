@@ -104,7 +104,13 @@ DOUBT, ASKED = 0, 1
 # from the cubic through the values and slopes at both ends.
 SAG, SWING, RIPPLE = 0, 1, 2
 
-PHASE = np.dtype(
+
+def _record(fields: list[tuple[str, Any]]) -> np.dtype[Any]:
+    """Type of records whose fields are read by name, as attributes."""
+    return np.dtype((np.record, np.dtype(fields, align=True)))
+
+
+PHASE = _record(
     [
         ("side", np.float64),  # about which pivot the base turns
         ("low", np.float64),  # limits of the guard
@@ -113,8 +119,7 @@ PHASE = np.dtype(
         ("terms", np.int64),  # of the power series that converge over the finest step
         ("linear", np.bool_),  # carried in closed form
         ("dense", np.bool_),  # linear, but does not uncouple
-    ],
-    align=True,
+    ]
 )
 
 # A bare 0 has a type of its own in numba, for which every callee would be compiled once more.
@@ -191,7 +196,7 @@ class Motion(NamedTuple):
 
 
 # Where a run stands. All that a kernel must know to go on, bit for bit, after it has returned in between.
-_PROGRESS = np.dtype(
+_PROGRESS = _record(
     [
         ("stage", np.int64),  # of `driver.run`
         ("phase", np.int64),
@@ -221,21 +226,25 @@ _PROGRESS = np.dtype(
         ("known", np.bool_),  # whether the first stage of a step is the last one of the step before
         ("told", np.bool_),  # whether the curved rows at the start of a step are known
         ("lacking", np.int64),  # place in `follows` or `beside` of the phase that is needed; -1
-    ],
-    align=True,
+    ]
 )
-
-
-_AT_START = np.zeros(1, dtype=_PROGRESS).view(np.recarray)
-_AT_START.last = _AT_START.lift = np.nan
-_AT_START.lacking, _AT_START.step, _AT_START.branch = -1, np.inf, 1.0
 
 
 def progress_at_start(phase: int, *, stated: bool) -> Progress:
     """Return the progress of a run that is to begin in a phase."""
-    at = _AT_START.copy()[0]
-    at.phase, at.stated = phase, stated
+    at = np.frombuffer(bytearray(_AT_START), dtype=_PROGRESS)[0]  # in no time, where a copy goes field by field
+    at["phase"], at["stated"] = phase, stated
     return at
+
+
+def _at_start() -> bytes:
+    at = np.zeros(1, dtype=_PROGRESS)
+    at["last"] = at["lift"] = np.nan
+    at["lacking"], at["step"], at["branch"] = -1, np.inf, 1.0
+    return at.tobytes()
+
+
+_AT_START = _at_start()
 
 
 def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> Motion:

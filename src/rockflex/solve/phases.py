@@ -18,7 +18,8 @@ CAPACITY = 3  # phases that there is room for at first: contact, and rocking on 
 class CompiledPhases:
     """All phases of one model that were met so far.
 
-    Threads may run on the same phases: a phase is entered under a lock, at a place that no run knows of before it is whole.
+    Threads may run on the same phases: a phase is entered under a lock, at a place that no run knows of before it is
+    whole.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ event. The kernel returns wherever its slice of work ends, and when called again
 
 import math
 
-from rockflex._kernel import kernel, python_kernel
+from rockflex._kernel import inlined_kernel, kernel, python_kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.curves import values_of_rows
 from rockflex.solve.adaptive.layout import TOLD, Integrator
@@ -127,7 +127,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     return True
 
 
-@kernel
+@inlined_kernel
 def carry(
     system: System, steps: Integrator | None, piece: Array, dt: float, at: Progress, log: Log, motion: Motion
 ) -> bool:

@@ -1,6 +1,6 @@
 """The closer look: one sample walked on a dyadic grid, in the largest steps in which nothing can hide."""
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.events import CROSSED, PAUSED, cross, start_crossing
@@ -15,7 +15,7 @@ from rockflex.solve.peaks import raise_peaks
 __all__ = ["cross_sample"]
 
 
-@kernel
+@inlined_kernel
 def cross_sample(
     system: System,
     steps: Integrator | None,

@@ -5,7 +5,7 @@ turns no mode by more than about a radian, over which a row strays from that cub
 own bend (for a harmonic of ω: (ωh)²/48); a fifth of the bend is allowed for.
 """
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
@@ -15,7 +15,7 @@ from rockflex.solve.peaks import raise_peaks, size_of
 __all__ = ["nothing_hides"]
 
 
-@kernel
+@inlined_kernel
 def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:
     """True where the step just taken holds no event and no new peak but at its end, which is then noted."""
     rows, side, step = system.plain_rows, system.phases[phase].side, span.length

@@ -6,7 +6,7 @@ which only those that come near their peaks are given.
 
 import numpy as np
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import LINEAR, SWAY, VERTICAL, field_rates, observe, posture_of
 from rockflex.solve.adaptive.layout import (
     AT_ENDS,
@@ -42,7 +42,7 @@ def is_curved(flow: Flow, f: int, side: float) -> bool:
     return side != 0.0 and flow.kinds[f] != LINEAR
 
 
-@kernel
+@inlined_kernel
 def tell(
     system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array
 ) -> None:
@@ -71,7 +71,7 @@ def stretch(first: float, last: float, before: float, after: float) -> tuple[flo
     return low - slack, high + slack
 
 
-@kernel
+@inlined_kernel
 def curves_hide(
     system: System,
     flow: Flow,
@@ -123,7 +123,7 @@ def curves_hide(
     return hidden
 
 
-@kernel
+@inlined_kernel
 def look_ahead(
     system: System,
     flow: Flow,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates
 from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, TERMS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.sums import place_stage
@@ -27,7 +27,7 @@ FAILED = -1.0
 SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 
-@kernel
+@inlined_kernel
 def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`.
 
@@ -69,7 +69,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
             return FAILED
 
 
-@kernel
+@inlined_kernel
 def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) -> None:
     """Set the branch of the hysteresis by the sign of the velocity, or where it is zero, of what it will be."""
     n = flow.field.modes.shape[1]
@@ -80,7 +80,7 @@ def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) ->
     room.at.branch = 1.0 if velocity >= 0.0 else -1.0
 
 
-@kernel
+@inlined_kernel
 def error_of(flow: Flow, step: float, room: Stages) -> float:
     """Norm of the step's error over what is tolerated; infinite where the step left all numbers."""
     fifth = third = 0.0
@@ -98,7 +98,7 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
     return error if np.isfinite(error) else np.inf
 
 
-@kernel
+@inlined_kernel
 def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
     """Fill `room.bends`, the continuous extension of the step just taken."""
     n, step = room.motion.size, span.length
@@ -131,7 +131,7 @@ def forget(room: Stages) -> None:
     room.at.known = False
 
 
-@kernel
+@inlined_kernel
 def step_over(room: Stages) -> None:
     """Put the motion at the end of the step in place of that at its start."""
     for i in range(room.motion.size):
@@ -161,7 +161,7 @@ def place_at(u: float, room: Stages, place: Array) -> None:
         place[i] = room.motion[i] + u * value
 
 
-@kernel
+@inlined_kernel
 def row_poly(system: System, phase: int, row: int, span: Span, room: Stages) -> None:
     """Coefficients, in `room.polys[row]`, of one row of a phase over the step, time in units of it."""
     rows, polys = system.plain_rows, room.polys

@@ -1,6 +1,6 @@
 """The fast path of the integrated phases: step after step, sample after sample, as long as nothing can hide in them."""
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.check import nothing_hides
 from rockflex.solve.adaptive.layout import Flow, Stages
 from rockflex.solve.adaptive.step import FAILED, step_over, take_step
@@ -10,7 +10,7 @@ from rockflex.solve.layout import CARRY, LEFT, Array, Log, Progress, Span, Syste
 __all__ = ["step_through"]
 
 
-@kernel
+@inlined_kernel
 def step_through(system: System, flow: Flow, piece: Array, dt: float, at: Progress, log: Log, stages: Stages) -> bool:
     """Carry the motion over samples from `at.index` on, of which `at.begun` s are done.
 

@@ -83,7 +83,7 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
         layout=layout,
         dt=dt,
         modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
-        phases=np.zeros(capacity, dtype=PHASE).view(np.recarray),
+        phases=np.zeros(capacity, dtype=PHASE),
         links=links,
         border=np.zeros((capacity, b, 2, n)),
         base=np.zeros((capacity, 3, b, b)),
