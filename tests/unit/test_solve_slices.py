@@ -9,6 +9,7 @@ from rockflex import BoucWen, Frame, Restitution, load_suite
 from rockflex.models import parse_model
 from rockflex.response import asked_of
 from rockflex.solve import Engine, RunStoppedError, stopping_when
+from rockflex.solve.layout import FOLLOWS
 
 FRAME = Frame(
     n_stories=3,
@@ -98,3 +99,38 @@ def test_who_asks_within_has_the_word():
             mine.run(RECORD, 0.02, slice_of_work=1e-5)
         with pytest.raises(RunStoppedError):
             mine.run(RECORD, 0.02, slice_of_work=1e-5)
+
+
+@pytest.mark.parametrize("case", ["MDOF-S", "rigid", "2DOF-C", "on a grid"])
+def test_runs_on_one_engine_do_not_meddle_with_each_other(case, monkeypatch):
+    """As threads have it: while one run pauses, another one meets phases whose series are longer."""
+    label, options, record, dt, wanted = CASES[case]
+    options, wanted = dict(options), dict(wanted)
+    alone = engine(label, options).run(record, dt, **wanted)
+    shared, rounds, needed = engine(label, options), count(), []
+    room = Engine._room
+
+    def watched(self, system, state, motion):
+        made = room(self, system, state, motion)
+        # The phases that this run can come to, as far as its tables know, fit the room that it has.
+        reached = {int(p) for p in np.unique(system.links[:, FOLLOWS:]) if p >= 0} or {0}
+        needed.append(max(int(system.phases["terms"][p]) for p in reached) <= made.series.shape[1])
+        return made
+
+    monkeypatch.setattr(Engine, "_room", watched)
+
+    def meanwhile():
+        before, _ = shared._phases._systems[dt]
+        links = before.links.copy()
+        if next(rounds) < 3:
+            with stopping_when(lambda: False):
+                shared.run(-record, dt)
+        assert np.array_equal(before.links, links)
+        return False
+
+    with stopping_when(meanwhile):
+        found = shared.run(record, dt, slice_of_work=1e-5, **wanted)
+    assert next(rounds) > 3
+    assert all(needed)
+    assert found.peaks.tobytes() == alone.peaks.tobytes()
+    assert (found.n_uplifts, found.n_impacts) == (alone.n_uplifts, alone.n_impacts)

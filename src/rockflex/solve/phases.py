@@ -3,11 +3,12 @@
 from threading import RLock
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
-from rockflex.solve.layout import BESIDE, FOLLOWS, Array, System
+from rockflex.solve.layout import BESIDE, EVENT, FOLLOWS, LINKS, Array, System
 
 __all__ = ["CompiledPhases"]
 
@@ -116,7 +117,8 @@ class CompiledPhases:
             if basis is not None:
                 check_step(basis, dt)
             put_phase(system, p, self._phases[p], basis, self._rows[p], self._twins[p])
-        self._link(system)
+        # Runs that go on with the tables as they were must not come to a phase that they made no room for.
+        system = system._replace(links=self._links(system.links.shape[0]))
         self._systems[dt] = system, count
         return system
 
@@ -137,13 +139,16 @@ class CompiledPhases:
         """Largest eigenvalue magnitude of the linear phases met so far, rad/s."""
         return max((basis.fastest for basis in self._bases if basis is not None), default=0.0)
 
-    def _link(self, system: System) -> None:
-        """Enter which phase leads to which, as far as they were met."""
+    def _links(self, capacity: int) -> NDArray[np.int64]:
+        """Return what happens at the limits of every phase, and which phase leads to which, as far as they were met."""
+        links = np.full((capacity, LINKS), -1, dtype=np.int64)
         for p, phase in enumerate(self._phases):
             for place in range(3):
-                system.links[p, BESIDE + place] = self._places.get(self._beside(phase, place), -1)
+                links[p, BESIDE + place] = self._places.get(self._beside(phase, place), -1)
             for bound, leads in enumerate((phase.guards[0].below, phase.guards[0].above)):
-                system.links[p, FOLLOWS + bound] = -1 if leads is None else self._places.get(leads.key, -1)
+                if leads is not None:
+                    links[p, EVENT + bound], links[p, FOLLOWS + bound] = leads.event, self._places.get(leads.key, -1)
+        return links
 
     def _beside(self, phase: Phase, place: int) -> Key:
         """The same branches, with the base in contact, on its right pivot or on its left one."""

@@ -19,7 +19,6 @@ from rockflex.solve.layout import (
     COUPLING,
     DAMPING,
     DRIVE,
-    EVENT,
     FLEXIBILITY,
     INTO,
     LEVERAGE,
@@ -115,8 +114,6 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     `twin` is the place of a phase whose motion differs by constant forces alone, or -1: what both share is copied.
     """
     guard, arrow, dt = phase.guards[0], phase.arrow, system.dt
-    for bound, end in enumerate((guard.below, guard.above)):
-        system.links[p, EVENT + bound] = -1 if end is None else end.event
     system.plain_rows[p] = plain_rows
     if basis is None or arrow is None:
         system.phases[p] = phase.side, guard.low, guard.high, 0, 0, False, False
