@@ -47,6 +47,15 @@ def test_a_run_that_is_asked_to_stop():
     assert monotonic() - begun < SOON
 
 
+@pytest.fixture
+def own_handler():
+    """Python's own answer to Ctrl-C, whatever tests before have put in its place."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("own_handler")
 @pytest.mark.parametrize("run", [long_run, lambda: simulate_many([FRAME], [LONG, LONG], ["2DOF-C"], work_limit=None)])
 def test_an_interrupt(run):
     begun = monotonic()

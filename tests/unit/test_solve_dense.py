@@ -43,14 +43,14 @@ def prepared(given, label, dt=MOTION.dt):
 def assert_dense(bases, system, places):
     """Rocking alone: contact uncouples as it stands."""
     assert [each.dense for each in bases] == [False, True]
-    assert system.phases.dense[places].tolist() == [False, True]
+    assert system.phases["dense"][places].tolist() == [False, True]
     assert system.propagator.size
     assert system.propagator[places[1]].any()
 
 
 def assert_uncoupled(bases, system, places):
     assert [each.dense for each in bases] == [False, False]
-    assert not system.phases.dense.any()
+    assert not system.phases["dense"].any()
     assert system.propagator.size == 0
     assert places[0] != places[1]
 

@@ -11,8 +11,9 @@ from rockflex import Frame
 from rockflex.models import Model
 from rockflex.response import asked_of
 from rockflex.solve import Engine
-from rockflex.solve.exact.series import advance, bend, evaluate, expand, first_descent, row_series
+from rockflex.solve.exact.series import advance, expand, row_series
 from rockflex.solve.layout import Span, motion_of
+from rockflex.solve.polynomials import bend, evaluate, first_descent
 from twins.exact import Exact
 from twins.frame import frame_properties
 
@@ -49,7 +50,7 @@ def draw(n, *, rocking, seed=3):
 
 
 def room(system, state):
-    terms = int(system.phases.terms.max())
+    terms = int(system.phases["terms"].max())
     return motion_of(state.copy(), state.size, system.plain_rows.shape[1], terms, 1)
 
 

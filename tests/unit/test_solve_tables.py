@@ -82,7 +82,7 @@ def test_a_step_is_the_exponential(name, phase):
     n = engine.model.properties.n_modes
     assert not system.propagator.size
     matrix = generator(twin, n, phase)
-    for level in range(system.phases.levels[phase] + 1):
+    for level in range(system.phases["levels"][phase] + 1):
         step = DT / 2**level
         blocks, _ = blocks_as_matrix(system.blocks[phase, level])
         mine = system.basis[phase, OUT].T @ blocks @ system.basis[phase, INTO].T
@@ -99,7 +99,7 @@ def test_a_step_is_the_exponential(name, phase):
 def test_levels_halve_until_no_mode_turns_by_more_than_a_radian(name, phase):
     engine, system, _ = prepared(name)
     fastest = engine._phases._bases[phase].fastest
-    levels, terms = int(system.phases.levels[phase]), int(system.phases.terms[phase])
+    levels, terms = int(system.phases["levels"][phase]), int(system.phases["terms"][phase])
     assert (levels, terms) == (levels_of(fastest, DT), terms_of(fastest, DT))
     assert levels < system.blocks.shape[1]
     assert levels < system.bounds.shape[2]
@@ -138,7 +138,7 @@ def test_how_far_rows_leave_their_interpolants(name, phase, dense):
     """The chord, the chord of the slope, and the cubic through both ends; and no bound is idle."""
     engine, system, _ = prepared(name, dense=dense)
     chosen = engine._phases._bases[phase]
-    assert chosen.dense == system.phases.dense[phase] == (dense and phase != CONTACT)
+    assert chosen.dense == system.phases["dense"][phase] == (dense and phase != CONTACT)
     sag, swing, ripple = (system.bounds[phase, place] for place in (SAG, SWING, RIPPLE))
     half = chosen.matrix.shape[0] // 2
     inside = np.linspace(0.0, 1.0, 65)
@@ -146,7 +146,7 @@ def test_how_far_rows_leave_their_interpolants(name, phase, dense):
     cubic = ((1.0 + 2.0 * inside) * (1.0 - inside) ** 2, inside**2 * (3.0 - 2.0 * inside))
     bulge = (inside * (1.0 - inside) ** 2, inside**2 * (inside - 1.0))
     tightest = np.inf
-    for level in range(system.phases.levels[phase] + 1):
+    for level in range(system.phases["levels"][phase] + 1):
         step = DT / 2**level
         states = np.concatenate((np.eye(2 * half), draws(2 * half)))
         path = np.stack([propagate(chosen, states, np.full(len(states), step * u)) for u in inside])
@@ -238,7 +238,7 @@ def test_the_closed_form_knows_the_fastest_of_all_phases(name):
     engine, system, _ = prepared(name)
     fastest = ClosedForm(engine.model).fastest
     assert fastest == max(engine._phases._bases[phase].fastest for phase in (CONTACT, ROCKING, LEFT))
-    assert system.phases.levels.max() == levels_of(fastest, DT)
+    assert system.phases["levels"].max() == levels_of(fastest, DT)
 
 
 @pytest.mark.parametrize("name", FRAMES)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.series import evaluate, first_descent
 from rockflex.solve.layout import GUARD, Array, Progress, System
+from rockflex.solve.polynomials import evaluate, first_descent
 
 __all__ = ["BEFORE", "HIGH", "INSIDE", "LIFTED", "LOW", "PASSING", "TOUCHED", "phase_exit"]
 

@@ -1,8 +1,8 @@
 """The peaks of a run, raised wherever the motion is looked at."""
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.series import bend, evaluate, first_descent
 from rockflex.solve.layout import GUARD, Array, Log, Motion, Span, System
+from rockflex.solve.polynomials import bend, evaluate, first_descent
 
 __all__ = ["raise_peak", "raise_peaks", "raise_row", "raise_to", "raise_to_state", "size_of"]
 

@@ -5,7 +5,7 @@ import numpy as np
 from rockflex._kernel import kernel
 from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
 from rockflex.solve.adaptive.step import expand_nested
-from rockflex.solve.exact.series import first_descent
+from rockflex.solve.polynomials import first_descent
 
 __all__ = ["BARELY", "turning"]
 
