@@ -13,7 +13,7 @@ SETTING = {
     "NUMBA_CPU_NAME": "generic",
     "NUMBA_CACHE_DIR": str(ROOT / "build" / "numba-generic"),  # kernels of one processor must not meet those of another
 }
-# What computes: modes, the exact engine, the forces from them, and the twins that they are compared with.
+# What computes: modes, the engine in closed form, the forces from them, and the twins that they are compared with.
 SENSITIVE = (
     "tests/unit/test_computable.py",
     "tests/unit/test_equivalents.py",

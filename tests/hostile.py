@@ -70,7 +70,7 @@ BASE = {"base_mass": 1e4, "half_width": 1.0, "damping_ratio": 0.02}
 PROPERTIES = {
     "omega": [10.0, 30.0], "effective_mass": [1e4, 1e3], "effective_height": [3.0, -0.5], "top_ordinate": [1.3, -0.3],
     "i_theta": 2e5, "l0r": 4e4, "m_tot": 2e4, "half_width": 1.0, "zeta": 0.02, "translational_inertia": 1e5,
-    "floors": None, "tendons": (),
+    "floors": None, "tendons": (), "eccentricity": 0.1,
 }  # fmt: skip
 TOWER = {
     "height": 100.0, "base_radius": 5.0, "top_radius": 3.0, "wall": 0.5, "density": 2400.0, "elastic_modulus": 25e9,
@@ -126,7 +126,9 @@ def structures() -> Calls:
         "cosine_shapes": (rf.cosine_shapes, {"height": 10.0, "n_shapes": 2}),
         "Tendon": (rf.Tendon, {"initial_force": 1e5, "stiffness": 1e6, "position": 0.0, "yield_force": 2e5}),
         "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "tendons": rf.Tendon(1e5, 1e6)}),
+        "Eccentric": (rf.Eccentric, {"structure": rf.Frame(**FRAME), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),
+        "pivot": (p.pivot, {"side": -1}),
         "truncated": (p.truncated, {"n_modes": 1}),
         "modal": (rf.Frame(**FRAME).modal, {"n_modes": 1}),
         "rocking": (rf.Frame(**FRAME).rocking, {"n_modes": 1}),
@@ -144,8 +146,8 @@ def structures() -> Calls:
             rf.AdequacyTolerance,
             {"base_moment": 0.1, "first_frequency": 0.1, "second_frequency": 0.2, "base_shear": 0.1},
         ),
-        "uplifted_modes": (rf.uplifted_modes, {"properties": p, "n_modes": None}),
-        "frequency_equation": (rf.frequency_equation, {"properties": p, "omega": [1.0, 2.0]}),
+        "uplifted_modes": (rf.uplifted_modes, {"properties": p, "n_modes": None, "side": 1}),
+        "frequency_equation": (rf.frequency_equation, {"properties": p, "omega": [1.0, 2.0], "side": -1}),
         "pinned_beam": (rf.pinned_beam, {"behaviour": "shear", "spring": 0.0, "n_modes": 2}),
         "equivalent_s1": (
             rf.equivalent_s1,

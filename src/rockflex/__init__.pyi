@@ -26,6 +26,7 @@ from .modal import AdequacyTolerance as AdequacyTolerance
 from .modal import FloorModes as FloorModes
 from .modal import ModalProperties as ModalProperties
 from .modal import PinnedBeam as PinnedBeam
+from .modal import Pivot as Pivot
 from .modal import RockingProperties as RockingProperties
 from .modal import Tendon as Tendon
 from .modal import UpliftedModes as UpliftedModes
@@ -87,6 +88,7 @@ from .response import Response as Response
 from .store import StudyFolder as StudyFolder
 from .structure import Beam as Beam
 from .structure import CantileverWithTipMass as CantileverWithTipMass
+from .structure import Eccentric as Eccentric
 from .structure import FishBone as FishBone
 from .structure import Frame as Frame
 from .structure import LumpedMasses as LumpedMasses

@@ -1,6 +1,6 @@
 """Numbers that leave the range of double precision, told in terms of what was given."""
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
 import numpy as np
@@ -11,13 +11,13 @@ __all__ = ["computable"]
 
 
 @contextmanager
-def computable(what: str) -> Generator[None]:
+def computable(what: str | Callable[[], str]) -> Generator[None]:
     """Turn a failure of arithmetic into an error that says what cannot be computed; a block or a decorator.
 
     Parameters
     ----------
     what
-        What is computed and from what, as the subject of a sentence.
+        What is computed and from what, as the subject of a sentence; or a function that says so.
 
     Raises
     ------
@@ -29,8 +29,9 @@ def computable(what: str) -> Generator[None]:
             yield
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         words = error.args[-1] if error.args else type(error).__name__
+        subject = what if isinstance(what, str) else what()
         message = (
-            f"{what} cannot be computed: numbers arise that double precision cannot hold ({words}). Check the units "
+            f"{subject} cannot be computed: numbers arise that double precision cannot hold ({words}). Check the units "
             "(kg, m, s, N, rad throughout), and whether values that belong together are many orders of magnitude apart."
         )
         raise InputError(message) from error

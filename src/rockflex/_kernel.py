@@ -8,9 +8,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from rockflex._numba import compiled, direct
+from rockflex._numba import compiled, compiled_within, direct
 
-__all__ = ["Callback", "Entry", "kernel"]
+__all__ = ["Callback", "Entry", "inlined_kernel", "kernel", "python_kernel"]
 
 _C_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_size_t, ctypes.c_int64)
 
@@ -20,10 +20,21 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def kernel(function: F) -> F:
-    """Compile with numba: no interpreter lock, cached on disk, fused multiply-adds allowed.
+    """Compile with numba for other kernels: no interpreter lock, fused multiply-adds allowed.
 
-    A kernel writes into the arrays that it is given; it can neither make an array nor return one.
+    A kernel writes into the arrays that it is given; it can neither make an array nor return one. Python can call it
+    too, after compiling a way in: see `python_kernel`.
     """
+    return cast("F", compiled_within(function, inlined=False))
+
+
+def inlined_kernel(function: F) -> F:
+    """Compile into the callers, which are few: a call hands over tuples of arrays number by number."""
+    return cast("F", compiled_within(function, inlined=True))
+
+
+def python_kernel(function: F) -> F:
+    """Compile a kernel that Python calls, with all kernels that it calls; the result is kept on disk."""
     return cast("F", compiled(function, sources_digest()))
 
 
@@ -41,7 +52,7 @@ class Entry:
         if self._entry is not None:
             return self._entry(*arguments)
         result = self._function(*arguments)
-        self._entry = direct(self._function)
+        self._entry = direct(self._function, arguments)
         return result
 
 

@@ -36,6 +36,7 @@ FOUNDATION = {
     "_kernel",
     "_matrices",
     "_numba",
+    "_numba_pipeline",
     "_shown",
     "_values",
 }  # every layer may import these; they only each other
@@ -46,7 +47,7 @@ HOME = {
     "matplotlib": {"plot"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "numba": {"_numba"},
+    "numba": {"_numba", "_numba_pipeline"},
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
@@ -186,8 +187,11 @@ FOUND = imports(SOURCES)
 
 
 def test_the_walk_sees_the_package() -> None:
-    assert {"rockflex.__init__", "rockflex._kernel", "rockflex.solve.exact.unit"} <= SOURCES.keys()
-    assert {each.importer for each in FOUND if each.target.split(".")[0] == "numba"} == {"rockflex._numba"}
+    assert {"rockflex.__init__", "rockflex._kernel", "rockflex.solve.exact.march"} <= SOURCES.keys()
+    assert {each.importer for each in FOUND if each.target.split(".")[0] == "numba"} == {
+        "rockflex._numba",
+        "rockflex._numba_pipeline",
+    }
     assert any(each.when == DEFERRED for each in FOUND)
     assert any(each.when == TYPING for each in FOUND)
 
@@ -237,9 +241,9 @@ def synthetic(modules: dict[str, str]) -> dict[str, str]:
         ("motion/__init__", "from ..study import simulate"),
         ("modal/_rocking", "def f():\n    from rockflex.motion import GroundMotion"),
         ("modal/_rocking", "class A:\n    def f(self):\n        if self:\n            import rockflex.plot"),
-        ("solve/exact/unit", "if TYPE_CHECKING:\n    from rockflex.modal import RockingProperties"),
-        ("solve/exact/unit", "if typing.TYPE_CHECKING:\n    pass\nelse:\n    from rockflex.modal import X"),
-        ("solve/exact/unit", "engine = importlib.import_module('rockflex.study')"),
+        ("solve/exact/march", "if TYPE_CHECKING:\n    from rockflex.modal import RockingProperties"),
+        ("solve/exact/march", "if typing.TYPE_CHECKING:\n    pass\nelse:\n    from rockflex.modal import X"),
+        ("solve/exact/march", "engine = importlib.import_module('rockflex.study')"),
         ("models/_linear", "try:\n    from rockflex.solve import Solution\nexcept ImportError:\n    pass"),
         ("response/_file", "from rockflex.cli import main"),
         ("plot/_history", "from rockflex.solve import Solution"),

@@ -3,6 +3,7 @@
 The integration starts afresh at every sample and every event, so that its field is smooth throughout.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
-from twins.complete_model import GRAVITY, BoucWen, CompleteModel, Structure
+from twins.complete_model import GRAVITY, BoucWen, CompleteModel, Rope, Structure
 from twins.frame import frame_properties
 from twins.impact_laws import CompleteVVEL, Law
 from twins.result import Vector
@@ -146,7 +147,7 @@ class _Run:
             guards["impact"] = lambda t, y: s * y[0]
             guards["overturned"] = lambda t, y: 0.5 * np.pi - s * y[0]
         elif self.lifts:
-            guards["uplift"] = lambda t, y: model.resisting - abs(model.overturning(y, sample.excitation(t)))
+            guards["uplift"] = lambda t, y: model.room(y, sample.excitation(t))
         return guards
 
     def _first_event(self, sample: Sample, dense, grid: Vector) -> tuple[float, str] | None:
@@ -230,6 +231,8 @@ def simulate_complete(
     acceleration: ArrayLike,
     dt: float,
     *,
+    eccentricity: float = 0.0,
+    ropes: Iterable[Rope] = (),
     complete: bool = True,
     lifts: bool = True,
     bouc_wen: BoucWen | None = None,
@@ -247,7 +250,7 @@ def simulate_complete(
     """
     structure = Structure.of(
         omega, effective_mass, effective_height, top_ordinate, i_theta, l0r, m_tot, half_width, zeta,
-        translational_inertia,
+        translational_inertia, eccentricity, ropes,
     )  # fmt: skip
     model = CompleteModel(structure, complete=complete, bouc_wen=bouc_wen)
     n, record = model.n, np.asarray(acceleration, float)

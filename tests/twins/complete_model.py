@@ -4,6 +4,7 @@ Source: Silva & Stojadinović 2024, Eqs. 13-16, 21-24, 37 and 38. State ``[θ, �
 at its end Bouc-Wen's z where there is one. N = 0 is the rigid block. A state may hold one column an instant.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,8 +37,17 @@ class BoucWen:
 
 
 @dataclass(frozen=True)
+class Rope:
+    """A tendon at x from the axis of the masses: force at rest and stiffness."""
+
+    force: float
+    stiffness: float
+    x: float = 0.0
+
+
+@dataclass(frozen=True)
 class Structure:
-    """N modes on a base of half width B, by the names of the equations."""
+    """N modes on a base of half width B, by the names of the equations; their axis may stand beside its middle."""
 
     omega: Vector
     effective_mass: Vector
@@ -49,6 +59,8 @@ class Structure:
     half_width: float
     zeta: Vector
     translational_inertia: float
+    eccentricity: float = 0.0
+    ropes: tuple[Rope, ...] = ()
 
     @classmethod
     def of(
@@ -63,11 +75,19 @@ class Structure:
         half_width: float,
         zeta: ArrayLike,
         translational_inertia: float,
+        eccentricity: float = 0.0,
+        ropes: Iterable[Rope] = (),
     ) -> "Structure":
         w = np.asarray(omega, float)
         modal = (np.asarray(values, float) for values in (effective_mass, effective_height, top_ordinate))
         damping = np.broadcast_to(np.asarray(zeta, float), w.shape) if w.size else np.zeros(0)
-        return cls(w, *modal, i_theta, l0r, m_tot, half_width, damping, translational_inertia)
+        return cls(
+            w, *modal, i_theta, l0r, m_tot, half_width, damping, translational_inertia, eccentricity, tuple(ropes)
+        )
+
+    def edge(self, side: int) -> float:
+        """Where the pivot of a side is, from the axis of the masses; the axis itself for side 0."""
+        return side * self.half_width - self.eccentricity if side else 0.0
 
 
 class CompleteModel:
@@ -80,7 +100,6 @@ class CompleteModel:
         self.structure, self.complete, self.bouc_wen = structure, complete, bouc_wen
         self.n = structure.omega.size
         self.size = 2 + 2 * self.n + (bouc_wen is not None)
-        self.resisting = structure.m_tot * GRAVITY * structure.half_width
         self.arm = structure.effective_mass * structure.effective_height
 
     def modal(self, y: Vector) -> tuple[Vector, Vector]:
@@ -100,8 +119,29 @@ class CompleteModel:
         damping = 2.0 * self.structure.zeta * self.structure.omega
         return -a - (damping * v.T).T - self.restoring(d, y)
 
+    def resisting(self, side: int) -> float:
+        """Moment about the pivot of what pulls the base down, each force at its place."""
+        p = self.structure
+        edge = p.edge(side)
+        return p.m_tot * GRAVITY * abs(edge) + sum(rope.force * abs(edge - rope.x) for rope in p.ropes)
+
+    def pull(self, turn: float, side: int) -> tuple[float, float]:
+        """Sum of the ropes' forces, and of their moments about the pivot; along chords in the complete model."""
+        p = self.structure
+        force = moment = 0.0
+        for rope in p.ropes:
+            reach = abs(p.edge(side) - rope.x)
+            chord, lever = reach * abs(turn), reach
+            if self.complete:
+                chord, lever = 2.0 * reach * abs(np.sin(0.5 * turn)), reach * np.cos(0.5 * turn)
+            force += rope.force + rope.stiffness * chord
+            moment += (rope.force + rope.stiffness * chord) * lever
+        return force, side * moment
+
     def overturning(self, y: Vector, a: Vector | float) -> Vector:
-        """The moment that lifts the base once it leaves ±m_tot g B, in contact (Eqs. 16 and 24).
+        """The moment that lifts the base, to θ > 0 below -`resisting(1)` and to θ < 0 above `resisting(-1)`.
+
+        In contact (Eqs. 16 and 24).
 
         Eq. 16 has D on both sides of the inequality; here both stand on the left.
         """
@@ -110,17 +150,24 @@ class CompleteModel:
             moment = moment - GRAVITY * self.structure.effective_mass @ self.modal(y)[0]
         return moment
 
+    def room(self, y: Vector, a: Vector | float) -> Vector:
+        """What the overturning moment has left to the nearer of its limits, in contact."""
+        moment = self.overturning(y, a)
+        return np.minimum(self.resisting(-1) - moment, self.resisting(1) + moment)
+
     def side_wanted(self, y: Vector, a: float) -> int:
         """Side on which the base lifts at once, else 0."""
         moment = self.overturning(y, a)
-        return 0 if abs(moment) <= self.resisting else -int(np.sign(moment))
+        return 1 if moment < -self.resisting(1) else -1 if moment > self.resisting(-1) else 0
 
     def inertia(self, d: Vector, side: int) -> float:
         """Factor of θ'' in its own equation: I_θ, with the masses where they are in the complete model."""
         p = self.structure
+        about_axis = p.i_theta - p.m_tot * p.half_width**2
+        inertia = about_axis + p.m_tot * (p.edge(side) if side else p.half_width) ** 2
         if not self.complete:
-            return p.i_theta
-        return p.i_theta + float(p.effective_mass @ (d * d - 2.0 * side * p.half_width * d))
+            return inertia
+        return inertia + float(p.effective_mass @ (d * d - 2.0 * p.edge(side) * d))
 
     def accelerations(self, y: Vector, a: float, side: int) -> tuple[float, Vector]:
         """(θ'', D'') under Eqs. 13 and 14, or 23; in contact (side 0) those of Eq. 15."""
@@ -130,16 +177,17 @@ class CompleteModel:
         if side == 0:
             return 0.0, self.free(y, a)
         if not self.complete:
-            moment = p.l0r * (g * turn - a) - side * self.resisting
+            moment = p.l0r * (g * turn - a) - p.m_tot * g * p.edge(side)
             modes = self.free(y, a)
         else:
-            m, reach = p.effective_mass, side * p.half_width
+            m, reach = p.effective_mass, p.edge(side)
             sin, cos = np.sin(turn), np.cos(turn)
             # Weight and inertia force act at the centre of mass, which the flexure moves.
-            along, across = p.l0r, side * p.m_tot * p.half_width - m @ d
+            along, across = p.l0r, p.m_tot * reach - m @ d
             moment = g * (along * sin - across * cos) - a * (along * cos + across * sin)
             moment -= 2.0 * spin * (v @ (m * (d - reach)))
             modes = self.free(y, a * cos) + g * sin - spin**2 * (reach - d)
+        moment -= self.pull(turn, side)[1]
         # The modal rows say D'' = modes - h* θ''; put into the row of θ:
         left = self.inertia(d, side) - self.arm @ p.effective_height
         rotation = (moment - self.arm @ modes) / left
@@ -181,13 +229,14 @@ class CompleteModel:
         rotation, modes = self.accelerations(y, a, side)
         d, v = self.modal(y)
         sin, cos, spin = np.sin(y[0]), np.cos(y[0]), y[1] if side else 0.0
-        m, along, across = p.effective_mass, p.l0r, side * p.m_tot * p.half_width - p.effective_mass @ d
+        m, along, across = p.effective_mass, p.l0r, p.m_tot * p.edge(side) - p.effective_mass @ d
         along_speed, along_rate = 2.0 * spin * (m @ v), m @ modes
         horizontal = rotation * (across * sin + along * cos) + spin**2 * (across * cos - along * sin)
         vertical = rotation * (across * cos - along * sin) - spin**2 * (across * sin + along * cos)
+        tension = self.pull(y[0], side)[0]
         return (
-            p.m_tot * a + horizontal + along_rate * cos - along_speed * sin,
-            p.m_tot * GRAVITY + vertical - along_rate * sin - along_speed * cos,
+            p.m_tot * a + horizontal + along_rate * cos - along_speed * sin + tension * np.sin(0.5 * y[0]),
+            p.m_tot * GRAVITY + vertical - along_rate * sin - along_speed * cos + tension * np.cos(0.5 * y[0]),
         )
 
     def kinetic_energy(self, y: Vector, side: int) -> float:
@@ -197,11 +246,11 @@ class CompleteModel:
         return 0.5 * self.inertia(d, side) * y[1] ** 2 + y[1] * (self.arm @ v) + 0.5 * m @ (v * v)
 
     def potential_energy(self, y: Vector, side: int) -> float:
-        """Eq. 8 without shaking, zero at rest; elastic structures alone."""
+        """Eq. 8 without shaking, zero at rest; elastic structures without ropes alone."""
         p = self.structure
         d = self.modal(y)[0]
         strain = 0.5 * p.effective_mass @ (p.omega * d) ** 2
         if not self.complete:
-            return strain + side * self.resisting * y[0] - 0.5 * p.l0r * GRAVITY * y[0] ** 2
-        across = side * p.m_tot * p.half_width - p.effective_mass @ d
+            return strain + p.m_tot * GRAVITY * p.edge(side) * y[0] - 0.5 * p.l0r * GRAVITY * y[0] ** 2
+        across = p.m_tot * p.edge(side) - p.effective_mass @ d
         return strain + GRAVITY * (across * np.sin(y[0]) - 2.0 * p.l0r * np.sin(0.5 * y[0]) ** 2)

@@ -53,6 +53,19 @@ class CompleteVVEL:
 
 
 @dataclass(frozen=True)
+class SidedRestitution:
+    """A `Restitution` that depends on the side that is coming down."""
+
+    right: float
+    left: float
+    shortest: float = 1e-4
+
+    def after(self, model: CompleteModel, y: Vector, a: float, side: int) -> tuple[Vector, int]:
+        law = Restitution(self.right if side > 0 else self.left, self.shortest)
+        return law.after(model, y, a, side)
+
+
+@dataclass(frozen=True)
 class Restitution:
     """Rocking goes over to the other side at e θ', and each mass keeps its horizontal velocity.
 

@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 from scipy.optimize import minimize_scalar
 
+from twins.complete_model import Rope
 from twins.frame import frame_stiffness
 from twins.result import Vector
 
@@ -32,10 +33,22 @@ class Masses:
     damping: Vector
     base_mass: float
     half_width: float
+    eccentricity: float = 0.0
+    ropes: tuple[Rope, ...] = ()
 
     @property
     def total(self) -> float:
         return float(self.mass.sum()) + self.base_mass
+
+    def edge(self, side: int) -> float:
+        """Where the base touches the ground, from the axis of the masses."""
+        return side * self.half_width - self.eccentricity
+
+    def share(self, moment: float) -> float:
+        """An overturning moment over the one at which the base lifts to the side to which it would."""
+        edge = self.edge(-1 if moment > 0.0 else 1)
+        held = self.total * GRAVITY * abs(edge) + sum(rope.force * abs(edge - rope.x) for rope in self.ropes)
+        return moment / held
 
     def pushed(self, u: Vector, rate: Vector) -> Vector:
         """Acceleration that the columns give each mass along the base."""
@@ -43,8 +56,9 @@ class Masses:
 
 
 def masses_of(
-    *, n_stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio
-) -> Masses:
+    *, n_stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio,
+    eccentricity=0.0, ropes=(),
+) -> Masses:  # fmt: skip
     height = story_height * np.arange(1.0, n_stories + 1.0)
     mass = np.full(n_stories, float(story_mass))
     stiffness = frame_stiffness(n_stories, story_height, stiffness_ratio)
@@ -55,7 +69,7 @@ def masses_of(
     damping = moved @ np.diag(2.0 * damping_ratio * np.sqrt(square)) @ moved.T
     first = shape[:, 0]
     half_width = float(mass * height @ first / (mass @ first)) / aspect_ratio
-    return Masses(mass, height, stiffness, damping, base_mass, half_width)
+    return Masses(mass, height, stiffness, damping, base_mass, half_width, eccentricity, tuple(ropes))
 
 
 class Simplified:
@@ -77,8 +91,17 @@ class Simplified:
         if side == 0:
             return moved, 0.0
         arm = float(m.mass @ m.height)
-        moment = arm * GRAVITY * theta - side * m.total * GRAVITY * m.half_width - arm * a
-        return moved, float(moment - m.mass * m.height @ moved) / (m.total * m.half_width**2)
+        moment = arm * GRAVITY * theta - m.total * GRAVITY * m.edge(side) - arm * a - self._pull(theta, side)[1]
+        return moved, float(moment - m.mass * m.height @ moved) / (m.total * m.edge(side) ** 2)
+
+    def _pull(self, theta: float, side: int) -> tuple[float, float]:
+        """Sum of the ropes' forces, and of their moments about the pivot against θ."""
+        force = moment = 0.0
+        for rope in self.m.ropes:
+            reach = self.m.edge(side) - rope.x if side else 0.0
+            tension = rope.force + rope.stiffness * reach * theta
+            force, moment = force + tension, moment + tension * reach
+        return force, moment
 
     def field(self, y: Vector, a: float, side: int) -> Vector:
         moved, turn = self.accelerations(y, a, side)
@@ -89,7 +112,7 @@ class Simplified:
         """Moment that the ground must resist in contact, over the moment at which the base lifts."""
         m = self.m
         moved, _ = self.accelerations(y, a, 0)
-        return float(m.mass * m.height @ (moved + a)) / (m.total * GRAVITY * m.half_width)
+        return m.share(float(m.mass * m.height @ (moved + a)))
 
     def landed(self, y: Vector) -> Vector:
         after, n = y.copy(), self.m.mass.size
@@ -102,11 +125,12 @@ class Simplified:
     def reactions(self, y: Vector, a: float, side: int) -> tuple[float, float]:
         m = self.m
         moved, turn = self.accelerations(y, a, side)
-        return float(m.mass @ moved) + m.total * a, m.total * (GRAVITY + side * m.half_width * turn)
+        upward = m.edge(side) * turn if side else 0.0
+        return float(m.mass @ moved) + m.total * a, m.total * (GRAVITY + upward) + self._pull(y[m.mass.size], side)[0]
 
 
 class Complete:
-    """State [X_i, Z_i, θ, X'_i, Z'_i, θ'] about the middle of the base, in contact Z_i = h_i."""
+    """State [X_i, Z_i, θ, X'_i, Z'_i, θ'] from the masses' axis at rest, in contact Z_i = h_i."""
 
     def __init__(self, masses: Masses) -> None:
         self.m = masses
@@ -128,14 +152,14 @@ class Complete:
         if side == 0:
             return m.pushed(x, vx) - a, np.zeros_like(x), 0.0
         sine, cosine = np.sin(theta), np.cos(theta)
-        pivot = side * m.half_width
+        pivot = m.edge(side)
         along, upward = (x - pivot) * cosine - z * sine, vx * cosine - vz * sine
         pushed = m.pushed(along + pivot, upward - spin * m.height) + GRAVITY * sine - a * cosine
         free = 2.0 * spin * along * upward - spin**2 * m.height * along
         torque = float(m.mass @ (-z * a + (x - pivot) * GRAVITY))
-        torque += m.base_mass * (-pivot * cosine * GRAVITY - pivot * sine * a)
+        torque += m.base_mass * (-pivot * cosine * GRAVITY - pivot * sine * a) - self._pull(theta, side)[2]
         turn = torque - float(m.mass @ (m.height * pushed + free))
-        turn /= float(m.mass @ along**2) + m.base_mass * m.half_width**2
+        turn /= float(m.mass @ along**2) + m.base_mass * pivot**2
         normal = -2.0 * spin * upward - turn * along + spin**2 * m.height
         return pushed * cosine + normal * sine, -pushed * sine + normal * cosine, turn
 
@@ -148,7 +172,21 @@ class Complete:
         m = self.m
         ax, _, _ = self.accelerations(y, a, 0)
         leaning = float(m.mass @ y[: m.mass.size]) * GRAVITY
-        return (float(m.mass * m.height @ (ax + a)) - leaning) / (m.total * GRAVITY * m.half_width)
+        return m.share(float(m.mass * m.height @ (ax + a)) - leaning)
+
+    def _pull(self, theta: float, side: int) -> tuple[float, float, float]:
+        """Sum of the ropes' pulls on the base to the left and downward, and of their moments against θ."""
+        left = down = moment = 0.0
+        for rope in self.m.ropes:
+            pivot = self.m.edge(side) if side else rope.x
+            arm = rope.x - pivot
+            place = np.array([arm * np.cos(theta), -arm * np.sin(theta)])  # where it leaves the base, from the pivot
+            chord = place - [arm, 0.0]
+            length = float(np.hypot(*chord))
+            pull = (rope.force + rope.stiffness * length) * (chord / length if length else np.array([0.0, 1.0]))
+            left, down = left + pull[0], down + pull[1]
+            moment += place[1] * pull[0] - place[0] * pull[1]
+        return left, down, moment
 
     def landed(self, y: Vector) -> Vector:
         x, _, _, vx, _, _ = self._parts(y)
@@ -162,11 +200,12 @@ class Complete:
         m = self.m
         ax, az, turn = self.accelerations(y, a, side)
         _, _, theta, _, _, spin = self._parts(y)
-        pivot = side * m.half_width
+        pivot = m.edge(side) if side else 0.0
         base_x = pivot * (turn * np.sin(theta) + spin**2 * np.cos(theta))
         base_z = pivot * (turn * np.cos(theta) - spin**2 * np.sin(theta))
         x = float(m.mass @ (ax + a)) + m.base_mass * (base_x + a)
-        return x, float(m.mass @ (az + GRAVITY)) + m.base_mass * (base_z + GRAVITY)
+        left, down, _ = self._pull(theta, side)
+        return x + left, float(m.mass @ (az + GRAVITY)) + m.base_mass * (base_z + GRAVITY) + down
 
 
 @dataclass
@@ -184,7 +223,7 @@ class NewtonResult:
 def integrate(model: Simplified | Complete, acceleration: Vector, dt: float) -> NewtonResult:
     """Carry the masses through a record from rest."""
     y, side = model.start(), 0
-    result = NewtonResult(np.zeros(model.m.mass.size), 0.0, model.m.total * GRAVITY, 0.0)
+    result = NewtonResult(np.zeros(model.m.mass.size), 0.0, np.inf, 0.0)
     for first, last in pairwise(acceleration):
         t = 0.0
         while t < dt * (1.0 - 1e-12):
@@ -234,7 +273,7 @@ def _phase(model, result, y, side, start, first, last, dt):
         top = seen[k, f]
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
         room = np.ptp(seen[max(k - 1, 0) : k + 2, f])
-        if low < grid[k] < high and top + room > best[f]:
+        if low < high and top + room > best[f]:  # also beside an end of the piece
             found = minimize_scalar(lambda t, f=f: -values(t)[f], bounds=(low, high), method="bounded",
                                     options={"xatol": 1e-9})  # fmt: skip
             top = max(top, -found.fun)

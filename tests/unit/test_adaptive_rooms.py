@@ -1,4 +1,4 @@
-"""The adaptive engine's books: long histories, repeated runs, runs without end."""
+"""The engine's books where it integrates: long histories, repeated runs, runs without end."""
 
 import dataclasses
 
@@ -7,8 +7,10 @@ import pytest
 
 from rockflex import Frame, GroundMotion, InitialState, Restitution, SolverError, load_suite, quiet_motion, simulate
 from rockflex.models import parse_model
-from rockflex.response import global_observables
-from rockflex.solve import AdaptiveEngine, _engine
+from rockflex.response import asked_of
+from rockflex.solve import Engine
+from rockflex.solve import engine as module
+from rockflex.solve.history import MARGIN
 
 FRAME = Frame(
     n_stories=2,
@@ -25,16 +27,28 @@ RECORD = load_suite("el-centro-1940")[0].acceleration[60:160] * 2.5
 
 def engine(label="2DOF-C", **options):
     model = parse_model(label).of(FRAME.rocking(), **options)
-    return AdaptiveEngine(model, global_observables(model))
+    return Engine(model, asked_of(model))
 
 
 def test_a_history_finds_room_for_all_its_events(monkeypatch):
-    """More events than there is room for at first: the run is made again, and ends the same."""
-    monkeypatch.setattr(_engine, "EVENTS", 64)
+    """More events than there is room for at first: it grows while the run goes on, which ends the same."""
     options = {"impact": Restitution(0.95, 1e-5), "initial": InitialState(5e-4)}
+    roomy = simulate(FRAME, quiet_motion(2.0, dt=0.1), "rigid-C", **options)
+    monkeypatch.setattr(module, "EVENTS", 16)
+    rooms, carry = [], Engine._carry
+
+    def carried(self, system, steps, course, at, log, motion):
+        rooms.append(log.history.shape[0])
+        return carry(self, system, steps, course, at, log, motion)
+
+    monkeypatch.setattr(Engine, "_carry", carried)
     run = simulate(FRAME, quiet_motion(2.0, dt=0.1), "rigid-C", **options)
     assert run.n_impacts > 40
-    assert run.time.size > 21 + _engine.EVENTS
+    assert run.time.size > 21 + module.EVENTS + MARGIN
+    assert rooms == sorted(rooms)
+    assert rooms[0] < run.time.size < rooms[-1]
+    assert set(np.diff(rooms)) - {0} == {size for size in rooms[:-1] if 2 * size in rooms}  # it doubles
+    assert np.array_equal(run.history.nodes, roomy.history.nodes)
     assert run.time[-1] == 2.0
     assert simulate(FRAME, quiet_motion(2.0, dt=0.1), "rigid-C", "peaks", **options).peaks() == run.peaks()
 
@@ -51,8 +65,10 @@ def test_an_engine_runs_again_and_again():
     assert np.array_equal(first.peaks, again.peaks)
     assert np.array_equal(record, RECORD)
     assert np.array_equal(start, kept)
-    assert mine.system(0.02) is mine.system(0.02)
-    assert mine.system(0.02) is not mine.system(0.01)
+    known = mine._phases.known_system
+    assert known(0.02) is known(0.02)
+    assert known(0.02) is not known(0.01)
+    assert known(0.005) is None
 
 
 def test_records_of_any_kind_are_taken():

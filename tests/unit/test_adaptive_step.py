@@ -6,13 +6,13 @@ from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as published
 
 from rockflex import BoucWen, Frame
-from rockflex.models import EXTRA, Model
-from rockflex.solve import Observables
+from rockflex.models import EXTRA, Model, Quantities
+from rockflex.solve import Engine
 from rockflex.solve.adaptive import tableau
-from rockflex.solve.adaptive.engine import AdaptiveEngine
-from rockflex.solve.adaptive.layout import TERMS, stages
+from rockflex.solve.adaptive.layout import TERMS, TRIAL, stages_of
 from rockflex.solve.adaptive.step import FAILED, expand_nested, extend, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.sums import place_stage
+from rockflex.solve.layout import Span, progress_at_start
 from twins import complete_model as twin
 from twins.complete import complete_frame
 
@@ -31,10 +31,28 @@ A, SLOPE = 1.5, -20.0
 ENDLESS = np.array([np.inf, 0.0, 0.0, 0.0, 0.0])  # work
 
 
-def flow(tolerance=1e30):
-    """A complete model of two modes, whose steps are never refused."""
+def prepared(tolerance=1e30):
+    """The engine of a complete model of two modes, whose steps are never refused."""
     model = Model(complete=True).of(Frame(**FRAME).rocking())
-    return AdaptiveEngine(model, Observables.none(model), tolerance)._flow
+    return Engine(model, Quantities.none(2), tolerance)
+
+
+def flow(tolerance=1e30):
+    return prepared(tolerance)._flow
+
+
+def over(step, begun=0.0):
+    """What is left of the sample, after some of it is done."""
+    return Span(begun, begun + step, A + SLOPE * begun, SLOPE, step)
+
+
+def room_of(motion, rows=1):
+    """Room for steps from a motion, of which the last three entries count energies."""
+    return stages_of(motion, motion.size - EXTRA + 1, rows, ENDLESS, progress_at_start(0, stated=True))
+
+
+def started():
+    return room_of(np.concatenate((START, np.zeros(EXTRA))))
 
 
 def exact(time):
@@ -49,9 +67,9 @@ def exact(time):
 
 def stepped(step, given=None):
     """Room after one step of this length."""
-    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1, ENDLESS)
-    room.step[0] = step
-    taken = take_step(given or flow(), 1.0, A, SLOPE, step, room)
+    room = started()
+    room.at.step = step
+    taken = take_step(given or flow(), 1.0, over(step), room)
     assert taken == step
     return room
 
@@ -96,7 +114,7 @@ def test_nested_products_become_powers():
 def test_the_error_of_a_step_falls_with_its_ninth_power(capsys):
     """Local order 9, so the error over a given time falls with the eighth."""
     steps = np.array([0.02, 0.016, 0.013, 0.01])
-    errors = [np.abs(stepped(h).trial[:6] - exact(h)).max() for h in steps]
+    errors = [np.abs(stepped(h).vectors[TRIAL, :6] - exact(h)).max() for h in steps]
     orders = observed(errors, steps)
     with capsys.disabled():
         print(f"\nstep: errors {np.array2string(np.array(errors), precision=2)}, observed orders {orders.round(2)}")
@@ -112,7 +130,7 @@ def test_the_continuous_extension_is_of_order_seven(capsys):
         found = []
         for u in places:
             room = stepped(h)
-            extend(flow(), 1.0, A, SLOPE, h, room)
+            extend(flow(), 1.0, over(h), room)
             settle_on(u, room)
             found.append(np.abs(room.motion[:6] - exact(u * h)).max())
         errors.append(max(found))
@@ -121,22 +139,26 @@ def test_the_continuous_extension_is_of_order_seven(capsys):
         print(f"\ninside: errors {np.array2string(np.array(errors), precision=2)}, observed orders {orders.round(2)}")
     assert np.all(orders > 7.0)
     assert orders[-1] == pytest.approx(8.0, abs=0.6)
-    for u, wanted in ((0.0, START), (1.0, stepped(0.01).trial[:6])):
+    for u, wanted in ((0.0, START), (1.0, stepped(0.01).vectors[TRIAL, :6])):
         room = stepped(0.01)
-        extend(flow(), 1.0, A, SLOPE, 0.01, room)
+        extend(flow(), 1.0, over(0.01), room)
         settle_on(u, room)
         np.testing.assert_allclose(room.motion[:6], wanted, rtol=1e-13)
 
 
 def test_rows_are_polynomials_over_the_step():
     h = 0.1
-    weights = np.random.default_rng(1).standard_normal(9)  # D, D', θ, θ', z, a, s
+    engine = prepared()
+    phase = engine._phases.place(engine.model.start(1))
+    system = engine._phases.system(1.0, 0.0)
+    weights = np.random.default_rng(1).standard_normal(9)  # D, D', θ, θ', z, a, 1
+    system.plain_rows[phase, 0] = weights
     room = stepped(h)
-    extend(flow(), 1.0, A, SLOPE, h, room)
-    row_poly(0, weights, A, SLOPE, 1.0, h, room)
+    extend(flow(), 1.0, over(h), room)
+    row_poly(system, phase, 0, over(h), room)
     for u in (0.0, 0.3, 1.0):
         there = stepped(h)
-        extend(flow(), 1.0, A, SLOPE, h, there)
+        extend(flow(), 1.0, over(h), there)
         settle_on(u, there)
         value = weights[:7] @ there.motion[:7] + weights[7] * (A + SLOPE * h * u) + weights[8]
         assert np.polynomial.polynomial.polyval(u, room.polys[0]) == pytest.approx(value, rel=1e-12)
@@ -146,23 +168,23 @@ def test_steps_follow_one_another():
     """The last stage is the next step's first, and the largest sizes are kept."""
     given = flow()
     room = stepped(0.005, given)
-    end, last = room.trial.copy(), room.rates[tableau.LAST].copy()
+    end, last = room.vectors[TRIAL].copy(), room.rates[tableau.LAST].copy()
     step_over(room)
     assert np.array_equal(room.motion, end)
     assert np.array_equal(room.rates[0], last)
     assert np.array_equal(room.size, np.abs(end[:7]))
-    room.step[0] = 0.005
-    take_step(given, 1.0, A + SLOPE * 0.005, SLOPE, 0.005, room)
-    np.testing.assert_allclose(room.trial[:6], exact(0.01), rtol=0.0, atol=1e-12)
+    room.at.step = 0.005
+    take_step(given, 1.0, over(0.005, 0.005), room)
+    np.testing.assert_allclose(room.vectors[TRIAL, :6], exact(0.01), rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_the_error_control_keeps_its_tolerance(tolerance):
     given = flow(tolerance)
-    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1, ENDLESS)
+    room = started()
     time, taken = 0.0, []
     while time < 0.4:
-        step = take_step(given, 1.0, A + SLOPE * time, SLOPE, 0.4 - time, room)
+        step = take_step(given, 1.0, over(0.4 - time, time), room)
         assert 0.0 < step <= 0.4 - time
         step_over(room)
         time += step if step < 0.4 - time else 0.4 - time
@@ -174,21 +196,21 @@ def test_the_error_control_keeps_its_tolerance(tolerance):
 
 def test_a_motion_that_leaves_all_numbers_cannot_be_followed():
     given = flow(1e-10)
-    room = stages(np.concatenate((START, np.zeros(EXTRA))), 1, ENDLESS)
+    room = started()
     room.motion[0] = np.nan
-    assert take_step(given, 1.0, A, SLOPE, 0.1, room) == FAILED
-    room = stages(np.concatenate((np.full(6, 1e200), np.zeros(EXTRA))), 1, ENDLESS)
-    assert take_step(given, 1.0, A, SLOPE, 0.1, room) == FAILED
+    assert take_step(given, 1.0, over(0.1), room) == FAILED
+    room = room_of(np.concatenate((np.full(6, 1e200), np.zeros(EXTRA))))
+    assert take_step(given, 1.0, over(0.1), room) == FAILED
 
 
 @pytest.mark.parametrize("velocity", [0.5, -0.5, 0.0])
 def test_the_branch_of_the_hysteresis(velocity):
     """By the velocity's sign, or where it stands still by what it will be: under a < 0 it is pushed forward."""
     model = Model(1, lifts=False).of(Frame(**FRAME).rocking(), bouc_wen=BoucWen(0.02))
-    given = AdaptiveEngine(model, Observables.none(model))._flow
+    given = Engine(model, Quantities.none(1))._flow
     for a in (-2.0, 2.0):
         motion = np.zeros(4 + EXTRA)
         motion[1] = velocity
-        room = stages(motion, 1, ENDLESS)
-        take_step(given, 0.0, a, 0.0, 0.001, room)
-        assert room.branch[0] == (np.sign(velocity) or -np.sign(a))
+        room = room_of(motion)
+        take_step(given, 0.0, Span(0.0, 0.001, a, 0.0, 0.001), room)
+        assert room.at.branch == (np.sign(velocity) or -np.sign(a))

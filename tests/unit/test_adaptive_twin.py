@@ -1,4 +1,4 @@
-"""The adaptive engine against an independent integration by SciPy, under stretches of records."""
+"""Integrated models against an independent integration by SciPy, under stretches of records."""
 
 import numpy as np
 import pytest
@@ -92,15 +92,12 @@ def test_states_at_every_sample():
 def test_the_peaks_follow_the_tolerance(tolerance):
     """A looser engine is less exact, by about as much."""
     from rockflex.models import parse_model
-    from rockflex.response import global_observables
-    from rockflex.solve import AdaptiveEngine
+    from rockflex.response import asked_of
+    from rockflex.solve import Engine
 
     record = motion("el-centro-1940")
     model = parse_model("2DOF-C").of(rf.Frame(**FRAME).rocking())
-    loose, tight = (
-        AdaptiveEngine(model, global_observables(model), t).run(record.acceleration, record.dt)
-        for t in (tolerance, 1e-13)
-    )
+    loose, tight = (Engine(model, asked_of(model), t).run(record.acceleration, record.dt) for t in (tolerance, 1e-13))
     assert loose.n_impacts == tight.n_impacts
     error = np.abs(loose.peaks / tight.peaks - 1.0).max()
     assert error < 1e3 * tolerance

@@ -1,4 +1,4 @@
-"""The adaptive engine's kernels run uncompiled too, and say the same."""
+"""The kernels of integrated models run uncompiled too, and say the same."""
 
 import numpy as np
 import pytest
@@ -63,10 +63,10 @@ def test_uncompiled_kernels_say_the_same():
 
 CHATTERING = """
 import json, sys
-import rockflex.solve.adaptive.cross as cross
+import rockflex.solve.events as events
 from rockflex import SolverError
 from test_adaptive_without_jit import runs
-cross.MOST_EVENTS = -1
+events.MOST_EVENTS = -1
 try:
     next(runs())
 except SolverError as error:

@@ -123,6 +123,63 @@ def test_rigid_block_rocks_by_default_as_one(block):
     assert [run["model"] for run in json.loads(result.stdout)["runs"]] == ["rigid", "rigid-C"]
 
 
+ECCENTRIC = """eccentricity = -0.15
+[frame]
+n_stories = 3
+story_height = 3.0
+story_mass = 40e3
+base_mass = 40e3
+stiffness_ratio = 0.1
+period = 0.5
+aspect_ratio = 6.0
+damping_ratio = 0.02
+"""
+
+
+def test_both_edges_of_an_eccentric_base(tmp_path):
+    path = tmp_path / "moved.toml"
+    path.write_text(ECCENTRIC, "utf-8")
+    found = json.loads(invoke(path, "--json").stdout)
+    p = rf.read_structure(path).rocking()
+    for side, name in ((1, "right"), (-1, "left")):
+        expected = rf.uplifted_modes(p, side=side)
+        rows = [row for row in found["uplifted"] if row["side"] == name]
+        assert [row["omega"] for row in rows] == expected.omega.tolist()
+        assert [row["mode"] for row in rows] == [1, 2, 3]
+    pivots = found["rocking"]["pivots"]
+    assert [each["i_theta"] for each in pivots] == [p.pivot(1).i_theta, p.pivot(-1).i_theta]
+    assert found["rocking"]["eccentricity"] == -0.15
+    numbers = {name for name, value in pivots[0].items() if isinstance(value, float)}
+    assert numbers <= found["units"].keys()
+    # By hand: 160 t on a base whose right edge is the further one.
+    assert pivots[0]["resisting_moment"] == pytest.approx(160e3 * 9.81 * (p.half_width + 0.15))
+    result = invoke(path)
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert ["Masses", "to", "the", "right", "of", "its", "middle,", "e", "-0.1500", "m"] in rows
+    assert ["About", "the", "edge", "right", "left"] in rows
+    moments = [f"{p.pivot(side).resisting_moment / 1e3:.4g}" for side in (1, -1)]
+    assert ["Resisting", "moment,", "M_r", *moments, "kN", "m"] in rows
+    assert "While uplifted about the left edge, with these modes" in result.stdout
+    assert max(map(len, result.stdout.splitlines())) <= 80
+
+
+def test_tendons_to_one_side_make_two_edges(tmp_path):
+    path = tmp_path / "held.toml"
+    tendon = "[[tendons]]\nposition = 0.4\ninitial_force = 2e5\nstiffness = 3e6\n"
+    path.write_text(ECCENTRIC.replace("eccentricity = -0.15\n", "") + tendon, "utf-8")
+    result = invoke(path)
+    rows = [line.split() for line in result.stdout.splitlines()]
+    p = rf.read_structure(path).rocking()
+    stiffness = [f"{p.pivot(side).tendon_stiffness / 1e3:.4g}" for side in (1, -1)]
+    assert ["Stiffness", "of", "the", "tendons", *stiffness, "kN", "m/rad"] in rows
+    assert "Masses to the right" not in result.stdout
+    by_flags = ("--stories", 3, "--story-height", 3, "--story-mass", 40e3, "--base-mass", 40e3, "--stiffness-ratio",
+                0.1, "--period", 0.5, "--aspect-ratio", 6, "--damping-ratio", 0.02)  # fmt: skip
+    moved = json.loads(invoke(*by_flags, "--eccentricity", 0.1, "--json").stdout)
+    assert moved["structure"]["eccentricity"] == 0.1
+    assert [each["side"] for each in moved["rocking"]["pivots"]] == [1, -1]
+
+
 def test_adequacy_is_printed():
     result = invoke(STRUCTURE, "--adequacy")
     rows = [line.split() for line in result.stdout.splitlines()]

@@ -393,3 +393,15 @@ def test_bar_on_a_terminal_leaves_stdout_alone():
     result = CliRunner().invoke(app, arguments, env={"FORCE_COLOR": "1", "TERM": "xterm"})
     assert "Simulating" in result.stderr
     assert len(json.loads(result.stdout)["runs"]) == 84
+
+
+def test_ctrl_c_ends_without_a_trace(tmp_path, monkeypatch):
+    def interrupted(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    for name in ("simulate", "simulate_many"):
+        monkeypatch.setattr(_simulations, name, interrupted)
+    done = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out")
+    assert done.exit_code == 130
+    assert done.stderr == "Stopped; nothing was written.\n"
+    assert list(tmp_path.iterdir()) == []

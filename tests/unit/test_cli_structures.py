@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rockflex import Frame, InputError, LumpedStructure, RockingProperties
+from rockflex import Eccentric, Frame, InputError, LumpedStructure, RockingProperties
 from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
 FRAME = {
@@ -137,6 +137,30 @@ def test_tendons_are_described(write):
     assert "tendons" not in describe_properties(load_structure(None, FRAME).properties)
 
 
+def test_an_eccentric_base_is_described(write):
+    text = "eccentricity = -0.2\n" + toml(FRAME)
+    moved = load_structure(write(text), NO_FLAGS)
+    flags = load_structure(None, {**FRAME, "eccentricity": -0.2})
+    assert moved.built == flags.built == Eccentric(Frame(**FRAME), -0.2)
+    assert moved.describe() == {"name": "structure", "kind": "frame", **FRAME, "eccentricity": -0.2}
+    assert {**moved.describe(), "name": ""} == {**flags.describe(), "name": ""}
+    assert load_structure(None, {**FRAME, "eccentricity": None}).built == Frame(**FRAME)
+    assert moved.title == "structure: 5 modes, T_1 = 1 s, h*_1/B = 10, ζ_1 = 0.02, e = -0.2 m"
+    held = load_structure(write(text + TENDON), NO_FLAGS)
+    assert held.base_mass == moved.base_mass == 40e3
+    described = describe_properties(moved.properties)
+    assert described["eccentricity"] == -0.2
+    right, left = described["pivots"]
+    assert (right["side"], left["side"]) == (1, -1)
+    assert left["resisting_moment"] == moved.properties.resisting_moment < right["resisting_moment"]
+    assert "pivots" not in describe_properties(load_structure(None, FRAME).properties)
+
+
+def test_title_of_an_eccentric_rigid_block(write):
+    block = load_structure(write("eccentricity = 0.25\n[block]\nslenderness = 0.2\nhalf_diagonal = 3.0\n"), NO_FLAGS)
+    assert block.title == f"structure: rigid, B/h = {np.tan(0.2):.4g}, e = 0.25 m"
+
+
 def test_paths_start_from_the_folder_of_the_file(write, tmp_path):
     np.savetxt(tmp_path / "k.csv", [[300.0, -100.0], [-100.0, 100.0]], delimiter=",")
     values = {"mass": [2.0, 1.0], "stiffness": "k.csv", "heights": [1.0, 2.0]}
@@ -168,7 +192,7 @@ def test_unknown_table(failing):
     message = failing(toml(FRAME, "frmae"))
     keys = (
         "name, frame, fish_bone, wall_frame, tapered_tower, cantilever, beam, lumped, matrices, modes, properties, "
-        "block, tendons, impact, restitution, bouc_wen"
+        "block, eccentricity, tendons, impact, restitution, bouc_wen"
     )
     assert message == f": frmae is not known; there are {keys}. Did you mean frame?"
 

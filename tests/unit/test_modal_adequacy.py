@@ -263,3 +263,19 @@ def test_lowest_uplifted_frequencies_are_those_of_all(structure):
     whole = rf.uplifted_modes(p).omega
     for count in (1, 2, 3):
         np.testing.assert_allclose(lowest_uplifted(p, count), whole[:count], rtol=1e-14)
+
+
+@pytest.mark.parametrize("kept", [15, 4])
+def test_on_an_eccentric_base_the_worse_side_counts(kept):
+    """Each side has the frequencies of a base in the middle, as wide as its arm."""
+    p = replace(frame(15, SHEAR, 6.0).rocking().truncated(kept), eccentricity=3.0)
+    found = rf.adequacy(p, base_mass=40e3)
+    middle = replace(p, eccentricity=0.0)
+    sides = [rf.adequacy(middle.with_half_width(p.pivot(side).arm), base_mass=40e3) for side in (1, -1)]
+    assert p.half_width > 4.0
+    assert sides[0].frequency_error[0, 0] > 1.1 * sides[1].frequency_error[0, 0]
+    worse = np.maximum(sides[0].frequency_error, sides[1].frequency_error)
+    np.testing.assert_allclose(found.frequency_error, worse, rtol=1e-9, atol=1e-12)
+    worse = np.maximum(sides[0].reference_error, sides[1].reference_error)
+    np.testing.assert_allclose(found.reference_error, worse, rtol=1e-9, atol=1e-12)
+    np.testing.assert_array_equal(found.base_moment, sides[0].base_moment)

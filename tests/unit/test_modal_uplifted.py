@@ -1,5 +1,6 @@
 """Uplifted modes against closed forms, determinants and a rotating beam of many masses."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -198,3 +199,31 @@ def test_pinned_beam_from_beam_elements():
 def test_pinned_beam_refused(arguments, words):
     with pytest.raises(InputError, match=words):
         rf.pinned_beam(*arguments)
+
+
+@pytest.mark.parametrize("n_modes", [1, 3, 15])
+@pytest.mark.parametrize("side", [1, -1])
+def test_each_side_of_an_eccentric_base_is_a_concentric_base_of_its_arm(side, n_modes):
+    tendons = [rf.Tendon(1e5, 2e7, -1.0), rf.Tendon(1e5, 1e7, 0.3)]
+    p = dataclasses.replace(frame(), eccentricity=0.7, tendons=tendons)
+    arm = p.half_width - side * 0.7
+    # One tendon in the middle of a base as narrow, with the same stiffness about its edges.
+    stiffness = sum(each.stiffness * (side * arm - each.position) ** 2 for each in tendons)
+    same = dataclasses.replace(frame().with_half_width(arm), tendons=rf.Tendon(0.0, stiffness / arm**2))
+    one, other = rf.uplifted_modes(p, n_modes, side=side), rf.uplifted_modes(same, n_modes)
+    np.testing.assert_allclose(one.omega, other.omega, rtol=1e-12)
+    np.testing.assert_allclose(one.damping_ratio, other.damping_ratio, rtol=1e-9)
+    np.testing.assert_allclose(one.shapes, other.shapes, rtol=1e-8, atol=1e-12)
+    assert one.growth_rate == pytest.approx(other.growth_rate, rel=1e-10)
+    omega = np.linspace(0.1, 60.0, 9)
+    mine = rf.frequency_equation(p, omega, side=side)
+    np.testing.assert_allclose(mine, rf.frequency_equation(same, omega), rtol=1e-9)
+
+
+def test_without_a_side_it_is_the_pivot_that_lifts_first():
+    p = dataclasses.replace(frame(), eccentricity=-0.5)
+    assert rf.uplifted_modes(p) == rf.uplifted_modes(p, side=-1) != rf.uplifted_modes(p, side=1)
+    assert rf.frequency_equation(p, 3.0) == rf.frequency_equation(p, 3.0, side=-1)
+    assert rf.uplifted_modes(frame(), side=-1) == rf.uplifted_modes(frame())
+    with pytest.raises(InputError, match=r"side must be 1, the right edge of the base, or -1, the left one, but 0"):
+        rf.uplifted_modes(p, side=0)

@@ -114,25 +114,30 @@ def test_energies_are_counted(n, complete, spring, side):
 @pytest.mark.parametrize(("n", "complete", "spring"), CASES)
 def test_guards_are_equations_16_and_24(n, complete, spring):
     model, other = pair(n, complete=complete, spring=spring)
-    contact, rocking = model.guards()
+    phases = {side: model.phase(model.start(side)) for side in (0, 1, -1)}
+    (contact,), (right,), (left,) = (phases[side].guards for side in (0, 1, -1))
+    assert (contact.low, contact.high) == pytest.approx((-other.resisting(1), other.resisting(-1)), rel=1e-12)
+    assert (right.low, right.high) == (0.0, 0.5 * np.pi)
+    assert (left.low, left.high) == (-0.5 * np.pi, 0.0)
     for motion, a in states(n):
         state = np.concatenate(([0.0, 0.0], motion[: 2 * n], motion[-1:] if spring else []))
-        vector = np.concatenate((motion, [a, 0.0]))
+        vector = np.concatenate((motion, [a, 1.0]))
         vector[2 * n : 2 * n + 2] = 0.0
         expected = other.overturning(state, a)
-        assert contact @ vector == pytest.approx(expected, rel=1e-11, abs=1e-12 * other.resisting)
+        assert contact.row @ vector == pytest.approx(expected, rel=1e-11, abs=1e-12 * other.resisting(1))
         vector[2 * n] = 0.3
-        assert rocking @ vector == 0.3
+        assert right.row @ vector == left.row @ vector == 0.3
 
 
 def test_at_uplift_the_complete_rotation_starts_from_the_excess():
     """θ'' (I + ...) = s (|M| - m_tot g B) where the base leaves the ground."""
     model, other = pair(2, complete=True)
+    resistance = model.properties.resisting_moment
     for motion, a in states(2):
         motion[4:6] = 0.0
         for side in (1, -1):
             moment = other.overturning(np.concatenate(([0.0, 0.0], motion[:4])), a)
-            excess = -moment - side * model.linear.resistance
+            excess = -moment - side * resistance
             rates = rates_of(model, float(side), a, motion)
             left = inertia_left(model.field(), float(side), motion)
             assert rates[5] * left == pytest.approx(excess, rel=1e-10, abs=1e-10 * abs(moment))
@@ -143,17 +148,17 @@ def test_the_simplified_field_is_the_linear_model():
     model, _ = pair(1, complete=False, spring=(1e9, 0.5, 0.5, 0.5, 2.0))
     linear = model.linear
     rng = np.random.default_rng(2)
-    for side in (1.0, -1.0, 0.0):
+    for side in (1, -1, 0):
         motion = rng.normal(0.0, 0.1, 5)
         a = rng.normal()
-        if side == 0.0:
+        if side == 0:
             motion[2:4] = 0.0
         motion[4] = motion[0] / 1e9  # z while elastic
-        rates = rates_of(model, side, a, motion)
-        vector = np.concatenate((motion[:4], [a, side]))
-        assert rates[1] == pytest.approx(float((linear.modal_accelerations(rocking=side != 0.0) @ vector)[0]), rel=1e-9)
+        rates, key = rates_of(model, float(side), a, motion), linear.start(side)
+        vector = np.concatenate((motion[:4], [a, 1.0]))
+        assert rates[1] == pytest.approx(float((linear.modal_accelerations(key) @ vector)[0]), rel=1e-9)
         if side:
-            assert rates[3] == pytest.approx(float(linear.angular_acceleration() @ vector), rel=1e-9)
+            assert rates[3] == pytest.approx(float(linear.angular_acceleration(key) @ vector), rel=1e-9)
 
 
 def test_a_model_made_of_its_own_is_complete():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rockflex import Frame, ImpactLaw, InputError, Restitution, VVELComplete, VVELSimplified
-from rockflex.models import ForgottenLaw, impact_of, kinetic_energy, stick, strike
+from rockflex.models import ForgottenLaw, SidedRestitution, impact_of, kinetic_energy, stick, strike
 
 FRAME = Frame(
     n_stories=4,
@@ -41,6 +41,7 @@ LAWS = [
     Restitution(0.0),
     Restitution(0.35),
     Restitution(1.0, shortest_excursion=0.02),
+    SidedRestitution(Restitution(0.8), Restitution(0.3)),
     Mine(),
 ]
 

@@ -24,19 +24,18 @@ def model(n_modes, *, lifts=True):
 
 
 def draw(n, seed=0):
-    """A state with the ground acceleration and the side: the vector on which rows act."""
-    return np.random.default_rng(seed).standard_normal(2 * n + 4) * 0.1
+    """A state with the ground acceleration and 1: the vector on which rows act."""
+    return np.append(np.random.default_rng(seed).standard_normal(2 * n + 3) * 0.1, 1.0)
 
 
 @pytest.mark.parametrize("n", [1, 2, 4])
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("side", [1, -1])
 def test_rocking_accelerations_satisfy_equation_23(n, side):
     tied = model(n)
-    p, x = tied.properties, draw(n)
-    x[-1] = side
+    p, x, key = tied.properties, draw(n), tied.start(side)
     d, v, turn, a = x[:n], x[n : 2 * n], x[2 * n], x[-2]
-    angular = tied.angular_acceleration() @ x
-    modal = tied.modal_accelerations(rocking=True) @ x
+    angular = tied.angular_acceleration(key) @ x
+    modal = tied.modal_accelerations(key) @ x
     arm = p.effective_mass * p.effective_height
     weight = -side * p.m_tot * GRAVITY * p.half_width + p.l0r * GRAVITY * turn
     assert p.i_theta * angular + arm @ modal == pytest.approx(weight - p.l0r * a, rel=1e-12)
@@ -51,30 +50,38 @@ def test_contact_satisfies_equations_15_and_24(n):
     tied = model(n)
     p, x = tied.properties, draw(n, 1)
     d, v, a = x[:n], x[n : 2 * n], x[-2]
-    modal = tied.modal_accelerations(rocking=False) @ x
+    modal = tied.modal_accelerations(tied.start(0)) @ x
     np.testing.assert_allclose(modal, -a - 2.0 * p.zeta * p.omega * v - p.omega**2 * d, rtol=1e-13)
+    assert not tied.angular_acceleration(tied.start(0)).any()
     moment = (p.effective_mass * p.effective_height) @ modal + p.l0r * a
-    assert tied.contact_moment() @ x == pytest.approx(moment, rel=1e-12)
+    assert tied.overturning_moment() @ x == pytest.approx(moment, rel=1e-12)
 
 
 def test_at_uplift_the_rotation_starts_from_what_the_weight_cannot_hold():
     tied = model(2)
     x = draw(2, 2)
     x[4:6] = 0.0
-    for side in (1.0, -1.0):
-        x[-1] = side
-        excess = -tied.contact_moment() @ x - side * tied.resistance
-        assert tied.angular_acceleration() @ x == pytest.approx(excess / tied.free_inertia, rel=1e-12)
+    resistance = tied.properties.m_tot * GRAVITY * tied.properties.half_width
+    for side in (1, -1):
+        excess = -tied.overturning_moment() @ x - side * resistance
+        turn = tied.angular_acceleration(tied.start(side)) @ x
+        assert turn == pytest.approx(excess / tied.free_inertia(side), rel=1e-12)
 
 
 def test_a_fixed_base_resists_any_moment():
     free, fixed = model(2), model(2, lifts=False)
-    assert free.resistance == free.properties.m_tot * GRAVITY * free.properties.half_width
-    assert fixed.resistance == np.inf
-    assert np.array_equal(free.contact_moment(), fixed.contact_moment())
+    resistance = free.properties.m_tot * GRAVITY * free.properties.half_width
+    (lifting,), (never,) = (tied.phase(tied.start(0)).guards for tied in (free, fixed))
+    assert (lifting.low, lifting.high) == (-resistance, resistance)
+    assert (never.low, never.high) == (-np.inf, np.inf)
+    assert never.below is never.above is None
+    assert np.array_equal(lifting.row, free.overturning_moment())
+    assert np.array_equal(lifting.row, never.row)
+    assert (free.sides, fixed.sides) == ((0, 1, -1), (0,))
 
 
 def test_with_all_modes_the_free_inertia_is_that_of_the_half_width():
     # Σ m* h*² = Σ m h² then, so that m_tot B² is left of I_θ.
     p = model(4).properties
-    assert LinearModel("MDOF-S", p).free_inertia == pytest.approx(p.m_tot * p.half_width**2, rel=1e-9)
+    for side in (1, -1):
+        assert LinearModel("MDOF-S", p).free_inertia(side) == pytest.approx(p.m_tot * p.half_width**2, rel=1e-9)

@@ -15,7 +15,7 @@ from rockflex import (
     VVELSimplified,
     simulate,
 )
-from rockflex.models import LinearModel, Model, NonlinearModel, housner, parse_model
+from rockflex.models import LinearModel, Model, NonlinearModel, SidedRestitution, housner, parse_model
 from rockflex.motion import quiet_motion
 
 FRAME = Frame(
@@ -187,6 +187,41 @@ def test_housner_keeps_the_angular_momentum_about_the_new_pivot():
     momentum = masses @ (heights * heights + half * -half)
     assert housner(block).e == pytest.approx(momentum / block.i_theta, rel=1e-14)
     assert housner(block).shortest_excursion == Restitution(0.0).shortest_excursion
+
+
+@pytest.mark.parametrize("eccentricity", [0.2, -0.45, 1e-9])
+def test_housner_on_an_eccentric_base(eccentricity):
+    """Masses on an axis; each moves with its lever about the old pivot, and has its momentum about the new one."""
+    rng = np.random.default_rng(4)
+    masses, heights, half = rng.uniform(1.0, 5.0, 6), rng.uniform(2.0, 9.0, 6), 0.7
+    block = squat(
+        i_theta=float(masses @ (heights**2 + half**2)),
+        l0r=float(masses @ heights),
+        m_tot=float(masses.sum()),
+        half_width=half,
+        eccentricity=eccentricity,
+    )
+    law = housner(block)
+    assert isinstance(law, SidedRestitution)
+    for side, each in ((1, law.right), (-1, law.left)):
+        # Turning clockwise with velocity 1 about the old pivot at x, a mass at (0, h) moves with (h, x).
+        old, new = side * (half - side * eccentricity), -side * (half + side * eccentricity)
+        momentum = masses @ (heights * heights + new * old)
+        inertia = masses @ (heights**2 + new**2)
+        assert each.e == pytest.approx(momentum / inertia, rel=1e-14)
+        assert law.after(block, np.zeros(0), -side * 2.0)[1] == -side * 2.0 * each.e
+        # Plastic impacts lose energy, whichever pivot has more inertia.
+        assert inertia * each.e**2 < block.pivot(side).i_theta
+    assert law.keeps == Restitution(0.0).keeps
+
+
+def test_an_eccentric_block_too_squat_for_housner():
+    with pytest.raises(InputError) as caught:
+        housner(squat(i_theta=2700.0, eccentricity=-0.3))
+    assert str(caught.value) == (
+        "Housner's coefficient 1 - 2 m_tot B B_2/I_2 is -0.08527: an eccentric block this squat stops at its first "
+        "impact. Give impact=VVELSimplified()."
+    )
 
 
 def test_a_block_too_squat_for_housner():

@@ -7,7 +7,7 @@ import pytest
 from rockflex import _numba
 from rockflex._kernel import Callback, Entry, sources_digest
 from rockflex.motion._spectrum_kernel import oscillator_peaks, unit_responses
-from rockflex.solve.exact.run import run
+from rockflex.solve.run import run
 
 TRIED = ("0.60", "0.61", "0.63", "0.68")
 VERSION = ".".join(numba.__version__.split(".")[:2])
@@ -27,15 +27,16 @@ def missing():
         "a source stamp, without which kernels compile anew in every process": hasattr(
             getattr(getattr(run, "_cache", None), "_cache_file", None), "_source_stamp"
         ),
+        "a pipeline to change, without which kernels compile for twice as long and run slower": bool(_numba.PIPELINE),
         "an entry point, without which every call looks at all its arguments": direct_entry_is_had(),
     }
     return [name for name, there in parts.items() if not there]
 
 
 def direct_entry_is_had():
-    kernel = _numba.compiled(doubled, "stamp")
-    kernel(np.ones(2))
-    return _numba.direct(kernel) is not kernel
+    kernel, given = _numba.compiled(doubled, "stamp"), (np.ones(2),)
+    kernel(*given)
+    return _numba.direct(kernel, given) is not kernel
 
 
 def test_versions_that_were_tried_have_every_part():
@@ -65,6 +66,13 @@ def doubled(x):
     return x.size
 
 
+def for_kernels(function, _stamp):
+    return _numba.compiled_within(function, inlined=False)
+
+
+FOR_ALL = pytest.mark.parametrize("compiled", [_numba.compiled, for_kernels])
+
+
 def says_the_same(kernel):
     ours = (6.0, 0.05, 0.3)
     return kernel(*ours) == pytest.approx(unit_responses.py_func(*ours), rel=1e-12)
@@ -74,26 +82,29 @@ def options_of_numba():
     return [each for each in type(run).targetdescr.options.__mro__ if "_nrt" in vars(each)]
 
 
-def test_without_the_option_kernels_count_references(monkeypatch):
+@FOR_ALL
+def test_without_the_option_kernels_count_references(monkeypatch, compiled):
     """As numba is today, which refuses an option that it does not know at the first call."""
     for each in options_of_numba():
         monkeypatch.delattr(each, "_nrt")
-    kernel = _numba.compiled(unit_responses.py_func, "without the option")
+    kernel = compiled(unit_responses.py_func, "without the option")
     assert "_nrt" not in kernel.targetoptions
     assert says_the_same(kernel)
 
 
-def test_an_option_that_is_refused_at_once_is_not_given(monkeypatch):
+@FOR_ALL
+@pytest.mark.parametrize("option", ["_nrt", "no_cpython_wrapper", "forceinline", "pipeline_class"])
+def test_an_option_that_is_refused_at_once_is_not_given(monkeypatch, option, compiled):
     def refuses(**options):
-        if "_nrt" in options:
-            message = "got an unexpected keyword argument '_nrt'"
+        if option in options:
+            message = f"got an unexpected keyword argument {option!r}"
             raise TypeError(message)
         return numba.njit(**options)
 
     monkeypatch.setattr(_numba, "njit", refuses)
-    kernel = _numba.compiled(doubled, "refused")
+    kernel = compiled(doubled, "refused")
     assert kernel.targetoptions["nogil"]
-    assert kernel.stats.cache_path is not None
+    assert (kernel.stats.cache_path is not None) == (compiled is _numba.compiled)
     assert kernel(np.ones(3)) == 3
 
 
@@ -105,33 +116,35 @@ def without_cache_file(kernel):
     kernel._cache = None
 
 
+@FOR_ALL
 @pytest.mark.parametrize("take_away", [without_stamp, without_cache_file])
-def test_without_a_stamp_nothing_is_kept_on_disk(monkeypatch, take_away):
+def test_without_a_stamp_nothing_is_kept_on_disk(monkeypatch, take_away, compiled):
     def later(**options):
         def decorate(function):
             kernel = numba.njit(**options)(function)
-            if options["cache"]:
+            if options.get("cache"):
                 take_away(kernel)
             return kernel
 
         return decorate
 
     monkeypatch.setattr(_numba, "njit", later)
-    kernel = _numba.compiled(unit_responses.py_func, "stamp")
+    kernel = compiled(unit_responses.py_func, "stamp")
     assert kernel.stats.cache_path is None
     assert kernel.targetoptions["_nrt"] is False
     assert says_the_same(kernel)
 
 
-def test_without_a_folder_to_write_nothing_is_kept_on_disk(monkeypatch):
+@FOR_ALL
+def test_without_a_folder_to_write_nothing_is_kept_on_disk(monkeypatch, compiled):
     def homeless(**options):
-        if options["cache"]:
+        if options.get("cache"):
             message = "cannot cache function 'doubled': no locator available for file 'kernel.py'"
             raise RuntimeError(message)
         return numba.njit(**options)
 
     monkeypatch.setattr(_numba, "njit", homeless)
-    kernel = _numba.compiled(doubled, "stamp")
+    kernel = compiled(doubled, "stamp")
     assert kernel.stats.cache_path is None
     assert kernel(np.ones(3)) == 3
 
@@ -155,12 +168,65 @@ def test_without_an_entry_point_the_kernel_itself_is_called():
     assert kernel.calls == 3
 
 
-def test_a_kernel_of_several_types_has_no_one_entry():
+def test_a_kernel_of_several_types_has_one_entry_for_each():
     kernel = _numba.compiled(doubled, "two")
-    kernel(np.ones(2))
-    assert _numba.direct(kernel) is not kernel
-    kernel(np.ones(4)[::2])
-    assert _numba.direct(kernel) is kernel
+    plain, strided = (np.ones(2),), (np.ones(4)[::2],)
+    kernel(*plain)
+    first = _numba.direct(kernel, plain)
+    assert first is not kernel
+    assert _numba.direct(kernel, strided) is kernel  # not compiled for these yet
+    kernel(*strided)
+    second = _numba.direct(kernel, strided)
+    assert second is not kernel
+    assert second is not first
+    assert _numba.direct(kernel, plain) is first
+    assert [first(*plain), second(*strided)] == [2, 2]
+    assert plain[0].tolist() == strided[0].tolist() == [4.0, 4.0]
+
+
+def test_a_kernel_for_other_kernels_can_be_called_by_all():
+    """It has no way in of its own, through which Python would crash; one is compiled at its first call."""
+    inner = _numba.compiled_within(doubled, inlined=False)
+    assert inner.targetoptions["no_cpython_wrapper"]
+    first, second = np.ones(3), np.ones(4)[::2]
+    assert [inner(first), inner(second), inner(first)] == [3, 2, 3]
+    assert (first.tolist(), second.tolist()) == ([4.0] * 3, [2.0] * 2)
+
+    def twice(x):
+        return inner(x) + inner(x)
+
+    outer = _numba.compiled(twice, "outer")
+    third = np.ones(2)
+    assert outer(third) == 4
+    assert third.tolist() == [4.0, 4.0]
+
+
+@pytest.mark.parametrize("pipeline", [True, False])
+@pytest.mark.parametrize("inlined", [True, False])
+def test_kernels_compute_the_same_however_they_are_compiled(monkeypatch, pipeline, inlined):
+    if not pipeline:
+        monkeypatch.setattr(_numba, "PIPELINE", {})
+    inner = _numba.compiled_within(doubled, inlined=inlined)
+
+    def thrice(x):
+        return inner(x) + inner(x) + inner(x)
+
+    middle = _numba.compiled_within(thrice, inlined=inlined)
+    outer = _numba.compiled(lambda x: middle(x), "whole")
+    x = np.ones(2)
+    assert outer(x) == 6
+    assert x.tolist() == [8.0, 8.0]
+    assert inner(x) == 2  # after it was compiled into others
+    assert x.tolist() == [16.0, 16.0]
+
+
+def test_only_the_whole_is_made_into_machine_code():
+    inner = _numba.compiled_within(doubled, inlined=False)
+    outer = _numba.compiled(lambda x: inner(x), "outer")
+    outer(np.ones(2))
+    (part,), (whole,) = inner.overloads.values(), outer.overloads.values()
+    assert whole.library.get_pointer_to_function(whole.fndesc.llvm_cpython_wrapper_name)
+    assert not part.library.get_pointer_to_function(part.fndesc.llvm_func_name)
 
 
 def calls(function, address, count):

@@ -192,3 +192,16 @@ def test_python_says_the_same():
 def test_missing_file_is_named(tmp_path):
     with pytest.raises(rf.InputError, match=r"The study file .*none\.toml does not exist"):
         load_study(tmp_path / "none.toml")
+
+
+def test_an_eccentric_structure_of_a_study(tmp_path):
+    tendon = "[[structures.tendons]]\nposition = 0.3\ninitial_force = 1e5\nstiffness = 1e6\n"
+    (tmp_path / "plain.toml").write_text(CLOUD, "utf-8")
+    (tmp_path / "moved.toml").write_text(CLOUD.replace('name = "one"', 'name = "one"\neccentricity = 0.1') + tendon)
+    study, plain = load_study(tmp_path / "moved.toml"), load_study(tmp_path / "plain.toml")
+    (p,) = study.bench().structures
+    assert p.eccentricity == 0.1
+    assert [each.position for each in p.tendons] == [0.3]
+    assert study.document()["structures"][0]["eccentricity"] == 0.1
+    # A study without it has the document, and so the folder, that it always had.
+    assert "eccentricity" not in plain.document()["structures"][0]

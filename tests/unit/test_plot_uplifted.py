@@ -152,6 +152,38 @@ def test_tendons_change_the_law():
     drawn(rf.plot_moment_rotation_laws(held))
 
 
+def test_each_side_of_an_eccentric_base_has_its_own_law():
+    p = rf.Eccentric(FRAME, 0.2).rocking()
+    axes = drawn(rf.plot_moment_rotation_laws(p)).axes[1]
+    end, weight = axes.get_xlim()[1], p.m_tot * 9.81 / 1e6
+    near, far = p.half_width - 0.2, p.half_width + 0.2
+    theta, moment = named(axes, "rocking")[0].get_data()
+    np.testing.assert_allclose(theta, [-end, 0.0, 0.0, end])
+    np.testing.assert_allclose(moment[1:3], [-weight * far, weight * near])
+    arm = p.l0r * 9.81 / 1e6
+    np.testing.assert_allclose(moment[::3], [-weight * far + arm * end, weight * near - arm * end])
+    zeros = np.array([-far, near]) * p.m_tot / p.l0r
+    np.testing.assert_allclose(named(axes, "_0")[0].get_xdata(), zeros)
+    said = notes(axes)
+    for text in (f"$M_r$ = {weight * near:.3g} MN m", f"$M_r$ = {weight * far:.3g} MN m", f"{zeros[1]:.3g} rad"):
+        assert text in said
+    assert end > -zeros[0]
+    # A stiff tendon beside the left edge lets it fall to the left alone.
+    held = replace(p, tendons=rf.Tendon(0.0, 2.0 * p.l0r * 9.81 / p.half_width**2, -far))
+    right = drawn(rf.plot_moment_rotation_laws(held)).axes[1]
+    np.testing.assert_allclose(named(right, "_0")[0].get_xdata(), zeros[:1])
+    assert any("(right)" in text and "(left)" in text for text in notes(right))
+
+
+def test_the_frequency_equation_about_either_edge():
+    p = rf.Eccentric(FRAME, 0.2).rocking()
+    for side in (1, -1, None):
+        (axes,) = drawn(rf.plot_frequency_equation(p, (None,), side=side)).axes
+        roots = named(axes, "_MDOF-S")[0].get_xdata()
+        expected = rf.uplifted_modes(p, side=side).omega / p.omega[0]
+        np.testing.assert_allclose(roots, expected[: roots.size])
+
+
 def test_a_tower_by_its_measures():
     left, right = drawn(rf.plot_tower(TOWER, 50.0)).axes
     sides = [path.get_extents() for area in left.collections[:2] for path in area.get_paths()]

@@ -9,7 +9,18 @@ import warnings
 import numpy as np
 import pytest
 
-from rockflex import Frame, GroundMotion, InputError, Response, RockingProperties, load_suite, simulate
+from rockflex import (
+    Eccentric,
+    Frame,
+    GroundMotion,
+    InputError,
+    Response,
+    Restitution,
+    RockingProperties,
+    load_suite,
+    simulate,
+)
+from rockflex.models import SidedRestitution
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:150] * 3.0, 0.02, name="El Centro, début")
 FRAME = Frame(
@@ -69,9 +80,32 @@ def test_what_is_saved_comes_back(tmp_path, structure, model, output):
             assert np.array_equal(getattr(back, name), getattr(run, name))
         assert back.energy.closing_error == run.energy.closing_error
         assert back.history.model.label == model
-        assert back.history.model.resistance == run.history.model.resistance
+        contact = run.history.model.start(0)
+        for one, other in zip(back.history.model.guards(contact), run.history.model.guards(contact), strict=True):
+            assert (one.low, one.high) == (other.low, other.high)
+            assert np.array_equal(one.row, other.row)
         if run.floors is not None:
             assert np.array_equal(back.floor_acceleration, run.floor_acceleration)
+
+
+def test_a_law_with_a_restitution_to_each_side_comes_back(tmp_path):
+    law = SidedRestitution(Restitution(0.4, 2e-3), Restitution(0.55, 1e-3))
+    run = simulate(FRAME, MOTION, "2DOF-S", impact=law)
+    assert run.n_impacts > 0
+    back = Response.load(run.save(tmp_path / "sided"))
+    assert back.history.model.law == law
+    assert back.history.model == run.history.model
+    assert known(back) == known(run)
+
+
+def test_the_law_of_an_eccentric_block_comes_back(tmp_path):
+    block = Eccentric(FRAME, 0.2)
+    run = simulate(block, MOTION, "rigid")
+    assert isinstance(run.history.model.law, SidedRestitution)
+    assert run.history.model.law.right != run.history.model.law.left
+    back = Response.load(run.save(tmp_path / "block"))
+    assert back.history.model == run.history.model
+    assert back.history.model.properties.eccentricity == 0.2
 
 
 def test_a_file_is_replaced_whole(tmp_path):

@@ -221,7 +221,7 @@ def test_peaks_of_the_solver_are_named_in_their_order():
     )  # fmt: skip
     peaks, times = np.arange(6.0 + 4 * 4), 0.1 * np.arange(22.0)
     lost = {"lost_support": 1e5, "time_of_lost_support": 7.0}
-    run = respond(Model().of(FRAME.rocking()), "one", solution(peaks=peaks, peak_times=times, **lost))
+    run = respond(Model().of(FRAME.rocking()), "one", solution(peaks=peaks, peak_times=times, **lost), floors=True)
     assert [getattr(run, f"max_{name}") for name in names] == peaks[:6].tolist()
     assert [getattr(run, f"time_of_max_{name}") for name in names] == times[:6].tolist()
     assert run.min_vertical_reaction == FRAME.rocking().m_tot * 9.81 - 1e5

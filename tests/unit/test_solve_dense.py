@@ -6,8 +6,8 @@ from scipy.optimize import brentq
 
 from rockflex import Frame, GroundMotion, load_suite, simulate
 from rockflex.models import parse_model
-from rockflex.response import global_observables
-from rockflex.solve import ExactEngine
+from rockflex.response import asked_of
+from rockflex.solve import Engine
 from rockflex.solve.exact import basis
 from twins.exact import Exact
 from twins.fine_step import simulate_fine
@@ -31,10 +31,28 @@ def frame(**changes):
     return {**given, **changes}
 
 
-def engine(given, label):
+def prepared(given, label, dt=MOTION.dt):
+    """The phases of contact and of rocking to the right, uncoupled, and their tables for a time step."""
     tied = parse_model(label).of(Frame(**given).rocking())
-    rows = global_observables(tied)
-    return ExactEngine(tied, rows)
+    phases = Engine(tied, asked_of(tied))._phases
+    places = [phases.place(tied.start(side)) for side in (0, 1)]
+    assert phases.dense == any(phases._bases[place].dense for place in places)
+    return [phases._bases[place] for place in places], phases.system(dt, 0.0), places
+
+
+def assert_dense(bases, system, places):
+    """Rocking alone: contact uncouples as it stands."""
+    assert [each.dense for each in bases] == [False, True]
+    assert system.phases["dense"][places].tolist() == [False, True]
+    assert system.propagator.size
+    assert system.propagator[places[1]].any()
+
+
+def assert_uncoupled(bases, system, places):
+    assert [each.dense for each in bases] == [False, False]
+    assert not system.phases["dense"].any()
+    assert system.propagator.size == 0
+    assert places[0] != places[1]
 
 
 def assert_same_peaks(one, other, rtol):
@@ -50,7 +68,7 @@ def test_dense_and_uncoupled_agree(monkeypatch, label, damping_ratio):
     uncoupled = simulate(Frame(**given), MOTION, label, free_vibration=2.0)
     assert uncoupled.n_impacts > 5
     monkeypatch.setattr(basis, "WORST_CONDITION", 0.0)
-    assert engine(given, label).system(MOTION.dt).dense.size
+    assert_dense(*prepared(given, label))
     dense = simulate(Frame(**given), MOTION, label, free_vibration=2.0)
     # Without damping the motion itself doubles any difference at every impact.
     assert_same_peaks(dense, uncoupled, 1e-10 if damping_ratio else 1e-7)
@@ -80,10 +98,9 @@ def test_where_two_eigenvalues_merge():
     """At one damping ratio an oscillation while rocking becomes critical, and its two eigenvectors one."""
     damping_ratio = brentq(discriminant, 0.1, 0.6, xtol=1e-15, rtol=1e-15)
     given = frame(damping_ratio=damping_ratio)
-    chosen = engine(given, "2DOF-S")._rocking
-    assert chosen.dense
+    assert_dense(*prepared(given, "2DOF-S"))
     for nearby in (damping_ratio * 0.9, damping_ratio * 1.1):
-        assert not engine(frame(damping_ratio=nearby), "2DOF-S")._rocking.dense
+        assert_uncoupled(*prepared(frame(damping_ratio=nearby), "2DOF-S"))
     run = simulate(Frame(**given), MOTION, "2DOF-S", free_vibration=1.0)
     parameters = frame_properties(**given, n_modes=1).kwargs()
     twin = simulate_fine(**parameters, acceleration=MOTION.acceleration, dt=MOTION.dt, free_vibration=1.0)
@@ -105,11 +122,11 @@ def test_close_to_the_merger(offset):
 def test_a_narrow_base_uncouples(monkeypatch, n_stories):
     """Matrices were tens of thousands of steps a sample here. The last bit of I_θ moves these peaks by 2e-9."""
     given = frame(n_stories=n_stories, stiffness_ratio=0.0, period=1.0, aspect_ratio=1600.0)
-    assert engine(given, "MDOF-S").system(0.02).dense.size == 0
+    assert_uncoupled(*prepared(given, "MDOF-S", 0.02))
     whole = load_suite("el-centro-1940")[0].scaled(0.01)
     brief = GroundMotion(whole.acceleration[:200], whole.dt)
     uncoupled = simulate(Frame(**given), brief, output="peaks")
     monkeypatch.setattr(basis, "WORST_CONDITION", 0.0)
-    assert engine(given, "MDOF-S").system(0.02).dense.size > 0
+    assert_dense(*prepared(given, "MDOF-S", 0.02))
     assert uncoupled.n_impacts > 0
     assert_same_peaks(simulate(Frame(**given), brief, output="peaks"), uncoupled, 1e-7)

@@ -117,8 +117,8 @@ def test_a_moment_that_culminates_at_a_sample(excess):
     p = block(omega=[200.0], zeta=0.3)
     record = np.concatenate((np.linspace(0.0, 1.0, 41), np.linspace(1.0, 0.0, 41)[1:]))
     fixed = simulate(p, GroundMotion(record, 0.05), "fixed").history.nodes
-    vector = np.column_stack((fixed[:, 3:], fixed[:, 2], fixed[:, 1]))
-    moment = np.abs(vector @ Model().of(p).contact_moment())
+    vector = np.column_stack((fixed[:, 3:], fixed[:, 2], np.ones(len(fixed))))
+    moment = np.abs(vector @ Model().of(p).overturning_moment())
     assert moment.argmax() == 40
     record *= p.resisting_moment / moment[40] * (1.0 + excess)
     run = simulate(p, GroundMotion(record, 0.05))

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import polynomial
 
-from rockflex.solve.exact.layout import Log
-from rockflex.solve.exact.peaks import raise_peak, raise_peaks
+from rockflex.solve.layout import Log, Span
+from rockflex.solve.peaks import raise_peak, raise_peaks
 
 coefficients = st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=3, max_size=12)
 
@@ -15,13 +15,13 @@ coefficients = st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=
 def log(*peaks):
     """Peaks of rows, and of the loss of support, which is the last."""
     times, work = np.full(len(peaks) + 1, -1.0), np.full(5, np.inf)
-    return Log(np.array([*peaks, -np.inf]), times, np.zeros(3, dtype=np.int64), work)
+    return Log(np.array([*peaks, -np.inf]), times, np.zeros(4, dtype=np.int64), work, np.zeros((0, 5)))
 
 
 def raised(poly, stop, before=0.0):
     """Peak and time of a polynomial in units of 0.5 s from t = 3 s on."""
     book = log(before)
-    raise_peak(np.array([poly, np.zeros(len(poly))]), 0, 1.0, stop, 3.0, 0.5, book)
+    raise_peak(np.array([poly, np.zeros(len(poly))]), 0, stop, Span(3.0, 3.5, 0.0, 0.0, 0.5), book)
     return float(book.peaks[0]), float(book.times[0])
 
 
@@ -87,8 +87,8 @@ def test_ends_of_a_step():
     raise_peaks(np.array([5.0, -4.0, 2.0, 0.0]), 0.0, 7.0, book)  # in contact the first row is the moment, no rotation
     assert book.peaks.tolist() == [1.0, 4.0, 3.0, 0.0]
     assert book.times.tolist() == [-1.0, 7.0, -1.0, 7.0]
-    raise_peaks(np.array([-5.0, 4.0, 2.0, -0.5]), -1.0, 8.0, book)
+    raise_peaks(np.array([-5.0, 4.0, 2.0, 0.5]), -1.0, 8.0, book)
     assert book.peaks.tolist() == [5.0, 4.0, 3.0, 0.5]
     assert book.times.tolist() == [8.0, 7.0, -1.0, 8.0]
-    raise_peaks(np.array([-5.0, 4.0, 2.0, 0.7]), -1.0, 9.0, book)  # support is gained
+    raise_peaks(np.array([-5.0, 4.0, 2.0, -0.7]), -1.0, 9.0, book)  # support is gained
     assert book.peaks.tolist() == [5.0, 4.0, 3.0, 0.5]

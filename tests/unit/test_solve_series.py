@@ -9,9 +9,11 @@ from scipy.linalg import expm
 
 from rockflex import Frame
 from rockflex.models import Model
-from rockflex.response import global_observables
-from rockflex.solve import ExactEngine
-from rockflex.solve.exact.series import advance, bend, evaluate, expand, first_descent, row_series
+from rockflex.response import asked_of
+from rockflex.solve import Engine
+from rockflex.solve.exact.series import advance, expand, row_series
+from rockflex.solve.layout import Span, motion_of
+from rockflex.solve.polynomials import bend, evaluate, first_descent
 from twins.exact import Exact
 from twins.frame import frame_properties
 
@@ -29,11 +31,14 @@ GIVEN = {
 
 
 def prepared(n):
-    """The engine's coefficients, and the generators of its twin, whose state is [θ, D, θ', D', s, a, a']."""
+    """The engine's coefficients, and the generators of its twin, whose state is [θ, D, θ', D', s, a, a'].
+
+    And the places of the phases by side.
+    """
     tied = Model(n).of(Frame(**GIVEN).rocking())
-    rows = global_observables(tied)
-    system = ExactEngine(tied, rows).system(DT)
-    return system, Exact(**frame_properties(**GIVEN, n_modes=n).kwargs(), dt=DT, substeps=1)
+    phases = Engine(tied, asked_of(tied))._phases
+    places = {side: phases.place(tied.start(int(side))) for side in (0.0, 1.0, -1.0)}
+    return phases.system(DT, 0.0), places, Exact(**frame_properties(**GIVEN, n_modes=n).kwargs(), dt=DT, substeps=1)
 
 
 def draw(n, *, rocking, seed=3):
@@ -42,6 +47,11 @@ def draw(n, *, rocking, seed=3):
     if not rocking:
         state[-2:] = 0.0
     return state, 2.0, -150.0, -1.0 if rocking else 0.0
+
+
+def room(system, state):
+    terms = int(system.phases["terms"].max())
+    return motion_of(state.copy(), state.size, system.plain_rows.shape[1], terms, 1)
 
 
 def to_twin(state, n, side, acceleration, slope):
@@ -57,13 +67,13 @@ def from_twin(z, n):
 @pytest.mark.parametrize("rocking", [False, True])
 @pytest.mark.parametrize("u", [0.0, 0.3, 1.0])
 def test_series_is_the_exponential(n, rocking, u):
-    system, twin = prepared(n)
+    system, places, twin = prepared(n)
     state, acceleration, slope, side = draw(n, rocking=rocking)
     step = 0.9 / twin.fastest  # as a unit of the grid: no mode turns by more than a radian
-    series = np.zeros((n + 1, system.order + 1))
-    expand(system.physics, rocking, state, acceleration, slope, side, np.nan, step, series)
-    moved = np.zeros(2 * n + 2)
-    advance(series, u, step, moved)
+    motion = room(system, state)
+    expand(system, places[side], motion, Span(0.0, step, acceleration, slope, step), np.nan)
+    advance(system, motion, u, step)
+    moved = motion.state
     z = to_twin(state, n, side, acceleration, slope)
     expected = from_twin(expm(twin.generator[rocking] * step * u) @ z, n)
     np.testing.assert_allclose(moved, expected, rtol=1e-12, atol=1e-14)
@@ -71,41 +81,44 @@ def test_series_is_the_exponential(n, rocking, u):
         assert not moved[-2:].any()
 
 
-@pytest.mark.parametrize("phase", [0, 1])
-def test_a_row_along_the_series(phase):
+@pytest.mark.parametrize("rocking", [False, True])
+def test_a_row_along_the_series(rocking):
     n = 3
-    system, twin = prepared(n)
-    rows = np.random.default_rng(8).standard_normal((2, 2, 2 * n + 4))
-    rows[:, 1, ::2] = 0.0
-    state, acceleration, slope, side = draw(n, rocking=phase == 1)
-    step = 0.9 / twin.fastest
-    series, polys = np.zeros((n + 1, system.order + 1)), np.zeros((3, system.order + 1))
-    expand(system.physics, phase == 1, state, acceleration, slope, side, np.nan, step, series)
+    system, places, twin = prepared(n)
+    state, acceleration, slope, side = draw(n, rocking=rocking)
+    phase, step = places[side], 0.9 / twin.fastest
+    rows = np.random.default_rng(8).standard_normal((2, 2 * n + 4))
+    rows[1, ::2] = 0.0
+    system.plain_rows[phase, :2] = rows
+    motion, span = room(system, state), Span(0.0, step, acceleration, slope, step)
+    expand(system, phase, motion, span, np.nan)
     for row in (0, 1):
-        row_series(rows, phase, row, series, acceleration, slope, side, step, polys)
+        row_series(system, phase, row, motion, span)
         for u in (0.0, 0.4, 1.0):
-            moved = np.zeros(2 * n + 2)
-            advance(series, u, step, moved)
-            whole = np.concatenate((moved, [acceleration + slope * step * u, side]))
-            assert evaluate(polys, row, u)[0] == pytest.approx(rows[phase, row] @ whole, rel=1e-12)
+            advance(system, motion, u, step)
+            whole = np.concatenate((motion.state, [acceleration + slope * step * u, 1.0]))
+            assert evaluate(motion.polys, row, u)[0] == pytest.approx(rows[row] @ whole, rel=1e-12)
 
 
 def test_a_lift_that_is_known_replaces_the_equation_of_motion():
     n = 2
-    system, twin = prepared(n)
+    system, places, twin = prepared(n)
     state, acceleration, slope, _ = draw(n, rocking=False)
     step = 0.9 / twin.fastest
-    free, told, none = (np.zeros((n + 1, system.order + 1)) for _ in range(3))
-    expand(system.physics, True, state, acceleration, slope, 1.0, np.nan, step, free)
-    lift = 2.0 * free[n, 2] / step**2
-    expand(system.physics, True, state, acceleration, slope, 1.0, lift, step, told)
+
+    def series(side, lift):
+        motion = room(system, state)
+        expand(system, places[side], motion, Span(0.0, step, acceleration, slope, step), lift)
+        return motion.series
+
+    free = series(1.0, np.nan)
+    told = series(1.0, 2.0 * free[n, 2] / step**2)
     np.testing.assert_allclose(told, free, rtol=1e-12)
-    expand(system.physics, True, state, acceleration, slope, 1.0, 0.0, step, none)
+    none = series(1.0, 0.0)
     assert not none[n, :3].any()  # the rotation starts with the cube of time, without any rounding
     assert none[n, 3] != 0.0
     # D'' then is that of contact.
-    contact = np.zeros_like(none)
-    expand(system.physics, False, state, acceleration, slope, 0.0, np.nan, step, contact)
+    contact = series(0.0, np.nan)
     np.testing.assert_allclose(none[:n, :3], contact[:n, :3], rtol=1e-14)
 
 

@@ -15,8 +15,8 @@ from rockflex import (
     quiet_motion,
     simulate,
 )
-from rockflex.solve.exact import engine
-from rockflex.solve.exact.unit import CHATTER, CROSSED
+from rockflex.solve import Engine
+from rockflex.solve.status import Status
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
 
@@ -138,19 +138,38 @@ def test_undamped_modes_may_add_up_for_ever():
     ("status", "value", "texts"),
     [
         (
-            CHATTER,
+            Status.CHATTER,
             0.5,
             ("The impacts of 2DOF-S accumulate without end in the sample before 0.14 s. ", "refine the record."),
         ),
-        (CROSSED, np.nan, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
+        (Status.ENDED, np.nan, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
+        (Status.OVERTURNED, np.inf, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
+        (
+            Status.STALLED,
+            0.25,
+            (
+                "The motion of 2DOF-S cannot be followed in the sample before 0.14 s: no step is short enough. ",
+                "Check the parameters.",
+            ),
+        ),
+        (
+            Status.GAINED,
+            0.5,
+            (
+                "The impact law VVELSimplified() returns energy in the sample before 0.14 s. ",
+                "A law can only lose energy: mend its `after`, or lower its restitution.",
+            ),
+        ),
     ],
 )
 def test_a_run_that_cannot_be_solved_says_where(monkeypatch, status, value, texts):
-    def run(system, impact, record, quiet, dt, free, settle, side, log, room, nodes):
-        room.state[:] = value
-        return status, 7, 0
+    def carry(self, system, steps, course, at, log, motion):
+        motion.state[:] = value
+        # Failures are told with the end of the sample in which they came.
+        at.offset, at.index = 4, 3 if status >= 0 else 2
+        return int(status)
 
-    monkeypatch.setattr(engine, "compiled_run", run)
+    monkeypatch.setattr(Engine, "_carry", carry)
     with pytest.raises(SolverError) as caught:
         simulate(Frame(**frame()), EL_CENTRO, "2DOF-S")
     assert str(caught.value).startswith(texts[0])

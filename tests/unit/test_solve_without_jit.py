@@ -65,10 +65,10 @@ def test_uncompiled_kernels_say_the_same():
 
 CHATTERING = """
 import json, sys
-import rockflex.solve.exact.unit as unit
+import rockflex.solve.events as events
 from rockflex import SolverError
 from test_solve_without_jit import runs
-unit.MOST_EVENTS = -1
+events.MOST_EVENTS = -1
 try:
     next(runs())
 except SolverError as error:

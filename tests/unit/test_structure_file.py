@@ -233,10 +233,42 @@ def test_tendons_hold_properties_down(write):
     assert [tendon.position for tendon in built.tendons] == [-0.5, 0.0, 0.5]
 
 
+def test_an_eccentric_base(write):
+    assert rf.read_structure(write("eccentricity = 0.2\n" + text("frame", FRAME))) == rf.Eccentric(
+        rf.Frame(**FRAME), 0.2
+    )
+    assert rf.read_structure(write("eccentricity = 0\n" + text("frame", FRAME))) == rf.Frame(**FRAME)
+    built = rf.read_structure(write("eccentricity = 0.2\n" + text("frame", FRAME) + TENDONS))
+    assert isinstance(built, rf.Restrained)
+    assert built.structure == rf.Eccentric(rf.Frame(**FRAME), 0.2)
+    by_hand = rf.read_structure(write("eccentricity = -0.2\n" + text("properties", PROPERTIES) + TENDONS))
+    assert isinstance(by_hand, rf.RockingProperties)
+    assert by_hand.eccentricity == -0.2
+    assert len(by_hand.tendons) == 3
+
+
+def test_a_wrong_eccentricity(failing):
+    frame = text("frame", FRAME)
+    assert failing("eccentricity = 0.9\n" + frame).startswith(
+        ", eccentricity must be smaller than half_width, 0.842617 m, to either side, but 0.9 m was given."
+    )
+    assert failing("eccentricity = nan\n" + frame) == ", eccentricity must be a finite number in m, but nan was given."
+    assert failing('eccentricity = "left"\n' + frame) == (
+        ": eccentricity must be how far the masses stand to the right of the middle of the base, a number in m, but "
+        "'left' was given."
+    )
+    assert failing(frame + "eccentricity = 0.2\n").startswith(
+        ": [frame] eccentricity is not known; there are n_stories"
+    )
+
+
 def test_wrong_tendons(failing):
     frame = text("frame", FRAME)
     one = "[[tendons]]\nposition = 0.3\ninitial_force = 5e5\nstiffness = 2e7\n"
-    assert failing(frame + one).startswith(", [[tendons]]: The tendons must be symmetric about the centre of the base")
+    assert failing(frame + one.replace("0.3", "-1.3")).startswith(
+        ", [[tendons]]: Tendons must pass through the base, 0.842617 m to each side of its centre, but one stands at "
+        "-1.3 m."
+    )
     assert failing(frame + one.replace("2e7", "-1")) == (
         ", [[tendons]]: stiffness must be a zero or positive, finite number in N/m, but -1.0 was given."
     )

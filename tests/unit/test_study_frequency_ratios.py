@@ -49,6 +49,18 @@ def test_models_by_name_and_tendons_stay():
     assert (stiff.to_numpy() > free.to_numpy()).all()
 
 
+def test_about_either_edge_of_an_eccentric_base():
+    moved = rf.Eccentric(FRAME, 0.3)
+    for side in (1, -1):
+        table = rf.frequency_ratios(moved, [3.0, 6.0], None, side=side)
+        for width, rows in table.groupby("half_width"):
+            expected = rf.uplifted_modes(FRAME.rocking().with_half_width(width - side * 0.3)).omega
+            np.testing.assert_allclose(rows["uplifted_omega"], expected, rtol=1e-11)
+    np.testing.assert_array_equal(
+        rf.frequency_ratios(moved, [3.0])["ratio"], rf.frequency_ratios(moved, [3.0], side=1)["ratio"]
+    )
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [

@@ -21,7 +21,7 @@ from rockflex import (
     simulate_many,
 )
 from rockflex.response import PEAKS
-from rockflex.solve.exact import engine
+from rockflex.solve.engine import Engine
 
 RECORD = load_suite("el-centro-1940")[0].acceleration
 
@@ -139,13 +139,13 @@ def test_threads_change_nothing(output):
 
 
 def test_work_is_done_by_the_threads_asked_for(monkeypatch):
-    seen, real = set(), engine.compiled_run
+    seen, real = set(), Engine._carry
 
-    def run(*arguments):
+    def carry(*arguments):
         seen.add(threading.current_thread())
         return real(*arguments)
 
-    monkeypatch.setattr(engine, "compiled_run", run)
+    monkeypatch.setattr(Engine, "_carry", carry)
     simulate_many(STRUCTURES, MOTIONS, workers=1)
     assert seen == {threading.current_thread()}
     simulate_many(STRUCTURES, MOTIONS, workers=3)

@@ -8,8 +8,8 @@ import pytest
 
 from rockflex import Frame, GroundMotion, InitialState, InputError, load_suite, simulate, simulate_many
 from rockflex.response import PEAKS
-from rockflex.solve.exact import engine
-from rockflex.solve.exact.unit import CHATTER
+from rockflex.solve.engine import Engine
+from rockflex.solve.status import Status
 
 RECORD = load_suite("el-centro-1940")[0].acceleration
 
@@ -40,14 +40,14 @@ VALUES = [name for name in PEAKS if name not in ("model", "motion", "status")]
 @pytest.mark.parametrize("output", ["peaks", "history"])
 def test_runs_that_fail_become_rows(monkeypatch, workers, output):
     """Models with more modes than a structure has; runs that the solver gives up."""
-    real = engine.compiled_run
+    real = Engine._carry
 
-    def run(system, impact, record, quiet, dt, *others):
-        if dt == 0.01:  # of the second motion
-            return CHATTER, 1, 0
-        return real(system, impact, record, quiet, dt, *others)
+    def carry(self, system, steps, course, *others):
+        if course.dt == 0.01:  # of the second motion
+            return Status.CHATTER
+        return real(self, system, steps, course, *others)
 
-    monkeypatch.setattr(engine, "compiled_run", run)
+    monkeypatch.setattr(Engine, "_carry", carry)
     table = simulate_many(STRUCTURES, MOTIONS, ["2DOF-S", "4DOF-S"], output, workers=workers)
     for name in ("n_uplifts", "n_impacts"):
         assert table[name].dtype == "Int64"

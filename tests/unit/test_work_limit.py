@@ -53,7 +53,7 @@ def task(label="MDOF-S", structure=None, motion=EL_CENTRO, free=0.0, bouc_wen=No
             {"free_vibration": 1e6},
             "free_vibration = 1e+06 s is 1e+13 time steps",
         ),
-        ({"period": 1e-6}, EL_CENTRO, {}, "turns by 1.17e+06 rad in every time step of 0.02 s"),
+        ({"period": 1e-6}, EL_CENTRO, {}, "turns by 1.18e+06 rad in every time step of 0.02 s"),
         ({"period": 1e-6}, EL_CENTRO, {"model": "MDOF-C"}, "Give fewer modes, a longer period, or a wider base"),
         (
             {"period": 1e9},
@@ -132,8 +132,8 @@ def test_the_fastest_vibration_is_that_of_the_uplifted_structure(label, lifts) -
     p = frame().rocking()
     expected = rf.uplifted_modes(p).omega[-1] if lifts else p.omega[-1]
     model = parse_model(label).of(p)
-    assert pace_of(model, 4).fastest == pytest.approx(expected, rel=1e-9)
-    assert make_engine(model, "peaks").pace.fastest == pytest.approx(expected, rel=0.05)  # damped
+    assert 0.999999 * expected <= pace_of(model, 4).fastest <= 1.03 * expected  # a bound
+    assert make_engine(model, "peaks").pace.fastest == pace_of(model, 4).fastest
 
 
 def test_work_grows_with_what_it_is_said_to_grow_with() -> None:

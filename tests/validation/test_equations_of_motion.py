@@ -9,9 +9,7 @@ import pytest
 import sympy as sp
 
 from rockflex import RockingProperties
-from rockflex.models import EXTRA, NonlinearModel, field_rates
-from rockflex.response._accelerations import accelerations
-from rockflex.response._friction import reactions
+from rockflex.models import EXTRA, NonlinearModel, accelerations, field_rates, reactions
 from twins.lagrange import GRAVITY, GROUND, derived, lumped, orthogonal
 
 

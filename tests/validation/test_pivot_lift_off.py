@@ -7,10 +7,9 @@ import pytest
 
 import rockflex as rf
 from rockflex._constants import GRAVITY
+from rockflex.models import accelerations, printed_reactions
 from rockflex.papers.silva_stojadinovic_2024 import _structures
-from rockflex.response._accelerations import accelerations
-from rockflex.response._reactions import printed_reactions
-from rockflex.solve import ExactEngine, Observables
+from rockflex.solve import ClosedForm
 
 RECORDS = [*rf.load_suite("fema-p695-far-field"), *rf.load_suite("fema-p695-near-field-no-pulse")][::3]
 STRUCTURES = [_structures.frame_of(name) for name in _structures.STRUCTURES]
@@ -31,11 +30,11 @@ def by_equation_22(run):
     """Least ΣF_z of Eq. 22 along a history, between its nodes too."""
     history = run.history
     model, nodes = history.model, history.nodes
-    engine, lasting = ExactEngine(model, Observables.none(model)), np.diff(nodes[:, 0]) > 0.0
+    motion, lasting = ClosedForm(model), np.diff(nodes[:, 0]) > 0.0
     least = math.inf
     for place in PLACES:
         rows = nodes[:-1].copy()
-        rows[:, 3:] = engine.between(nodes, place)
+        rows[:, 3:] = motion.between(nodes, place)
         rows[:, :3:2] += place * np.diff(nodes[:, :3:2], axis=0)
         rows = rows[lasting]
         vertical = printed_reactions(model, rows, accelerations(model, rows)).vertical

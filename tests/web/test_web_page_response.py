@@ -293,6 +293,25 @@ def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
     assert page.locator('[data-label$="-BW"]').count() == 0
 
 
+def test_the_stage_turns_an_eccentric_base_about_its_edges(visit, link) -> None:
+    structure = json.loads(json.dumps(PRESETS[0]["structure"]).replace("Infinity", '"inf"')) | {"eccentricity": 0.3}
+    visitor = visit(link({"structure": structure, "tab": "response", "models": ["2DOF-S"]}))
+    visitor.shown(1, ["2DOF-S"])
+    half_width = visitor.page.evaluate("rockflexStage.stage.view.half_width")
+    turned = visitor.page.evaluate(
+        """() => {
+          const { stage } = rockflexStage;
+          const { t, rotation } = stage.view.models[0];
+          const at = (found) => stage.frameAt(0, t[rotation.findIndex(found)], 20);
+          return [at((r) => r > 1e-4).base[1], at((r) => r < -1e-4).base[0], stage.edges()];
+        }"""
+    )
+    right, left = half_width - 0.3, -half_width - 0.3
+    assert turned[0] == pytest.approx([right, 0.0], abs=1e-12)
+    assert turned[1] == pytest.approx([left, 0.0], abs=1e-12)
+    assert turned[2] == pytest.approx([left, right])
+
+
 def test_stage_and_charts_by_the_keyboard(visitor, frame, el_centro) -> None:
     page = visitor.page
     visitor.tab("response")

@@ -50,12 +50,30 @@ def test_tendons_are_added_and_removed(visitor) -> None:
     page.get_by_role("button", name="Add a tendon").click()
     page.wait_for_function("b => Number(document.querySelectorAll('dd[data-value]')[2].dataset.value) > b", arg=before)
     visitor.fill("structure.tendons.0.position", "99")
-    assert "The tendons must be symmetric" in visitor.error("structure.tendons")
+    assert "Tendons must pass through the base" in visitor.error("structure.tendons")
     visitor.fill("structure.tendons.0.position", "0")
     page.get_by_role("button", name="Remove").click()
     page.wait_for_function(
         "b => Number(document.querySelectorAll('dd[data-value]')[2].dataset.value) === b", arg=before
     )
+
+
+def test_an_eccentric_base_has_two_edges(visitor) -> None:
+    page = visitor.page
+    visitor.fill("structure.eccentricity", "0.25")
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('#modes th')].some((e) => /left edge/.test(e.textContent))"
+    )
+    p = rf.Eccentric(rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02), 0.25).rocking()
+    shown = page.locator("dd[data-value]").evaluate_all("all => all.map((e) => Number(e.dataset.value))")
+    for side in (1, -1):
+        assert p.pivot(side).resisting_moment in shown
+        assert p.pivot(side).i_theta in shown
+    visitor.fill("structure.eccentricity", "5")
+    assert "Eccentricity must be smaller than half_width" in visitor.error("structure.eccentricity")
+    visitor.fill("structure.eccentricity", "")
+    page.wait_for_function("() => !/edge/.test(document.querySelector('#modes').textContent)")
+    assert "eccentricity" not in visitor.state()["structure"]
 
 
 def test_matrices_are_imported(visitor, tmp_path) -> None:

@@ -257,6 +257,10 @@ def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> N
         client.state(record={"source": "pulse", "pulse": {"shape": "mavroeidis", "amplitude": 0.6, "nu": 0.3}}),
         client.state(record={"source": "upload", "upload": found["upload"]}, models=["2DOF-S"]),
         client.state(structure=PRESETS[8]["structure"]),
+        client.state(structure=PRESETS[-1]["structure"], models=["2DOF-S"]),
+        client.state(
+            structure={"block": {"slenderness": 0.2, "half_diagonal": 3.0}, "eccentricity": 0.1}, models=["rigid"]
+        ),
         client.state(impact="restitution", restitution=0.4, models=["2DOF-S-BW", "MDOF-S"], bouc_wen=YIELDING),
     ]
     for state in states:

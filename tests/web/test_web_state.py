@@ -40,8 +40,12 @@ def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
     view = structure_view(state.structure)
     json.dumps(view, allow_nan=False)
     assert view["modes"][0]["period"] == pytest.approx(2 * np.pi / build(state.structure).properties.omega[0])
-    lifted = rf.uplifted_modes(build(state.structure).properties)
-    assert [mode["uplifted_damping"] for mode in view["modes"]] == pytest.approx(lifted.damping_ratio.tolist())
+    p = build(state.structure).properties
+    for place, pivot in enumerate(p.pivots):
+        lifted = rf.uplifted_modes(p, side=pivot.side)
+        shown = [mode["uplifted"][place]["damping"] for mode in view["modes"]]
+        assert shown == pytest.approx(lifted.damping_ratio.tolist())
+    assert {len(mode["uplifted"]) for mode in view["modes"]} == {len(p.pivots)}
     assert view["adequacy"]["reason"]
 
 
@@ -60,6 +64,16 @@ def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
         ({"structure": FRAME, "scale": 1e9}, "scale", "it must be a number from 0.01 to 20, but 1000000000.0"),
         ({"structure": FRAME, "scale": math.nan}, "scale", "it must be a number from 0.01 to 20"),
         ({"structure": FRAME, "free_vibration": 36_000}, "free_vibration", "from 0 to 60, but 36000 was given."),
+        (
+            {"structure": FRAME | {"eccentricity": 1e4}},
+            "structure.eccentricity",
+            "it must be from -1000 to 1000, but 10000 was given.",
+        ),
+        (
+            {"structure": FRAME | {"eccentricity": "left"}},
+            "structure.eccentricity",
+            "it must be how far the masses stand to the right of the middle of the base, a number in m, but 'left'",
+        ),
         ({"structure": FRAME, "models": ["5DOF-Q"]}, "models", "Unknown model '5DOF-Q'."),
         ({"structure": FRAME, "models": ["2DOF-S"] * 2}, "models", "the same model is chosen twice."),
         ({"structure": FRAME, "models": []}, "models", "it must be a list of one to four models, but [] was given."),
@@ -115,10 +129,30 @@ def test_errors_of_building_stand_beside_the_field_that_they_name() -> None:
         structure_view(state.structure)
     (path,) = caught.value.errors
     assert path == "structure.tapered_tower.wall"
-    held = PRESETS[8]["structure"] | {"tendons": [{"position": 0.5, "initial_force": 1.0, "stiffness": 1.0}]}
+    held = PRESETS[8]["structure"] | {"tendons": [{"position": 1.6, "initial_force": 1.0, "stiffness": 1.0}]}
     with pytest.raises(Refusal) as caught:
         structure_view(parse_state({"structure": held}).structure)
     assert "structure.tendons" in caught.value.errors
+    with pytest.raises(Refusal) as caught:
+        structure_view(parse_state({"structure": FRAME | {"eccentricity": -1.1}}).structure)
+    assert caught.value.errors["structure.eccentricity"].startswith("eccentricity must be smaller than half_width, 1.0")
+
+
+def test_the_parameters_of_both_edges_are_shown() -> None:
+    state = parse_state({"structure": PRESETS[-1]["structure"]})
+    p = build(state.structure).properties
+    shown = structure_view(state.structure)
+    assert (shown["eccentricity"], shown["half_width"]) == (0.3, 1.9)
+    moments = {each["help"]: each["value"] for each in shown["properties"] if each["symbol"] == "M_r"}
+    assert moments == {
+        "to the right: moment at which the base lifts": p.pivot(1).resisting_moment,
+        "to the left: moment at which the base lifts": p.pivot(-1).resisting_moment,
+    }
+    assert {each["symbol"]: each["value"] for each in shown["properties"]}["e"] == 0.3
+    plain_view = structure_view(parse_state({"structure": FRAME}).structure)
+    symbols = [each["symbol"] for each in plain_view["properties"]]
+    assert symbols == ["B", "m_tot", "M_r", "L₀ʳ", "I_θ", "a_lift", "α", "θ_nom"]
+    assert plain_view["eccentricity"] == 0.0
 
 
 def test_json_that_is_none_is_refused() -> None:
@@ -139,6 +173,9 @@ def test_the_forms_have_every_field_of_every_kind() -> None:
     bodies = next(each for each in found["kinds"]["beam"]["fields"] if each["name"] == "lumped_masses")
     assert (bodies["type"], [each["name"] for each in bodies["fields"]]) == ("table", ["heights", "masses", "rotary"])
     assert [each["name"] for each in found["bouc_wen"]] == list(inspect.signature(rf.BoucWen).parameters)
+    moved = found["eccentricity"]
+    assert (moved["unit"], moved["required"], moved["default"], moved["type"]) == ("m", False, None, "number")
+    assert moved["help"] == "How far the masses stand to the right of the middle of the base."
     period = next(each for each in found["kinds"]["frame"]["fields"] if each["name"] == "period")
     assert (period["unit"], period["low"], period["high"], period["required"]) == ("s", 0.01, 60.0, True)
 

@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
 from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study
-from rockflex.cli._console import complain, remarks
+from rockflex.cli._console import complain, note, remarks
 
 __all__ = ["app", "main"]
 
@@ -30,7 +30,8 @@ rockflex reproduce --out out/paper
 [bold]Exit codes[/bold]
 
 0: done; 1: a run could not be solved (in a study with --strict only, and then a fit that could not be made counts
-too); 2: something given cannot be used."""
+too); 2: something given cannot be used; 130:
+stopped by Ctrl-C."""
 
 
 class Commands(TyperGroup):
@@ -44,6 +45,9 @@ class Commands(TyperGroup):
         except (InputError, SolverError) as error:
             complain(str(error))
             raise typer.Exit(2 if isinstance(error, InputError) else 1) from error
+        except KeyboardInterrupt as stop:
+            note("Stopped; nothing was written.")
+            raise typer.Exit(130) from stop
 
 
 app = typer.Typer(

@@ -40,7 +40,14 @@ UNITS = {
     "translational_inertia": "kg m²",
     "prestress": "N",
     "tendon_stiffness": "N m/rad",
+    "eccentricity": "m",
+    "arm": "m",
+    "weight_moment": "N m",
+    "prestress_moment": "N m",
+    "axial_stiffness_moment": "N/rad",
+    "rocking_stiffness": "N m/rad",
 }
+SIDES = {1: "right", -1: "left"}
 
 
 def modes(
@@ -64,9 +71,11 @@ def modes(
     period: options.Period = None,
     aspect_ratio: options.AspectRatio = None,
     damping_ratio: options.DampingRatio = None,
+    eccentricity: options.Eccentricity = None,
 ) -> None:
     """Print the modes of a structure on a fixed base, and what it takes to rock."""
     from rockflex._checks import whole_number
+    from rockflex.cli._modes_tables import print_modes
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
@@ -76,7 +85,7 @@ def modes(
     if rest:
         message = f"{file} is no structure file: a name that ends in .toml is expected."
         raise InputError(message)
-    loaded = load_structure(path, options.frame_arguments(frame))
+    loaded = load_structure(path, options.frame_arguments((*frame, eccentricity)))
     properties = loaded.properties
     if n_modes is not None:
         properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))
@@ -88,7 +97,7 @@ def modes(
         "structure": loaded.describe(),
         "modes": rows,
         "uplifted": lifted,
-        "rocking": {name: value for name, value in rocking.items() if isinstance(value, float)},
+        "rocking": {name: value for name, value in rocking.items() if isinstance(value, float) or name == "pivots"},
         "units": UNITS,
     }
     need = _adequacy(loaded) if adequacy else None
@@ -99,7 +108,7 @@ def modes(
     if json:
         typer.echo(to_json(document))
     else:
-        _print(loaded, rows, lifted, properties)
+        print_modes(loaded, rows, lifted, properties)
         if need is not None:
             _print_adequacy(need)
 
@@ -124,22 +133,27 @@ def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[di
 
 
 def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
-    """One row a vibration about one pivot, in SI units, with the same modes of the structure."""
+    """One row a vibration about one pivot, or about each where they differ, with the same modes, in SI units."""
     import math
 
     from rockflex.modal import uplifted_modes
 
-    found = uplifted_modes(properties)
-    return [
-        {
-            "mode": k + 1,
-            "period": 2.0 * math.pi / found.omega[k],
-            "omega": found.omega[k],
-            "ratio": found.ratio[k],
-            "zeta": found.damping_ratio[k],
-        }
-        for k in range(properties.n_modes)
-    ]
+    rows: list[dict[str, Any]] = []
+    for pivot in properties.pivots:
+        found = uplifted_modes(properties, side=pivot.side)
+        about = {} if properties.symmetric else {"side": SIDES[pivot.side]}
+        rows += [
+            {
+                **about,
+                "mode": k + 1,
+                "period": 2.0 * math.pi / found.omega[k],
+                "omega": found.omega[k],
+                "ratio": found.ratio[k],
+                "zeta": found.damping_ratio[k],
+            }
+            for k in range(properties.n_modes)
+        ]
+    return rows
 
 
 def _adequacy(loaded: "LoadedStructure") -> "Adequacy":
@@ -193,51 +207,6 @@ def _print_adequacy(need: "Adequacy") -> None:
     show(console, grid(headings, rows))
     console.print()
     console.print(need.reason, markup=False)
-
-
-def _print(
-    loaded: "LoadedStructure", rows: list[dict[str, Any]], lifted: list[dict[str, Any]], p: "RockingProperties"
-) -> None:
-    from rockflex.cli._console import grid, moment_unit, number, output, show
-
-    console = output()
-    console.print(f"{loaded.title}\n", markup=False, soft_wrap=True)
-    share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
-    headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
-    keys = ("period", "omega", "mass_share", "effective_height", "top_ordinate", "zeta")
-    if rows:
-        show(console, grid(headings, _numbers(rows, keys)))
-        console.print("\nWhile uplifted, with these modes; fewer have other ζ*_n (--modes)", markup=False)
-        headings, keys = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n"), ("period", "omega", "ratio", "zeta")
-        show(console, grid(headings, _numbers(lifted, keys)))
-        console.print()
-    total = sum(float(row["mass_share"]) for row in rows)
-    unit, size = moment_unit(p.resisting_moment)
-    tendons: list[tuple[str, str, str]] = []
-    if p.tendons:
-        tendons = [
-            ("Initial force of the tendons, P", number(p.prestress / 1e3), "kN"),
-            ("Their stiffness while rocking", number(p.tendon_stiffness / size), f"{unit}/rad"),
-        ]
-    slope = "B/h*_1" if rows else "B m_tot/L_0^r"
-    weight = "(m_tot g + P)" if p.tendons else "m_tot g"
-    values = (
-        *([(f"Sum of {share}", number(total), "")] if rows else []),
-        ("Moment of inertia about a pivot, I_θ", number(p.i_theta), "kg m²"),
-        ("First moment of mass, L_0^r", number(p.l0r), "kg m"),
-        ("Total mass with the base, m_tot", number(p.m_tot), "kg"),
-        ("Half width of the base, B", number(p.half_width), "m"),
-        *tendons,
-        (f"Resisting moment, M_r = {weight} B", number(p.resisting_moment / size), unit),
-        (f"Nominal limit, 0.7 atan({slope})", number(p.nominal_overturning_rotation), "rad"),
-    )
-    show(console, grid(("Rocking", "", ""), values))
-
-
-def _numbers(rows: list[dict[str, Any]], keys: tuple[str, ...]) -> list[list[str]]:
-    from rockflex.cli._console import number
-
-    return [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]
 
 
 def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", n_modes: int, *, force: bool) -> None:

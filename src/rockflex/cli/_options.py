@@ -14,6 +14,7 @@ __all__ = [
     "BwGamma",
     "DampingRatio",
     "Dt",
+    "Eccentricity",
     "Figures",
     "Force",
     "Friction",
@@ -81,6 +82,15 @@ DampingRatio = Annotated[
     float | None,
     typer.Option(
         "--damping-ratio", metavar="ZETA", help="Fraction of critical damping: 0.02 is 2 %.", rich_help_panel=FRAME
+    ),
+]
+Eccentricity = Annotated[
+    float | None,
+    typer.Option(
+        "--eccentricity",
+        metavar="M",
+        help="How far the masses stand to the right of the middle of the base, in m; beside the eight. Default: 0.",
+        rich_help_panel=FRAME,
     ),
 ]
 Impact = Annotated[
@@ -198,9 +208,10 @@ ARGUMENTS = (
     "period",
     "aspect_ratio",
     "damping_ratio",
+    "eccentricity",
 )
 
 
 def frame_arguments(values: Sequence[float | None]) -> dict[str, Any]:
-    """Name the values of the flags of a frame, in their order, as `Frame` does."""
+    """Name the values of the flags of a frame, in their order, as `Frame` and `Eccentric` do."""
     return dict(zip(ARGUMENTS, values, strict=True))

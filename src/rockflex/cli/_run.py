@@ -89,6 +89,7 @@ def run(
     period: options.Period = None,
     aspect_ratio: options.AspectRatio = None,
     damping_ratio: options.DampingRatio = None,
+    eccentricity: options.Eccentricity = None,
     units: options.Units = None,
     dt: options.Dt = None,
     on_error: options.OnError = "raise",
@@ -118,7 +119,7 @@ def run(
     check_folder(out, force=force)
     file, names = split_arguments(structure, arguments or [])
     frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
-    loaded = load_structure(file, options.frame_arguments(frame))
+    loaded = load_structure(file, options.frame_arguments((*frame, eccentricity)))
     hysteresis = {
         "yield_displacement": yield_displacement,
         "post_yield_ratio": post_yield_ratio,

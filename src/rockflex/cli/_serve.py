@@ -1,5 +1,6 @@
 """``rockflex serve``: the web page."""
 
+from contextlib import suppress
 from typing import Annotated
 
 import typer
@@ -28,4 +29,5 @@ def serve(
     if host not in ("127.0.0.1", "localhost", "::1"):
         note(f"The page is open to everybody who reaches {host}: it has no passwords.")
     note(f"http://{f'[{host}]' if ':' in host else host}:{port} (stop with Ctrl-C)")
-    start(port, host, open_browser=open_browser)
+    with suppress(KeyboardInterrupt):  # that is how it is stopped
+        start(port, host, open_browser=open_browser)

@@ -13,10 +13,10 @@ from rockflex.cli._console import progress
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
-from rockflex.parallel import map_threads
 from rockflex.response import PEAKS, Response, warnings_of
 from rockflex.solve import WorkLimitError
 from rockflex.study import WORK_LIMIT, simulate, simulate_many
+from rockflex.study._runs import map_runs
 
 __all__ = ["SLIDING", "Plan", "Run", "perform", "warm_up"]
 
@@ -151,7 +151,7 @@ def _one_by_one(plan: Plan) -> list[Run]:
     tasks = enumerate(product(plan.motions, plan.scales, plan.models))
     done: list[tuple[int, Run]] = []
     with progress("Simulating", plan.size) if many else nullcontext() as advance:
-        for item in map_threads(run, tasks, plan.workers if many else plan.workers or 1):
+        for item in map_runs(run, tasks, plan.workers if many else plan.workers or 1):
             done.append(item)
             if advance is not None:
                 advance(1)

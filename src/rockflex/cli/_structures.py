@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from rockflex._errors import InputError
 from rockflex.cli._schema import StructureFile
 from rockflex.modal import RockingProperties
-from rockflex.structure import Frame, Restrained
+from rockflex.structure import Eccentric, Frame, Restrained
 from rockflex.structure.file import KINDS, Built, build_in, checked, read_toml
 
 __all__ = ["LoadedStructure", "describe_properties", "load_structure", "split_arguments"]
@@ -39,7 +39,9 @@ class LoadedStructure:
         """Mass of the base in kg; None where only properties are known."""
         if isinstance(self.built, RockingProperties):
             return None
-        structure = self.built.structure if isinstance(self.built, Restrained) else self.built
+        structure = self.built
+        while isinstance(structure, Restrained | Eccentric):
+            structure = structure.structure
         return float(getattr(structure, "base_mass", 0.0))
 
     @property
@@ -51,12 +53,13 @@ class LoadedStructure:
     def title(self) -> str:
         """One line for the head of a table."""
         p = self.properties
+        shift = f", e = {p.eccentricity:.4g} m" if p.eccentricity else ""
         if p.n_modes == 0:
-            return f"{self.name}: rigid, B/h = {p.half_width * p.m_tot / p.l0r:.4g}"
+            return f"{self.name}: rigid, B/h = {p.half_width * p.m_tot / p.l0r:.4g}{shift}"
         modes = "1 mode" if p.n_modes == 1 else f"{p.n_modes} modes"
         slenderness = p.effective_height[0] / p.half_width
         period = 2.0 * math.pi / p.omega[0]
-        return f"{self.name}: {modes}, T_1 = {period:.4g} s, h*_1/B = {slenderness:.4g}, ζ_1 = {p.zeta[0]:.4g}"
+        return f"{self.name}: {modes}, T_1 = {period:.4g} s, h*_1/B = {slenderness:.4g}, ζ_1 = {p.zeta[0]:.4g}{shift}"
 
     def describe(self) -> dict[str, Any]:
         """Return what it was made of, for a document."""
@@ -82,6 +85,8 @@ def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path
 def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     """Build a structure from a TOML file, or from flags (None where not given) named as the arguments of `Frame`.
 
+    A flag `eccentricity` may be there as well.
+
     Raises
     ------
     InputError
@@ -90,7 +95,7 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     """
     given = {name: value for name, value in flags.items() if value is not None}
     if file is None:
-        return _from_flags(given, [name for name in flags if name not in given])
+        return _from_flags(given, [name for name in flags if name not in given and name != "eccentricity"])
     if given:
         message = f"The structure was given by {file} and by {_flags(given)}. Give one or the other."
         raise InputError(message)
@@ -101,10 +106,14 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
 
 
 def describe_properties(properties: RockingProperties) -> dict[str, Any]:
-    """Return every parameter of a rocking structure by its name, for a document."""
+    """Return every parameter of a rocking structure by its name, for a document; `pivots` where there are two kinds."""
     names = (*KINDS["properties"].model_fields, "resisting_moment", "nominal_overturning_rotation")
     tendons = ("tendons", "prestress", "tendon_stiffness") if properties.tendons else ()
-    return {name: getattr(properties, name) for name in (*names, *tendons)}
+    described = {name: getattr(properties, name) for name in (*names, *tendons)}
+    if properties.symmetric:
+        return described
+    pivots = [asdict(each) | {"resisting_moment": each.resisting_moment} for each in properties.pivots]
+    return described | {"eccentricity": properties.eccentricity, "pivots": pivots}
 
 
 def _from_flags(given: dict[str, Any], missing: list[str]) -> LoadedStructure:
@@ -113,8 +122,9 @@ def _from_flags(given: dict[str, Any], missing: list[str]) -> LoadedStructure:
         needed = _flags(KINDS["frame"].model_fields)
         message = f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {needed}."
         raise InputError(message)
-    frame = Frame(**given)
-    return LoadedStructure(f"{frame.n_stories}-story frame", "frame", given, frame)
+    frame = Frame(**{name: value for name, value in given.items() if name != "eccentricity"})
+    built = Eccentric(frame, given["eccentricity"]) if "eccentricity" in given else frame
+    return LoadedStructure(f"{frame.n_stories}-story frame", "frame", given, built)
 
 
 def _flags(names: Iterable[str]) -> str:

@@ -6,6 +6,7 @@ from rockflex.modal._assembly import rocking_properties
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._participation import MassNormalisedModes, modes_that_take_part
 from rockflex.modal._pinned_beam import PinnedBeam, pinned_beam
+from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._tendons import Tendon, tendon_set
 from rockflex.modal._uplifted import UpliftedModes, frequency_equation, uplifted_modes
@@ -17,6 +18,7 @@ __all__ = [
     "MassNormalisedModes",
     "ModalProperties",
     "PinnedBeam",
+    "Pivot",
     "RockingProperties",
     "Tendon",
     "UpliftedModes",

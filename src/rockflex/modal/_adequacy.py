@@ -1,7 +1,6 @@
 """How many modes a rocking structure needs."""
 
-import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +9,8 @@ from rockflex._checks import instance, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._values import Value
+from rockflex.modal._adequacy_frequencies import frequency_errors
 from rockflex.modal._rocking import RockingProperties
-from rockflex.modal._uplifted import lowest_uplifted
 
 __all__ = ["Adequacy", "AdequacyTolerance", "adequacy"]
 
@@ -168,7 +167,8 @@ def adequacy(
     -----
     What k modes leave out of the base moment is the sum of |m*_n h*_n|/L_0^r over the others, and what no mode at hand
     carries. The missing modes are taken to lie above those at hand: then the uplifted frequencies are lowest if all
-    their inertia moves with ω_N, which bounds the error of the N modes at hand.
+    their inertia moves with ω_N, which bounds the error of the N modes at hand. Where the two pivots differ, each error
+    is the larger of those about them.
 
     References
     ----------
@@ -188,13 +188,7 @@ def adequacy(
     lost = abs(1.0 - float(moment.sum()))
     moment_left = others + (lost if lost > _SLACK else 0.0)
     shear_left = np.maximum(1.0 - np.cumsum(shear), 0.0)
-    found = np.full((p.n_modes, 2), np.nan)
-    for k in range(1, p.n_modes + 1):
-        found[k - 1, :k] = lowest_uplifted(p.truncated(k), 2)
-    reference = np.zeros(2)
-    if not complete:
-        reference = np.maximum(found[-1] / _lowest(p, rest) - 1.0, 0.0)
-    error = np.maximum(found / found[-1] - 1.0, 0.0)
+    error, reference = frequency_errors(p, 0.0 if complete else rest)
     bound = (1.0 + error) * (1.0 + reference) - 1.0
     good = (moment_left <= limits.base_moment) & (bound[:, 0] <= limits.first_frequency)
     good[1:] &= bound[1:, 1] <= limits.second_frequency
@@ -223,17 +217,6 @@ def _mass_above(p: RockingProperties, base_mass: float) -> float:
         )
         raise InputError(message)
     return mass
-
-
-def _lowest(p: RockingProperties, inertia: float) -> Float:
-    """Return the first two uplifted frequencies if `inertia` in kg m² that is missing moves with the last mode's."""
-    # Two modes of one frequency: one with the inertia of both, and one that the rotation does not excite.
-    if p.n_modes == 1:  # the latter is the lowest
-        return np.append(p.omega, np.nan)
-    height = p.effective_height.copy()
-    height[-1] = math.sqrt(height[-1] ** 2 + inertia / p.effective_mass[-1])
-    both = lowest_uplifted(replace(p, effective_height=height), 2)
-    return np.sort(np.append(both, p.omega[-1]))[:2]
 
 
 def _first(good: NDArray[np.bool_]) -> int | None:

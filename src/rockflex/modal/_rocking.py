@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import SupportsIndex
 
 import numpy as np
@@ -14,21 +15,21 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal._floors import FloorModes
+from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_of
 from rockflex.modal._rocking_checks import (
     SLACK,
     check_modes,
     checked_base_mass,
+    checked_eccentricity,
     checked_inertia,
     checked_top_height,
     tendons_within,
 )
-from rockflex.modal._tendons import Tendon, tendon_set
+from rockflex.modal._tendons import Tendon, balanced, tendon_set
 
 __all__ = ["RockingProperties"]
 
 Float = NDArray[np.float64]
-
-_OVERTURNING_SHARE = 0.7
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -51,7 +52,8 @@ class RockingProperties(Value):
         Γ_n φ_top,n: displacement of the top for a unit of D_n, no unit; u_top = Σ_n Γ_n φ_top,n D_n.
     i_theta : float
         I_θ in kg m²: moment of inertia about a pivot, base mass included; above Σ_n m*_n h*_n², and at least
-        `translational_inertia` + m_tot B².
+        `translational_inertia` + m_tot B². Of an eccentric base it is that about a pivot at the distance B from the
+        axis of the masses all the same; `pivot` has those about its own two.
     l0r : float
         L_0^r = Σ_i m_i h_i in kg m.
     m_tot : float
@@ -72,7 +74,10 @@ class RockingProperties(Value):
         Mass m_0 of the base in kg, a part of `m_tot`. Default: what all modes together leave of `m_tot`; None where
         modes are missing, and the mass that they would move is not known.
     tendons : tuple of Tendon
-        What holds the base down beside its weight; within the base, and symmetric about its centre.
+        What holds the base down beside its weight; within the base, from -(B + e) to B - e.
+    eccentricity : float
+        e in m, smaller than B: how far the vertical axis on which the masses lie stands to the right of the middle of
+        the base, so that the pivots are B - e to its right and B + e to its left.
 
     Raises
     ------
@@ -94,6 +99,7 @@ class RockingProperties(Value):
     tendons: tuple[Tendon, ...]
     top_height: float | None
     base_mass: float | None
+    eccentricity: float
 
     def __init__(
         self,
@@ -111,6 +117,7 @@ class RockingProperties(Value):
         tendons: Tendon | Iterable[Tendon] = (),
         top_height: float | None = None,
         base_mass: float | None = None,
+        eccentricity: float = 0.0,
     ) -> None:
         modes = {
             "omega": finite_vector("omega", omega, "rad/s"),
@@ -131,7 +138,8 @@ class RockingProperties(Value):
             message = f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}."
             raise InputError(message)
         damping = damping_ratios("zeta", zeta, n_modes)
-        held = tendons_within(tendon_set(tendons), scalars["half_width"])
+        e = checked_eccentricity(modes, scalars, inertia, eccentricity)
+        held = tendons_within(tendon_set(tendons), scalars["half_width"], e)
         vars(self).update(
             modes,
             **scalars,
@@ -141,6 +149,7 @@ class RockingProperties(Value):
             tendons=held,
             top_height=checked_top_height(floors, top_height),
             base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
+            eccentricity=e,
         )
 
     @property
@@ -162,10 +171,43 @@ class RockingProperties(Value):
         left[np.abs(left) <= SLACK * np.abs(moments)] = 0.0
         return left
 
+    def pivot(self, side: int) -> Pivot:
+        """Return what belongs to one edge of the base: 1 is the right one, where θ > 0, and -1 the left one.
+
+        But for their `side` the two are alike if the structure is `symmetric`.
+
+        Raises
+        ------
+        InputError
+            If `side` is neither.
+        """
+        return self._by_side[checked_side(side)]
+
+    @cached_property
+    def _by_side(self) -> dict[int, Pivot]:
+        values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
+        height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
+        return {side: pivot_of(side, self.tendons, height=height, **values) for side in (1, -1)}
+
+    @property
+    def pivots(self) -> tuple[Pivot, ...]:
+        """The pivots that there are to tell apart: one of a `symmetric` structure, else the right and the left one."""
+        return (self.pivot(1),) if self.symmetric else (self.pivot(1), self.pivot(-1))
+
+    @cached_property
+    def weaker_pivot(self) -> Pivot:
+        """The pivot with the lesser resisting moment, about which the base lifts first; the right one of two alike."""
+        return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the base is not eccentric, and every tendon off its middle has a mirror image: both pivots alike."""
+        return self.eccentricity == 0.0 and balanced(self.tendons)
+
     @property
     def weight_moment(self) -> float:
-        """Part m_tot g B of the resisting moment that the weight gives, in N m."""
-        return self.m_tot * GRAVITY * self.half_width
+        """Part m_tot g B of the resisting moment that the weight gives, in N m; of the `weaker_pivot`."""
+        return self.weaker_pivot.weight_moment
 
     @property
     def prestress(self) -> float:
@@ -179,8 +221,11 @@ class RockingProperties(Value):
 
     @property
     def resisting_moment(self) -> float:
-        """M_r = (m_tot g + prestress) B in N m: the base lifts when the overturning moment exceeds it (Eq. 24)."""
-        return self.weight_moment + self.prestress * self.half_width
+        """M_r = (m_tot g + prestress) B in N m: the base lifts when the overturning moment exceeds it (Eq. 24).
+
+        Where the pivots differ it is the lesser of the two, that of the `weaker_pivot`.
+        """
+        return self.weaker_pivot.resisting_moment
 
     @property
     def axial_stiffness(self) -> float:
@@ -189,8 +234,8 @@ class RockingProperties(Value):
 
     @property
     def tendon_stiffness(self) -> float:
-        """Sum of k (B - x)² in N m/rad: rotational stiffness that the tendons add while the base rocks."""
-        return sum((each.stiffness * (self.half_width - each.position) ** 2 for each in self.tendons), 0.0)
+        """Sum of k (B - x)² in N m/rad: rotational stiffness that the tendons add about the `weaker_pivot`."""
+        return self.weaker_pivot.tendon_stiffness
 
     @property
     def rocking_stiffness(self) -> float:
@@ -199,21 +244,24 @@ class RockingProperties(Value):
 
     @property
     def nominal_overturning_rotation(self) -> float:
-        """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3); of a rigid block with L_0^r/m_tot."""
-        height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
-        return _OVERTURNING_SHARE * math.atan2(self.half_width, height)
+        """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3); of a rigid block with L_0^r/m_tot.
+
+        Of an eccentric base it is the lesser of the two, with the nearer pivot's distance for B.
+        """
+        return min(pivot.nominal_overturning_rotation for pivot in self.pivots)
 
     @computable("The inertia of the structure on this base")
     def with_half_width(self, half_width: float) -> "RockingProperties":
         """Return the same structure on a base of another half width B in m, of the same mass.
 
         I_θ changes by m_tot B² and M_r with B; the modes, L_0^r and what rotary inertia the bodies have stay as they
-        are, and so do the tendons.
+        are, and so do the tendons and the eccentricity.
 
         Raises
         ------
         InputError
-            If the half width is not positive, or a tendon does not stand within the base.
+            If the half width is not positive or not above the eccentricity, or a tendon does not stand within the
+            base.
         """
         b = positive("half_width", half_width, "m")
         rotary = self.i_theta - self.translational_inertia - self.m_tot * self.half_width**2

@@ -3,13 +3,22 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import positive
+from rockflex._checks import finite, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal._floors import FloorModes
+from rockflex.modal._pivot import pivot_inertia
 from rockflex.modal._tendons import Tendon
 
-__all__ = ["SLACK", "check_modes", "checked_base_mass", "checked_inertia", "checked_top_height", "tendons_within"]
+__all__ = [
+    "SLACK",
+    "check_modes",
+    "checked_base_mass",
+    "checked_eccentricity",
+    "checked_inertia",
+    "checked_top_height",
+    "tendons_within",
+]
 
 Float = NDArray[np.float64]
 
@@ -41,12 +50,38 @@ def check_modes(modes: dict[str, Float]) -> None:
         raise InputError(message)
 
 
-def tendons_within(tendons: tuple[Tendon, ...], half_width: float) -> tuple[Tendon, ...]:
+@computable("The inertia of the structure on this eccentric base")
+def checked_eccentricity(modes: dict[str, Float], scalars: dict[str, float], inertia: float, given: float) -> float:
+    e, b = finite("eccentricity", given, "m") + 0.0, scalars["half_width"]  # + 0.0 takes the sign from -0.0
+    if not abs(e) < b:
+        message = (
+            f"eccentricity must be smaller than half_width, {b:g} m, to either side, but {e:g} m was given. It is how "
+            "far the axis of the masses stands to the right of the middle of the base; check the units too."
+        )
+        raise InputError(message)
+    modal_inertia = float(modes["effective_mass"] @ modes["effective_height"] ** 2)
+    nearer = pivot_inertia(abs(e), b, scalars["i_theta"], inertia, scalars["m_tot"])
+    if nearer <= modal_inertia:
+        message = (
+            f"eccentricity must leave inertia to rotate about the nearer pivot, but with {e:.9g} m of half_width = "
+            f"{b:.9g} m only the {modal_inertia:.9g} kg m² of the modes are left. Move the axis of the masses further "
+            "from the edge of the base."
+        )
+        raise InputError(message)
+    return e
+
+
+def tendons_within(tendons: tuple[Tendon, ...], half_width: float, eccentricity: float) -> tuple[Tendon, ...]:
+    room = half_width * SLACK
+    left, right = -half_width - eccentricity, half_width - eccentricity
     for tendon in tendons:
-        if abs(tendon.position) > half_width * (1.0 + SLACK):
+        if not left - room <= tendon.position <= right + room:
+            base, origin = f"{half_width:g} m to each side of its centre", "the centre"
+            if eccentricity:
+                base, origin = f"from {left:g} to {right:g} m", "the axis of the masses, as the base's edges are"
             message = (
-                f"Tendons must pass through the base, {half_width:g} m to each side of its centre, but one stands at "
-                f"{tendon.position:g} m. Positions are measured from the centre."
+                f"Tendons must pass through the base, {base}, but one stands at {tendon.position:g} m. Positions are "
+                f"measured from {origin}."
             )
             raise InputError(message)
     return tendons

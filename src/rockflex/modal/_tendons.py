@@ -1,7 +1,7 @@
 """Tendons that hold a base down."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +9,7 @@ from rockflex._checks import finite, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = ["Tendon", "tendon_set"]
+__all__ = ["Tendon", "balanced", "tendon_set"]
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,8 @@ class Tendon:
     stiffness : float
         Axial stiffness EA/L over the unbonded length in N/m; zero or positive.
     position : float
-        Distance from the centre of the base in m, positive to the right.
+        Distance in m from the axis of the masses, which is the middle of the base unless that is eccentric; positive to
+        the right.
     yield_force : float or None
         In N, positive: against which the force is held. The tendon itself stays elastic.
 
@@ -60,12 +61,12 @@ class Tendon:
 
 
 def tendon_set(given: Any) -> tuple[Tendon, ...]:
-    """One tendon or several, as a tuple in which every tendon off the centre has its mirror image.
+    """One tendon or several, as a tuple.
 
     Raises
     ------
     InputError
-        If something is no tendon, or the set is not symmetric.
+        If something is no tendon.
     """
     items = (given,) if isinstance(given, Tendon) else tuple(given) if isinstance(given, Iterable) else (given,)
     for item in items:
@@ -74,15 +75,12 @@ def tendon_set(given: Any) -> tuple[Tendon, ...]:
                 f"tendons must be Tendon objects, but {shown(item)} was given. Write Tendon(initial_force, stiffness)."
             )
             raise InputError(message)
-    left = sorted((-t.position, t.initial_force, t.stiffness) for t in items if t.position < 0.0)
-    right = sorted((t.position, t.initial_force, t.stiffness) for t in items if t.position > 0.0)
-    pairs = [pair for ours, theirs in zip(left, right, strict=False) for pair in zip(ours, theirs, strict=True)]
-    if len(left) != len(right) or not all(math.isclose(one, other, rel_tol=1e-9) for one, other in pairs):
-        places = ", ".join(f"{t.position:g} m ({t.initial_force:g} N, {t.stiffness:g} N/m)" for t in items)
-        message = (
-            f"The tendons must be symmetric about the centre of the base, but they stand at {places}. The models have "
-            "the same properties about both pivots: give each tendon off the centre a mirror image of equal force and "
-            "stiffness."
-        )
-        raise InputError(message)
     return items
+
+
+def balanced(tendons: Sequence[Tendon]) -> bool:
+    """Tell whether every tendon off the origin of the positions has a mirror image of equal force and stiffness."""
+    left = sorted((-t.position, t.initial_force, t.stiffness) for t in tendons if t.position < 0.0)
+    right = sorted((t.position, t.initial_force, t.stiffness) for t in tendons if t.position > 0.0)
+    pairs = [pair for ours, theirs in zip(left, right, strict=False) for pair in zip(ours, theirs, strict=True)]
+    return len(left) == len(right) and all(math.isclose(one, other, rel_tol=1e-9) for one, other in pairs)

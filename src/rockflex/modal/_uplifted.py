@@ -12,6 +12,7 @@ from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
+from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted_damping import uplifted_damping
 
@@ -58,7 +59,9 @@ class UpliftedModes(Value):
 
 
 @computable("The uplifted modes of the given properties")
-def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None = None) -> UpliftedModes:
+def uplifted_modes(
+    properties: RockingProperties, n_modes: SupportsIndex | None = None, *, side: int | None = None
+) -> UpliftedModes:
     """Return the modes of Eq. 23, with the first `n_modes` modes of the structure or with all.
 
     Frequencies and shapes are those without damping; `damping_ratio` says what the damping of the fixed base becomes.
@@ -72,6 +75,9 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     properties : RockingProperties
     n_modes : int, optional
         Modes of the structure to keep: 1 is 2DOF-S, 2 is 3DOF-S. Default: all.
+    side : int, optional
+        1 for motion about the right edge of the base, -1 about the left one. Default: the `weaker_pivot`; both are
+        alike if the structure is `symmetric`.
 
     Returns
     -------
@@ -80,7 +86,7 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     Raises
     ------
     InputError
-        If there are not as many modes.
+        If there are not as many modes, or `side` is neither.
 
     References
     ----------
@@ -89,14 +95,15 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
     p = instance("properties", properties, RockingProperties)
     p = p if n_modes is None else p.truncated(n_modes)
     n = p.n_modes
-    squares, motions = _lowest(p, n)
+    pivot = _pivot(p, side)
+    squares, motions = _lowest(p, pivot, n)
     omega = np.sqrt(squares[1:])
     modal = motions[1:, 1:]
     largest = modal[np.abs(modal).argmax(axis=0), np.arange(n)] if n else np.ones(0)
     return UpliftedModes(
         omega=omega,
         ratio=omega / p.omega,
-        damping_ratio=uplifted_damping(squares, _modal_damping(p, motions)),
+        damping_ratio=uplifted_damping(squares, _modal_damping(p, pivot, motions)),
         shapes=motions[:, 1:] / (np.sign(largest) * np.abs(modal).sum(axis=0)),
         growth_rate=math.sqrt(max(-squares[0], 0.0)),
         sway_rate=math.sqrt(max(squares[0], 0.0)),
@@ -105,39 +112,43 @@ def uplifted_modes(properties: RockingProperties, n_modes: SupportsIndex | None 
 
 
 @computable("The uplifted frequencies of the given properties")
-def lowest_uplifted(properties: RockingProperties, count: int) -> Float:
+def lowest_uplifted(properties: RockingProperties, count: int, side: int | None = None) -> Float:
     """Return the first `count` of `UpliftedModes.omega`, or as many as there are, with less work than for all."""
-    return np.sqrt(_lowest(properties, min(count, properties.n_modes))[0][1:])
+    return np.sqrt(_lowest(properties, _pivot(properties, side), min(count, properties.n_modes))[0][1:])
 
 
-def _lowest(p: RockingProperties, vibrations: int) -> tuple[Float, Float]:
+def _pivot(p: RockingProperties, side: int | None) -> Pivot:
+    return p.weaker_pivot if side is None else p.pivot(side)
+
+
+def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Float, Float]:
     """Return ω² and (θ, D) of the rotation and of the lowest vibrations, of shapes (v + 1,) and (n + 1, v + 1)."""
     # With D_n √m*_n for freedoms the lower block of the mass matrix is the identity.
     root = np.sqrt(p.effective_mass)
     arm = root * p.effective_height
     # M = L L^T: the rest of the inertia, and the modes' own directions.
-    rest = float(np.sqrt(p.i_theta - arm @ arm))
+    rest = float(np.sqrt(pivot.i_theta - arm @ arm))
     # With y = (rest θ, √m*_n D_n + arm θ), M is the identity and K' = S^T K S, where (θ, √m* D) = S y.
     n = p.n_modes
     back = np.eye(n + 1)
     back[0, 0] = 1.0 / rest
     back[1:, 0] = -arm / rest
-    stiffness = np.concatenate([[p.rocking_stiffness], p.omega**2])
+    stiffness = np.concatenate([[pivot.rocking_stiffness], p.omega**2])
     squares, vectors = np.linalg.eigh(back.T @ (stiffness[:, None] * back))
     mass = np.eye(n + 1)
-    mass[0, 0], mass[0, 1:], mass[1:, 0] = p.i_theta, arm, arm
+    mass[0, 0], mass[0, 1:], mass[1:, 0] = pivot.i_theta, arm, arm
     kept = slice(vibrations + 1)
     squares, motions = _polished(stiffness, mass, squares[kept], back @ vectors[:, kept])
     motions[1:] /= root[:, None]
     return squares, motions
 
 
-def _modal_damping(p: RockingProperties, motions: Float) -> Float:
+def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Float) -> Float:
     """Return the damping of Eq. 23 over motions (θ, D) as columns, each scaled to unit modal mass."""
     root = np.sqrt(p.effective_mass)
     arm = root * p.effective_height
     turn, modal = motions[0], root[:, None] * motions[1:]
-    mass = (p.i_theta - arm @ arm) * turn**2 + ((modal + arm[:, None] * turn) ** 2).sum(axis=0)
+    mass = (pivot.i_theta - arm @ arm) * turn**2 + ((modal + arm[:, None] * turn) ** 2).sum(axis=0)
     share = modal / np.sqrt(mass)
     return share.T @ ((2.0 * p.zeta * p.omega)[:, None] * share)
 
@@ -157,10 +168,10 @@ def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> 
     return work / np.einsum("in,in->n", moved, mass @ moved), moved
 
 
-def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float:
+def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side: int | None = None) -> Float:
     """Return k_r - ω² I_θ - Σ_n ω⁴ m*_n h*_n²/(ω_n² - ω²), whose zeros are the uplifted frequencies.
 
-    k_r is `RockingProperties.rocking_stiffness`, which is -L_0^r g without tendons.
+    k_r is the `rocking_stiffness` of the pivot, which is -L_0^r g without tendons, and I_θ the inertia about it.
 
     Parameters
     ----------
@@ -168,6 +179,8 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float
         `truncated` for fewer modes.
     omega : array_like
         Circular frequencies in rad/s, any shape.
+    side : int, optional
+        1 for motion about the right edge of the base, -1 about the left one. Default: the `weaker_pivot`.
 
     Returns
     -------
@@ -177,13 +190,13 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float
     Raises
     ------
     InputError
-        If a frequency is no number below 1e60 rad/s.
+        If a frequency is no number below 1e60 rad/s, or `side` is neither.
 
     References
     ----------
     Silva & Stojadinović 2024, Section 3.4 (Fig. 12).
     """
-    instance("properties", properties, RockingProperties)
+    pivot = _pivot(instance("properties", properties, RockingProperties), side)
     frequencies = float_array(omega)
     if frequencies is None or not (np.abs(frequencies) < HIGHEST).all():
         message = f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given."
@@ -192,4 +205,4 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike) -> Float
     inertia = properties.effective_mass * properties.effective_height**2
     gap = properties.omega**2 - square
     terms = np.divide(square**2 * inertia, gap, out=np.full(gap.shape, np.nan), where=gap != 0.0)
-    return properties.rocking_stiffness - square[..., 0] * properties.i_theta - terms.sum(axis=-1)
+    return pivot.rocking_stiffness - square[..., 0] * pivot.i_theta - terms.sum(axis=-1)

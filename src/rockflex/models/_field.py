@@ -12,11 +12,16 @@ from numpy.typing import NDArray
 
 from rockflex._kernel import kernel
 
-__all__ = ["EXTRA", "Field", "field_rates", "inertia_left"]
+__all__ = ["EXTRA", "Field", "field_rates", "inertia_left", "pivot_at"]
 
 Array = NDArray[np.float64]
 
 EXTRA = 4  # components after those of the simplified models
+
+# Places in `Field.modes`, and of each pivot in `Field.pivots`: its distance B from the axis of the masses, I_θ about
+# it, and over the tendons Σ F_0 r, Σ k r² and Σ k r, where r is the distance of a tendon.
+OMEGA2, DRAG, HEIGHT, MASS = 0, 1, 2, 3
+ARM, INERTIA, PRESTRESS, STIFFNESS, PULL = 0, 1, 2, 3, 4
 
 
 class Field(NamedTuple):
@@ -24,18 +29,11 @@ class Field(NamedTuple):
 
     complete: bool  # Eqs. 13 and 14; else Eq. 23
     hysteretic: bool
-    omega2: Array  # ω²
-    damping: Array  # 2ζω
-    height: Array  # h*
-    mass: Array  # m*
-    inertia: float  # I_θ
+    modes: Array  # (4, N): ω², 2ζω, h* and m*
+    pivots: Array  # (2, 5), of the right pivot and of the left one: see the places above
     weight_arm: float  # L_0^r
     total_mass: float
-    half_width: float
-    prestress_moment: float  # B times the tendons' initial force
-    tendon_stiffness: float  # Σ k (B - x)²
-    prestress: float  # the tendons' initial force
-    axial_stiffness: float  # Σ k
+    prestress: float  # Σ F_0
     gravity: float  # g
     yield_displacement: float
     post_yield_ratio: float
@@ -46,14 +44,21 @@ class Field(NamedTuple):
 
 
 @kernel
+def pivot_at(side: float) -> int:
+    """Place of a side's pivot in the field's pairs of values."""
+    return 1 if side < 0.0 else 0
+
+
+@kernel
 def inertia_left(field: Field, side: float, motion: Array) -> float:
     """Factor of θ'' once D'' is eliminated: I_θ - Σ m* h*², and in the complete models what D adds."""
-    n = field.omega2.size
-    inertia = field.inertia
+    n = field.modes.shape[1]
+    pivot = pivot_at(side)
+    inertia = field.pivots[pivot, INERTIA]
     for i in range(n):
-        inertia -= field.mass[i] * field.height[i] * field.height[i]
+        inertia -= field.modes[MASS, i] * field.modes[HEIGHT, i] * field.modes[HEIGHT, i]
         if field.complete:
-            inertia += field.mass[i] * motion[i] * (motion[i] - 2.0 * side * field.half_width)
+            inertia += field.modes[MASS, i] * motion[i] * (motion[i] - 2.0 * side * field.pivots[pivot, ARM])
     return inertia
 
 
@@ -63,35 +68,38 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
 
     `branch` is the sign of D'_1 that the hysteresis goes by, so that its law is smooth until it has turned.
     """
-    n = field.omega2.size
+    n = field.modes.shape[1]
     theta, spin = motion[2 * n], motion[2 * n + 1]
     sine, cosine = 0.0, 1.0
     if side != 0.0 and field.complete:
         sine, cosine = math.sin(theta), math.cos(theta)
-    offset = side * field.half_width
+    pivot = pivot_at(side)
+    offset = side * field.pivots[pivot, ARM]
     rates[2 * n + 2] = 0.0
     rates[2 * n + 5] = 0.0
     damped = drive = moment = displaced = carried = 0.0
     for i in range(n):
         d, v = motion[i], motion[n + i]
-        drag = field.damping[i] * v
-        restoring = field.omega2[i] * d
+        drag = field.modes[DRAG, i] * v
+        restoring = field.modes[OMEGA2, i] * d
         if field.hysteretic:
             restoring *= field.post_yield_ratio
-            slip = field.omega2[i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
+            slip = (
+                field.modes[OMEGA2, i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
+            )
             restoring += slip
-            rates[2 * n + 5] = field.mass[i] * slip * v
-            rates[2 * n + 2] = hysteresis(field, branch, v, motion[2 * n + 2])
+            rates[2 * n + 5] = field.modes[MASS, i] * slip * v
+            rates[2 * n + 2] = hysteresis(field, branch, float(v), float(motion[2 * n + 2]))
         rest = -restoring - drag - acceleration * cosine
         if side != 0.0 and field.complete:
             rest += field.gravity * sine - spin * spin * (offset - d)
-            moment += 2.0 * spin * v * field.mass[i] * (d - offset)
+            moment += 2.0 * spin * v * field.modes[MASS, i] * (d - offset)
         rates[i] = v
         rates[n + i] = rest
-        moment += field.mass[i] * field.height[i] * rest
-        damped += field.mass[i] * drag * v
-        displaced += field.mass[i] * d
-        carried += field.mass[i] * v
+        moment += field.modes[MASS, i] * field.modes[HEIGHT, i] * rest
+        damped += field.modes[MASS, i] * drag * v
+        displaced += field.modes[MASS, i] * d
+        carried += field.modes[MASS, i] * v
     angular = 0.0
     if side != 0.0:
         weight = field.total_mass * offset
@@ -99,16 +107,19 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
             arm = weight * sine + field.weight_arm * cosine - displaced * sine
             moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
             # Tendons are stretched by 2 r sin(|θ|/2) and pull at the arm r cos(θ/2), r being their distance B - s x.
-            moment += side * field.prestress_moment * math.sqrt(0.5 + 0.5 * cosine) + field.tendon_stiffness * sine
+            moment += (
+                side * field.pivots[pivot, PRESTRESS] * math.sqrt(0.5 + 0.5 * cosine)
+                + field.pivots[pivot, STIFFNESS] * sine
+            )
         else:
             arm = field.weight_arm
             moment += field.gravity * (weight - field.weight_arm * theta)
-            moment += side * field.prestress_moment + field.tendon_stiffness * theta
+            moment += side * field.pivots[pivot, PRESTRESS] + field.pivots[pivot, STIFFNESS] * theta
         moment += acceleration * arm
         angular = -moment / inertia_left(field, side, motion)
         drive = arm * spin
         for i in range(n):
-            rates[n + i] -= field.height[i] * angular
+            rates[n + i] -= field.modes[HEIGHT, i] * angular
     rates[2 * n] = spin
     rates[2 * n + 1] = angular
     rates[2 * n + 3] = damped

@@ -16,7 +16,15 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 
-__all__ = ["ForgottenLaw", "ImpactLaw", "Restitution", "VVELComplete", "VVELSimplified", "housner"]
+__all__ = [
+    "ForgottenLaw",
+    "ImpactLaw",
+    "Restitution",
+    "SidedRestitution",
+    "VVELComplete",
+    "VVELSimplified",
+    "housner",
+]
 
 Array = NDArray[np.float64]
 
@@ -128,6 +136,30 @@ class Restitution:
 
 
 @dataclass(frozen=True)
+class SidedRestitution:
+    """A restitution that depends on the edge of the base that the rotation leaves.
+
+    Parameters
+    ----------
+    right, left
+        For an impact that ends a rotation about the right edge (θ > 0, so θ' < 0 before it), and about the left one.
+    """
+
+    right: Restitution
+    left: Restitution
+
+    keeps = Restitution.keeps
+    loses = Restitution.loses
+
+    def after(
+        self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
+    ) -> tuple[Array, float]:
+        """What the law of that edge says."""
+        law = self.right if rotation_velocity < 0.0 else self.left
+        return law.after(properties, modal_velocity, rotation_velocity)
+
+
+@dataclass(frozen=True)
 class ForgottenLaw:
     """What a saved response remembers of the user's own law: not what it does."""
 
@@ -150,19 +182,33 @@ class ForgottenLaw:
         raise InputError(message)
 
 
-def housner(properties: RockingProperties) -> Restitution:
+def housner(properties: RockingProperties) -> Restitution | SidedRestitution:
     """Housner's impact of a rigid block, η = 1 - 2 m_tot B²/I_θ: angular momentum about the new pivot is kept.
+
+    On an eccentric base, with the masses at the distances B_1 and B_2 from the pivots before and after the impact, it
+    is η = 1 - m_tot (B_1 + B_2) B_2/I_2, which differs from side to side.
 
     Raises
     ------
     InputError
         If the block is so squat that η would be negative.
     """
-    eta = 1.0 - 2.0 * properties.m_tot * properties.half_width**2 / properties.i_theta
+    p = properties
+    if p.eccentricity == 0.0:
+        eta = 1.0 - 2.0 * p.m_tot * p.half_width**2 / p.i_theta
+        return Restitution(_not_negative(eta, "1 - 2 m_tot B²/I_θ is", "a block"))
+    coefficients: list[Restitution] = []
+    for new in (p.pivot(-1), p.pivot(1)):
+        eta = 1.0 - 2.0 * p.m_tot * p.half_width * new.arm / new.i_theta  # B_1 + B_2 = 2 B
+        coefficients.append(Restitution(_not_negative(eta, "1 - 2 m_tot B B_2/I_2 is", "an eccentric block")))
+    return SidedRestitution(*coefficients)
+
+
+def _not_negative(eta: float, formula: str, kind: str) -> float:
     if eta < 0.0:
         message = (
-            f"Housner's coefficient 1 - 2 m_tot B²/I_θ is {eta:.4g}: a block this squat stops at its first impact. "
+            f"Housner's coefficient {formula} {eta:.4g}: {kind} this squat stops at its first impact. "
             "Give impact=VVELSimplified()."
         )
         raise InputError(message)
-    return Restitution(eta)
+    return eta

@@ -3,26 +3,23 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
-from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._elements import CLOSED, LEFT, RIGHT
 from rockflex.models._field import Field
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._linear import LinearModel
+from rockflex.models._modal_model import ModalModel
+from rockflex.models._phase import Key, Phase
 
 __all__ = ["NonlinearModel"]
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
-class NonlinearModel(Value):
+class NonlinearModel(ModalModel):
     """N modes on a base that may uplift, with large rotations, a superstructure that yields, or both.
-
-    Rows run over ``[D_1..D_N, D'_1..D'_N, θ, θ', z, a, s]``.
 
     Parameters
     ----------
@@ -46,80 +43,43 @@ class NonlinearModel(Value):
     properties: RockingProperties
     lifts: bool = True
     law: ImpactLaw = field(default_factory=VVELSimplified)
-    complete: bool = True
-    bouc_wen: BoucWen | None = None
+    complete: bool = True  # pyright: ignore[reportIncompatibleMethodOverride]
+    bouc_wen: BoucWen | None = None  # pyright: ignore[reportIncompatibleMethodOverride]
     missing_mass: bool = False
+
+    @property
+    def integrated(self) -> bool:
+        """True: while it rocks, and with a hysteretic spring throughout."""
+        return True
 
     @property
     def linear(self) -> LinearModel:
         """The simplified, elastic model of the same modes."""
         return LinearModel(self.label, self.properties, self.lifts, self.law, self.missing_mass)
 
-    def stiffness(self) -> Array:
-        """The restoring accelerations over (D_1..D_N, z), shape (N, N + 1): ω² D, or Eq. 37."""
-        omega2 = self.properties.omega**2
-        rows = np.column_stack((np.diag(omega2), np.zeros(omega2.size)))
-        if self.bouc_wen is not None:
-            share = self.bouc_wen.post_yield_ratio
-            rows[:, :-1] *= share
-            rows[:, -1] = omega2 * self.bouc_wen.yield_displacement * (1.0 - share)
-        return rows
-
-    def guards(self) -> Array:
-        """Overturning moment in contact (Eqs. 16 and 24), and the rotation: rows, shape (2, 2N + 5)."""
-        p = self.properties
-        n = p.n_modes
-        arm = p.effective_mass * p.effective_height
-        restoring = arm @ self.stiffness()
-        guards = np.zeros((2, 2 * n + 5))
-        guards[0, :n] = -restoring[:-1]
-        if self.complete:
-            guards[0, :n] -= p.effective_mass * GRAVITY
-        guards[0, n : 2 * n] = -arm * 2.0 * p.zeta * p.omega
-        guards[0, 2 * n + 2] = -restoring[-1]
-        guards[0, -2] = p.l0r - arm.sum()
-        guards[1, 2 * n] = 1.0
-        return guards
-
-    def angular_acceleration(self) -> Array:
-        """θ'' while a simplified model rocks, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (2N + 5,)."""
-        linear = self.linear
-        row = -self.guards()[0]
-        row[-5] = -self.properties.rocking_stiffness
-        row[-1] = -self.properties.resisting_moment
-        return row / linear.free_inertia
-
-    def modal_accelerations(self, *, rocking: bool) -> Array:
-        """D'' of every mode in contact, or while a simplified model rocks, in m/s²: rows, shape (N, 2N + 5)."""
-        p = self.properties
-        n = p.n_modes
-        rows = np.zeros((n, 2 * n + 5))
-        stiffness = self.stiffness()
-        rows[:, :n] = -stiffness[:, :-1]
-        rows[:, n : 2 * n] = -np.diag(2.0 * p.zeta * p.omega)
-        rows[:, 2 * n + 2] = -stiffness[:, -1]
-        rows[:, -2] = -1.0
-        return rows - np.outer(p.effective_height, self.angular_acceleration()) if rocking else rows
+    def phase(self, key: Key) -> Phase:
+        """Return one phase; only contact of an elastic superstructure is linear."""
+        linear = key[0] == CLOSED and self.bouc_wen is None
+        return Phase(key, key[0], self.arrow(key) if linear else None, self.guards(key))
 
     def field(self) -> Field:
         """Coefficients of the vector field."""
         p = self.properties
         b = self.bouc_wen or BoucWen(1.0)
+        pivots = [p.pivot(side) for side in (RIGHT, LEFT)]
         return Field(
             complete=self.complete,
             hysteretic=self.bouc_wen is not None,
-            omega2=p.omega**2,
-            damping=2.0 * p.zeta * p.omega,
-            height=p.effective_height.copy(),  # writable, as the kernels are compiled for
-            mass=p.effective_mass.copy(),
-            inertia=p.i_theta,
+            modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega, p.effective_height, p.effective_mass)),
+            pivots=np.array(
+                [
+                    (each.arm, each.i_theta, each.prestress_moment, each.tendon_stiffness, each.axial_stiffness_moment)
+                    for each in pivots
+                ]
+            ),
             weight_arm=p.l0r,
             total_mass=p.m_tot,
-            half_width=p.half_width,
-            prestress_moment=p.prestress * p.half_width,
-            tendon_stiffness=p.tendon_stiffness,
             prestress=p.prestress,
-            axial_stiffness=p.axial_stiffness,
             gravity=GRAVITY,
             yield_displacement=b.yield_displacement,
             post_yield_ratio=b.post_yield_ratio,

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._kernel import kernel
-from rockflex.models._field import Field
+from rockflex._kernel import kernel, python_kernel
+from rockflex.models._field import ARM, MASS, PULL, Field, pivot_at
 
 __all__ = ["HORIZONTAL", "LEFT_OUT", "LINEAR", "SWAY", "VERTICAL", "Posture", "observe", "observe_all", "posture_of"]
 
@@ -39,21 +39,22 @@ class Posture(NamedTuple):
 @kernel
 def posture_of(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
     """Posture of a motion while rocking; `rates` holds D'' and θ''."""
-    n = field.omega2.size
-    spin, turn = motion[2 * n + 1], rates[2 * n + 1]
+    n = field.modes.shape[1]
+    spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
     sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
     upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
     half = 0.5 * sine / upright
-    offset = side * field.half_width
+    pivot = pivot_at(side)
+    offset = side * field.pivots[pivot, ARM]
     across = field.total_mass * offset  # Σ m_i (s B - u_i)
     speed = push = 0.0
     for i in range(n):
-        across -= field.mass[i] * motion[i]
-        speed += field.mass[i] * motion[n + i]
-        push += field.mass[i] * rates[n + i]
+        across -= field.modes[MASS, i] * motion[i]
+        speed += field.modes[MASS, i] * motion[n + i]
+        push += field.modes[MASS, i] * rates[n + i]
     along, beside = across * cosine - field.weight_arm * sine, across * sine + field.weight_arm * cosine
     # A tendon points from where it leaves the base to where it left it in contact: at θ/2 from the vertical.
-    pull = field.prestress + 2.0 * field.axial_stiffness * field.half_width * abs(half)
+    pull = field.prestress + 2.0 * field.pivots[pivot, PULL] * abs(half)
     square, coriolis = spin * spin, 2.0 * spin * speed
     return Posture(
         sine=sine,
@@ -82,7 +83,7 @@ def observe(kind: int, value: float, near: float, far: float, posture: Posture) 
     return value
 
 
-@kernel
+@python_kernel
 def observe_all(
     field: Field,
     kind: int,

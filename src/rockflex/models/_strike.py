@@ -10,9 +10,9 @@ from rockflex._checks import finite, finite_vector
 from rockflex._errors import InputError
 from rockflex._kernel import Callback, kernel
 from rockflex.modal import RockingProperties
-from rockflex.models._impact import ImpactLaw, Restitution, VVELComplete, VVELSimplified
+from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution, VVELComplete, VVELSimplified
 
-__all__ = ["Impact", "OwnLaw", "impact_of", "kinetic_energy", "stick", "strike"]
+__all__ = ["Impact", "OwnLaw", "impact_of", "kinetic_energy", "may_pass", "stick", "strike"]
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,8 @@ class Impact(NamedTuple):
     """An impact law for one model."""
 
     kind: int
-    restitution: float
+    right: float  # restitution where a rotation about the right edge ends
+    left: float  # and about the left one
     shortest: float  # excursion that is worth another rotation, s
     mass: Array  # m*
     height: Array  # h*
@@ -40,13 +41,19 @@ NO_CALLBACK = Callback(lambda _address, _count: 1)
 def impact_of(law: ImpactLaw, properties: RockingProperties) -> tuple[Impact, list[Exception]]:
     """A law made ready for kernels, and the list in which what it raises will stand."""
     own = None
-    if not isinstance(law, VVELSimplified | VVELComplete | Restitution):
+    if not isinstance(law, VVELSimplified | VVELComplete | Restitution | SidedRestitution):
         own = OwnLaw(law, properties)
+    right = left = Restitution(0.0, SHORTEST)
+    if isinstance(law, SidedRestitution):
+        right, left = law.right, law.left
+    elif isinstance(law, Restitution):
+        right = left = law
     mass, height = properties.effective_mass.copy(), properties.effective_height.copy()
     impact = Impact(
         kind=CALLED if own else SCALED if isinstance(law, VVELComplete) else SHARED,
-        restitution=law.e if isinstance(law, Restitution) else 0.0,
-        shortest=law.shortest_excursion if isinstance(law, Restitution) else SHORTEST,
+        right=right.e,
+        left=left.e,
+        shortest=right.shortest_excursion,
         mass=mass,
         height=height,
         unseen=properties.translational_inertia - float(mass @ height**2),
@@ -62,7 +69,7 @@ def strike(impact: Impact, state: Array) -> bool:
     if impact.kind == CALLED:
         return impact.callback(state.ctypes.data, n) == 0
     spin = state[2 * n + 1]
-    passed = impact.restitution * spin
+    passed = (impact.right if spin < 0.0 else impact.left) * spin
     moving = 0.0
     for i in range(n):
         state[n + i] += impact.height[i] * (spin - passed)
@@ -73,6 +80,12 @@ def strike(impact: Impact, state: Array) -> bool:
             state[n + i] *= scale
     state[2 * n + 1] = passed
     return True
+
+
+@kernel
+def may_pass(impact: Impact) -> bool:
+    """Whether the rocking may go on after an impact without a contact in between."""
+    return impact.kind == CALLED or impact.right != 0.0 or impact.left != 0.0
 
 
 @kernel

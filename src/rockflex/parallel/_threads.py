@@ -19,7 +19,10 @@ def core_count() -> int:
 
 
 def map_threads(
-    function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
+    function: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    workers: SupportsIndex | None = None,
+    leaving: Callable[[], object] = lambda: None,
 ) -> Iterator[Result]:
     """Yield `function(task)` of every task, in order of completion; few tasks wait at a time.
 
@@ -34,6 +37,8 @@ def map_threads(
         Read as workers become free, so it may be endless.
     workers
         Number of threads; None for one a core, 1 for no threads at all (to debug).
+    leaving
+        Called when the map ends, early or not, before the tasks that still run are waited for: to ask them to stop.
 
     Raises
     ------
@@ -59,5 +64,6 @@ def map_threads(
                 for future in done:
                     yield future.result()
         finally:
+            leaving()
             for future in running:
                 future.cancel()

@@ -1,6 +1,5 @@
 """Responses made ready to be drawn: checked, named, each with its own look, and what of an overturning run counts."""
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -47,9 +46,17 @@ class Curve:
 
     @property
     def balance_rotation(self) -> float:
-        """Rotation α in rad at which the static resisting moment vanishes; infinite where tendons keep it from it."""
+        """Rotation α in rad at which the static resisting moment vanishes, on the side where it is larger.
+
+        Infinite where tendons keep it from that.
+        """
+        return max(pivot.balance_rotation for pivot in self.history.model.properties.pivots)
+
+    @property
+    def balance(self) -> Array:
+        """The same on the side to which the rotation is, at each node."""
         p = self.history.model.properties
-        return -p.resisting_moment / p.rocking_stiffness if p.rocking_stiffness < 0.0 else math.inf
+        return np.where(self.history.rotation < 0.0, p.pivot(-1).balance_rotation, p.pivot(1).balance_rotation)
 
     @property
     def uplifts(self) -> Array:
@@ -62,15 +69,15 @@ class Curve:
     @property
     def falls(self) -> bool:
         """Whether it passed the rotation of balance and was still beyond it, or overturned, when the run ended."""
-        rotation = np.abs(self.history.rotation)
-        return bool(rotation[-1] > self.balance_rotation >= rotation.min())
+        beyond = np.abs(self.history.rotation) > self.balance
+        return bool(beyond[-1] and not beyond.all())
 
     @property
     def before_fall(self) -> slice:
         """Nodes until θ passes the rotation of balance for the last time; all of them if it does not fall."""
         if not self.falls:
             return slice(None)
-        inside = np.flatnonzero(np.abs(self.history.rotation) <= self.balance_rotation)
+        inside = np.flatnonzero(np.abs(self.history.rotation) <= self.balance)
         return slice(int(inside[-1]) + 1)
 
     @property

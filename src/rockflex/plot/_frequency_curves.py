@@ -36,6 +36,7 @@ def plot_frequency_equation(
     n_modes: Sequence[SupportsIndex | None] = (1, 2, None),
     *,
     highest: float | None = None,
+    side: int | None = None,
 ) -> Figure:
     """Plot the frequency equation of an uplifted structure over ω, a curve a model, and mark its zeros.
 
@@ -51,6 +52,9 @@ def plot_frequency_equation(
         Modes to keep, a curve each: 1 for 2DOF-S, 2 for 3DOF-S, None for all.
     highest
         Upper end of the axis, ω/ω_1. Default: beyond the second zero of every model.
+    side
+        1 for motion about the right edge of the base, -1 about the left one. Default: the edge about which the base
+        lifts first; both are alike if the structure is symmetric.
 
     Returns
     -------
@@ -60,20 +64,20 @@ def plot_frequency_equation(
     Raises
     ------
     InputError
-        If there is no structure, one has no modes or not as many, or `highest` is not positive.
+        If there is no structure, one has no modes or not as many, `highest` is not positive, or `side` is neither.
     """
     named = structures if isinstance(structures, Mapping) else {"": structures}
     if not named or not len(n_modes):
         message = "There is nothing to plot. Give at least one structure, and one number of modes (None for all)."
         raise InputError(message)
     end = None if highest is None else positive("highest", highest, "ω/ω_1")
-    models = {name: _models_of(each, n_modes) for name, each in named.items()}
+    models = {name: _models_of(each, n_modes, side) for name, each in named.items()}
     looks = surrogate_looks(label for each in models.values() for label in each)
     with styled():
         figure = new_figure(6.3, 0.5 + 2.4 * len(named))
         panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
         for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
-            _draw_panel(axes, each, looks, end)
+            _draw_panel(axes, each, looks, end, side)
             axes.set_title(literal(name))
             letter(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
@@ -87,7 +91,7 @@ def plot_frequency_equation(
 
 
 def _models_of(
-    structure: "Structure | RockingProperties", n_modes: Sequence[SupportsIndex | None]
+    structure: "Structure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
 ) -> "dict[str, tuple[RockingProperties, UpliftedModes]]":
     """Truncated properties and uplifted modes by the models' labels."""
     full = properties_of(structure)
@@ -98,7 +102,7 @@ def _models_of(
     for each in n_modes:
         count = full.n_modes if each is None else whole_number("n_modes", each, 1, full.n_modes)
         kept = full.truncated(count)
-        found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (kept, uplifted_modes(kept))
+        found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (kept, uplifted_modes(kept, side=side))
     return found
 
 
@@ -107,6 +111,7 @@ def _draw_panel(
     models: "dict[str, tuple[RockingProperties, UpliftedModes]]",
     looks: dict[str, Look],
     highest: float | None,
+    side: int | None,
 ) -> None:
     most = max((p for p, _ in models.values()), key=lambda p: p.n_modes)
     first = float(most.omega[0])
@@ -120,7 +125,8 @@ def _draw_panel(
     for label, (p, modes) in models.items():
         look = looks[label]
         omega = _between_poles(p.omega, end * first)
-        ordinate = frequency_equation(p, omega) / (p.i_theta * first**2)
+        inertia = p.weaker_pivot.i_theta if side is None else p.pivot(side).i_theta
+        ordinate = frequency_equation(p, omega, side=side) / (inertia * first**2)
         ordinates.append(np.abs(ordinate[np.isfinite(ordinate)]))
         axes.plot(
             omega / first, ordinate, color=look.color, linestyle=look.dashes, linewidth=look.width,

@@ -23,15 +23,17 @@ _HEADROOM = 1.1
 _PER_ROW = 3
 _FREE = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
 _HELD = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
+_SIDED = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
 
 
 def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> Figure:
     """Plot the base moment M_b over the rotation θ, and the static resisting moment of the simplified models.
 
     The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
-    tendons add their prestress to M_r and their stiffness k_t to the slope. M_b is that of
-    the elastic forces, and departs from it by the inertia of the rotation and by damping. Responses of a base that
-    cannot lift have no rotation and are left out. The phase in which a structure overturns does not stretch the axes.
+    tendons add their prestress to M_r and their stiffness k_t to the slope, and each side has its own where the base is
+    eccentric or the tendons are not symmetric. M_b is that of the elastic forces, and departs from it by the inertia of
+    the rotation and by damping. Responses of a base that cannot lift have no rotation and are left out. The phase in
+    which a structure overturns does not stretch the axes.
 
     Parameters
     ----------
@@ -95,13 +97,17 @@ def _largest_moment(curve: Curve) -> float:
     moment = curve.response.max_base_moment
     if curve.falls:
         moment = float(np.max(np.abs(curve.history.base_moment[curve.before_fall])))
-    return max(moment, curve.history.model.properties.resisting_moment)
+    return max(moment, *(pivot.resisting_moment for pivot in curve.history.model.properties.pivots))
 
 
 def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
     p = curve.history.model.properties
-    start, end = p.resisting_moment / factor, (p.resisting_moment + p.rocking_stiffness * rotation) / factor
+    right, left = (
+        (each.resisting_moment / factor, (each.resisting_moment + each.rocking_stiffness * rotation) / factor)
+        for each in (p.pivot(1), p.pivot(-1))
+    )
+    law = (_HELD if p.tendons else _FREE) if p.symmetric else _SIDED
     return Line2D(
-        [-rotation, 0.0, 0.0, rotation], [-end, -start, start, end], color=BLUE, linestyle=(0, (4, 2)), linewidth=1.1,
-        label="static, " + (_HELD if p.tendons else _FREE), zorder=3.0,
+        [-rotation, 0.0, 0.0, rotation], [-left[1], -left[0], *right], color=BLUE, linestyle=(0, (4, 2)),
+        linewidth=1.1, label="static, " + law, zorder=3.0,
     )  # fmt: skip

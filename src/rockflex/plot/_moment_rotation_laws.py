@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from rockflex._checks import positive
 from rockflex._constants import GRAVITY
-from rockflex.modal import RockingProperties
+from rockflex.modal import Pivot, RockingProperties
 from rockflex.plot._style import BLACK, GRAY, SMALL, letter, new_figure, styled
 from rockflex.plot._units import readable, short
 from rockflex.study import Structure, properties_of
@@ -23,7 +23,8 @@ def plot_moment_rotation_laws(
     """Plot the static base moment over the rotation: of a pinned beam on a spring, and of the rocking structure.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 11: M = k_r θ, and M = ±(M_r + k |θ|) with the slope
-    k = -L_0^r g, to which tendons add theirs. While the base stands, M is anything between -M_r and M_r.
+    k = -L_0^r g, to which tendons add theirs. While the base stands, M is anything between -M_r and M_r. An eccentric
+    base, or one whose tendons are not symmetric, has its own M_r and k on either side.
 
     Parameters
     ----------
@@ -47,12 +48,14 @@ def plot_moment_rotation_laws(
         If no structure is given, or a number is not positive and finite.
     """
     p = properties_of(structure)
-    zero = -p.resisting_moment / p.rocking_stiffness if p.rocking_stiffness < 0.0 else math.inf
-    default = _ROOM * zero if math.isfinite(zero) else p.nominal_overturning_rotation
+    sides = (p.pivot(1), p.pivot(-1))
+    zeros = [side.balance_rotation for side in sides]
+    vanishing = [zero for zero in zeros if math.isfinite(zero)]
+    default = _ROOM * max(vanishing) if vanishing else max(each.nominal_overturning_rotation for each in sides)
     end = default if rotation is None else positive("rotation", rotation, "rad")
     stiffness = p.l0r * GRAVITY if spring is None else positive("spring", spring, "N m/rad")
-    last = p.resisting_moment + p.rocking_stiffness * end
-    largest = max(p.resisting_moment, abs(last))
+    lasts = [side.resisting_moment + side.rocking_stiffness * end for side in sides]
+    largest = max(*(side.resisting_moment for side in sides), *map(abs, lasts))
     factor, unit = readable(largest, "N m")
     with styled():
         figure = new_figure(6.3, 3.1)
@@ -70,28 +73,52 @@ def plot_moment_rotation_laws(
         left.locator_params(axis="x", nbins=5)
         moment = stiffness * end / factor
         left.plot([-end, end], [-moment, moment], color=BLACK, linewidth=1.4, label="pinned beam")
-        start, last = p.resisting_moment / factor, last / factor
-        right.plot([-end, 0.0, 0.0, end], [-last, -start, start, last], color=BLACK, linewidth=1.4, label="rocking")
+        starts, lasts = [side.resisting_moment / factor for side in sides], [last / factor for last in lasts]
+        right.plot(
+            [-end, 0.0, 0.0, end], [-lasts[1], -starts[1], starts[0], lasts[0]], color=BLACK, linewidth=1.4,
+            label="rocking",
+        )  # fmt: skip
         _note(left, f"slope $k_r$ =\n{_with_unit(stiffness, 'N m/rad')}", low=True)
-        low = last > -0.3 * start
-        slope, resisting, vanishing = _slope(p), f"$M_r$ = {_with_unit(p.resisting_moment, 'N m')}", ""
-        if zero <= end:
-            right.plot([-zero, zero], [0.0, 0.0], "o", color=BLACK, markersize=4.0, markerfacecolor="white", label="_0")
-            vanishing = f"$M$ = 0 at ±{short(zero)} rad"
-        elif math.isinf(zero):
-            vanishing = "$M$ does not vanish"
-        if low:
-            right.annotate(
-                resisting, (0.0, start), xytext=(-4, 0), ha="right", va="center", textcoords="offset points",
-                fontsize=SMALL,
-            )  # fmt: skip
-        _note(right, "\n".join(filter(None, (slope, vanishing) if low else (vanishing, slope, resisting))), low=low)
+        low = lasts[0] > -0.3 * starts[0]
+        crossings = [sign * zero for sign, zero in ((-1.0, zeros[1]), (1.0, zeros[0])) if zero <= end]
+        if crossings:
+            right.plot(
+                crossings, [0.0] * len(crossings), "o", color=BLACK, markersize=4.0, markerfacecolor="white", label="_0"
+            )
+        slope, zero = _slope(sides, symmetric=p.symmetric), _vanishing(zeros, end, symmetric=p.symmetric)
+        resisting = [f"$M_r$ = {_with_unit(side.resisting_moment, 'N m')}" for side in sides]
+        corners = not p.symmetric or low  # where M_r is written; else with the rest
+        if corners:
+            _beside(right, resisting[0], starts[0], left=True)
+        if not p.symmetric:
+            _beside(right, resisting[1], -starts[1], left=False)
+            for rotation in crossings:
+                _above(right, f"{short(rotation)} rad", rotation)
+        lines = (slope, zero) if corners else (zero, slope, resisting[0])
+        at = 0.48 if low and not p.symmetric else None  # between the axis and the lower corner
+        _note(right, "\n".join(filter(None, lines)), low=low, at=at)
     return figure
 
 
-def _slope(p: RockingProperties) -> str:
-    name = r"-L_0^r\,g" if p.tendon_stiffness == 0.0 else r"k_t - L_0^r\,g"
-    return f"slope ${name}$ =\n{_with_unit(p.rocking_stiffness, 'N m/rad')}"
+def _slope(sides: tuple[Pivot, Pivot], *, symmetric: bool) -> str:
+    held = any(side.tendon_stiffness for side in sides)
+    name = r"k_t - L_0^r\,g" if held else r"-L_0^r\,g"
+    values = [_with_unit(side.rocking_stiffness, "N m/rad") for side in sides]
+    return f"slope ${name}$ =\n{_each(values, symmetric=symmetric or not held)}"
+
+
+def _vanishing(zeros: list[float], end: float, *, symmetric: bool) -> str:
+    """What is said of the rotations at which M vanishes, as far as they are shown."""
+    if symmetric:
+        if zeros[0] <= end:
+            return f"$M$ = 0 at ±{short(zeros[0])} rad"
+        return "$M$ does not vanish" if math.isinf(zeros[0]) else ""
+    # Written beside the marks, as each side has its own.
+    return "$M$ does not vanish" if all(map(math.isinf, zeros)) else ""
+
+
+def _each(values: list[str], *, symmetric: bool) -> str:
+    return values[0] if symmetric else f"{values[0]} (right)\n{values[1]} (left)"
 
 
 def _with_unit(value: float, unit: str) -> str:
@@ -99,9 +126,24 @@ def _with_unit(value: float, unit: str) -> str:
     return f"{short(value / factor)} {named}"
 
 
-def _note(axes: Axes, text: str, *, low: bool) -> None:
-    """Write into the lower or the upper right corner, whichever the curve leaves free."""
+def _beside(axes: Axes, text: str, moment: float, *, left: bool) -> None:
+    """Write beside the corner of the curve at θ = 0, on the side where the curve is not."""
+    axes.annotate(
+        text, (0.0, moment), xytext=(-4 if left else 4, 0), ha="right" if left else "left", va="center",
+        textcoords="offset points", fontsize=SMALL,
+    )  # fmt: skip
+
+
+def _above(axes: Axes, text: str, rotation: float) -> None:
+    axes.annotate(
+        text, (rotation, 0.0), xytext=(5, 4), ha="left", va="bottom", textcoords="offset points", fontsize=SMALL
+    )
+
+
+def _note(axes: Axes, text: str, *, low: bool, at: float | None = None) -> None:
+    """Write into the lower or the upper right corner, whichever the curve leaves free, or below a given height."""
+    height = at if at is not None else (0.03 if low else 0.97)
     axes.text(
-        0.97, 0.03 if low else 0.97, text, transform=axes.transAxes, ha="right", va="bottom" if low else "top",
+        0.97, height, text, transform=axes.transAxes, ha="right", va="bottom" if low and at is None else "top",
         fontsize=SMALL, linespacing=1.5,
     )  # fmt: skip

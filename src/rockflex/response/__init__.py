@@ -3,25 +3,20 @@
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW
+from rockflex.response._global import GLOBAL, asked_of
 from rockflex.response._history import History
-from rockflex.response._observables import (
-    elastic_observables,
-    floor_observables,
-    global_observables,
-)
 from rockflex.response._response import PEAKS, Response, respond
 from rockflex.response._warnings import warnings_of
 
 __all__ = [
+    "GLOBAL",
     "IMPACT_WINDOW",
     "PEAKS",
     "EnergyLedger",
     "FloorPeaks",
     "History",
     "Response",
-    "elastic_observables",
-    "floor_observables",
-    "global_observables",
+    "asked_of",
     "respond",
     "warnings_of",
 ]

@@ -12,12 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.models import LinearModel, NonlinearModel, RockingModel
-from rockflex.response._tendons import stretch_per_arm
-from rockflex.solve import ExactEngine, Observables
+from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, stored_energies, tendon_energy
+from rockflex.solve import ClosedForm
 
 __all__ = ["EnergyLedger", "energy_ledger", "is_impact"]
 
@@ -88,25 +86,23 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
     InputError
         If the model is so fast against the sampling that the quadratures would be too many.
     """
-    p = model.properties
-    n = p.n_modes
-    kinetic, strain, gravity = _stored(model, nodes)
+    kinetic, strain, gravity = stored_energies(model, nodes)
     impact = np.flatnonzero(is_impact(model, nodes))
     losses = kinetic[impact] - kinetic[impact + 1]
     lost = np.zeros(nodes.shape[0])
     np.add.at(lost, impact + 1, losses)
-    damped, work = _work(model.linear if isinstance(model, NonlinearModel) else model, nodes)
+    damped, work = _work(model, nodes)
     yielded = np.zeros(damped.size)
-    if isinstance(model, NonlinearModel):
-        integrated = (nodes[:-1, 1] != 0.0) | (model.bouc_wen is not None)
-        counted = np.diff(nodes[:, 6 + 2 * n : 9 + 2 * n], axis=0)
+    if model.integrated:
+        integrated = (nodes[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
+        counted = np.diff(nodes[:, HEADER + model.layout.damped : HEADER + model.layout.yielded + 1], axis=0)
         # The counters rest while contact is carried in closed form, and jump to where they were when it ends.
         damped, work, yielded = np.where(integrated, counted.T, (damped, work, yielded))
     return EnergyLedger(
         kinetic=kinetic,
         strain=strain,
         gravity=gravity,
-        tendons=_stretched(model, nodes),
+        tendons=tendon_energy(model, nodes),
         damped=np.concatenate(([0.0], np.cumsum(damped))),
         yielded=np.concatenate(([0.0], np.cumsum(yielded))),
         input=np.concatenate(([0.0], np.cumsum(work))),
@@ -117,52 +113,26 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
 
 def is_impact(model: RockingModel, nodes: Array) -> NDArray[np.bool_]:
     """True between the two nodes of every impact, shape (n_nodes - 1,)."""
-    spin = nodes[:, 4 + 2 * model.properties.n_modes]
-    same_time, rocking = nodes[1:, 0] == nodes[:-1, 0], nodes[:-1, 1] != 0.0
-    return same_time & rocking & ((nodes[1:, 1] != nodes[:-1, 1]) | (spin[1:] != spin[:-1]))
+    spin = model.layout.of(nodes, model.layout.spin)
+    time, side = nodes[:, TIME], nodes[:, SIDE]
+    same_time, rocking = time[1:] == time[:-1], side[:-1] != 0.0
+    return same_time & rocking & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
 
 
-def _stored(model: RockingModel, nodes: Array) -> tuple[Array, Array, Array]:
-    """Kinetic, strain and gravity energy at every node."""
-    p = model.properties
-    n = p.n_modes
-    side, d, v = nodes[:, 1], nodes[:, 3 : 3 + n], nodes[:, 3 + n : 3 + 2 * n]
-    rotation, spin = nodes[:, 3 + 2 * n], nodes[:, 4 + 2 * n]
-    kinetic = 0.5 * p.i_theta * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
-    kinetic += 0.5 * v**2 @ p.effective_mass
-    share = model.bouc_wen.post_yield_ratio if isinstance(model, NonlinearModel) and model.bouc_wen else 1.0
-    strain = 0.5 * share * d**2 @ (p.effective_mass * p.omega**2)
-    if isinstance(model, NonlinearModel) and model.complete:
-        offset = side * p.half_width
-        displaced = d @ p.effective_mass
-        kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
-        raised = (p.m_tot * offset - displaced) * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
-        return kinetic, strain, GRAVITY * raised
-    return kinetic, strain, side * p.weight_moment * rotation - 0.5 * p.l0r * GRAVITY * rotation**2
-
-
-def _stretched(model: RockingModel, nodes: Array) -> Array:
-    """Energy of the tendons at every node, less what they hold in contact."""
-    p = model.properties
-    rotation = nodes[:, 3 + 2 * p.n_modes]
-    stretch = stretch_per_arm(model, np.abs(rotation))
-    return p.prestress * p.half_width * stretch + 0.5 * p.tendon_stiffness * stretch**2
-
-
-def _work(model: LinearModel, nodes: Array) -> tuple[Array, Array]:
+def _work(model: RockingModel, nodes: Array) -> tuple[Array, Array]:
     """Energy damped and put in between neighbouring nodes, (n_nodes - 1,) each, by Gauss quadrature."""
     p = model.properties
     n = p.n_modes
-    nodes = nodes[:, : 5 + 2 * n]
-    engine = ExactEngine(model, Observables.none(model))
-    span = np.diff(nodes[:, 0])
-    places, weights = _rule(model.label, engine.fastest, float(span.max(initial=0.0)))
+    nodes = nodes[:, : HEADER + model.layout.core]
+    motion = ClosedForm(model)
+    span = np.diff(nodes[:, TIME])
+    places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
     drag = 2.0 * p.zeta * p.omega * p.effective_mass
     damped, work = np.zeros(span.size), np.zeros(span.size)
     for place, weight in zip(places, weights, strict=True):
-        states = engine.between(nodes, float(place))
+        states = motion.between(nodes, float(place))
         v = states[:, n : 2 * n]
-        acceleration = nodes[:-1, 2] + place * np.diff(nodes[:, 2])
+        acceleration = nodes[:-1, GROUND] + place * np.diff(nodes[:, GROUND])
         damped += weight * span * (v**2 @ drag)
         work -= weight * span * acceleration * (p.l0r * states[:, -1] + v @ p.effective_mass)
     return damped, work

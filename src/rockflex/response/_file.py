@@ -22,6 +22,7 @@ from rockflex.models import (
     NonlinearModel,
     Restitution,
     RockingModel,
+    SidedRestitution,
     VVELComplete,
     VVELSimplified,
 )
@@ -45,11 +46,12 @@ PROPERTIES = (
     "zeta",
     "translational_inertia",
 )
-KNOWN_OR_NOT = ("top_height", "base_mass")  # fmt: skip
+KNOWN_OR_NOT = ("top_height", "base_mass")
 LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "VVELSimplified": VVELSimplified,
     "VVELComplete": VVELComplete,
     "Restitution": Restitution,
+    "SidedRestitution": SidedRestitution,
     "ForgottenLaw": ForgottenLaw,
 }
 FLOOR_MODES = ("heights", "displacement", "force")
@@ -75,8 +77,8 @@ def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: 
         scalars["lifts"] = model.lifts
         scalars["law"] = _described(model.law)
         scalars["missing_mass"] = model.missing_mass
-        scalars |= {name: getattr(model.properties, name) for name in KNOWN_OR_NOT}
-        if isinstance(model, NonlinearModel):
+        scalars |= {name: getattr(model.properties, name) for name in (*KNOWN_OR_NOT, "eccentricity")}
+        if model.integrated:
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
         scalars["tendons"] = [asdict(tendon) for tendon in model.properties.tendons]
@@ -145,6 +147,13 @@ def _described(law: ImpactLaw) -> dict[str, Any]:
     return {"law": "ForgottenLaw", "description": repr(law), "keeps": str(law.keeps), "loses": str(law.loses)}
 
 
+def _law(parameters: dict[str, Any]) -> ImpactLaw:
+    name = parameters.pop("law")
+    if name == "SidedRestitution":
+        parameters = {edge: Restitution(**each) for edge, each in parameters.items()}
+    return LAWS[name](**parameters)
+
+
 def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     values = {name: arrays[f"properties.{name}"] for name in PROPERTIES}
     values = {name: value if value.ndim else float(value) for name, value in values.items()}
@@ -153,10 +162,11 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
     tendons = [Tendon(**each) for each in _typed(scalars, "tendons", list)]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
+    known["eccentricity"] = scalars.get("eccentricity", 0.0)  # files of symmetric bases may lack it
     properties = RockingProperties(**values, floors=floors, tendons=tendons, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
-    law = LAWS[parameters.pop("law")](**parameters)
+    law = _law(parameters)
     if "complete" not in scalars:
         return LinearModel(scalars["model"], properties, lifts, law, missing)
     bouc_wen = None if scalars["bouc_wen"] is None else BoucWen(**scalars["bouc_wen"])

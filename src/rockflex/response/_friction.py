@@ -9,11 +9,19 @@ from numpy.typing import NDArray
 from rockflex._checks import positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.models import EXTRA, LinearModel, NonlinearModel, RockingModel
-from rockflex.response._accelerations import accelerations
+from rockflex.models import (
+    GROUND,
+    HEADER,
+    SIDE,
+    TIME,
+    Reactions,
+    RockingModel,
+    accelerations,
+    printed_reactions,
+    reactions,
+)
 from rockflex.response._energy import is_impact
-from rockflex.response._reactions import Reactions, printed_reactions, reactions
-from rockflex.solve import ExactEngine, Observables
+from rockflex.solve import ClosedForm
 
 __all__ = ["IMPACT_WINDOW", "Friction"]
 
@@ -40,13 +48,11 @@ class Friction:
         self._nodes = nodes
         self._printed = printed
         self._rates = accelerations(model, nodes)
-        self._engine: ExactEngine | None = None
-        linear = model.linear if isinstance(model, NonlinearModel) else model
-        if isinstance(model, LinearModel) or model.bouc_wen is None:
-            self._engine = ExactEngine(linear, Observables.none(linear))
+        self._linear = None if model.bouc_wen is not None else ClosedForm(model)
         p = model.properties
-        scale = np.sqrt(p.i_theta / linear.free_inertia)  # by which the frequencies rise at most, once uplifted
-        self._fastest = self._engine.fastest if self._engine else float(p.omega.max(initial=0.0) * scale)
+        # By which the frequencies rise at most, once uplifted.
+        scale = max(math.sqrt(p.pivot(side).i_theta / model.free_inertia(side)) for side in (1, -1))
+        self._fastest = self._linear.fastest if self._linear else float(p.omega.max(initial=0.0) * scale)
 
     @cached_property
     def reactions(self) -> Reactions:
@@ -97,11 +103,11 @@ class Friction:
             raise InputError(message)
         limit = math.atan(coefficient)
         if not self._stretches.size:
-            return float(self._nodes[0, 0]) if self.demand[0] > coefficient else None
+            return float(self._nodes[0, TIME]) if self.demand[0] > coefficient else None
         for k in np.flatnonzero(self._looks.max(axis=0) + self._rise > limit).tolist():
             place = self._first_above(k, limit)
             if place is not None:
-                begin, end = self._nodes[self._stretches[k] : self._stretches[k] + 2, 0]
+                begin, end = self._nodes[self._stretches[k] : self._stretches[k] + 2, TIME]
                 return float(begin + place * (end - begin))
         return None
 
@@ -136,11 +142,11 @@ class Friction:
     @cached_property
     def _stretches(self) -> NDArray[np.intp]:
         """First nodes of the intervals that last, for events take no time."""
-        return np.flatnonzero(np.diff(self._nodes[:, 0]) > 0.0)
+        return np.flatnonzero(np.diff(self._nodes[:, TIME]) > 0.0)
 
     @cached_property
     def _places(self) -> Array:
-        longest = float(np.diff(self._nodes[:, 0]).max(initial=0.0))
+        longest = float(np.diff(self._nodes[:, TIME]).max(initial=0.0))
         pieces = max(math.ceil(self._fastest * longest / TURN), FEWEST)
         if pieces > MOST:
             message = (
@@ -164,7 +170,7 @@ class Friction:
 
     def _after(self, window: float) -> Array:
         """Place in each stretch where the window after the last impact ends: 0 if before it, above 1 if beyond."""
-        time = self._nodes[:, 0]
+        time = self._nodes[:, TIME]
         begin, length = time[self._stretches], np.diff(time)[self._stretches]
         impacts = np.append(-np.inf, time[1:][is_impact(self._model, self._nodes)])
         last = impacts[np.searchsorted(impacts, begin, side="right") - 1]
@@ -177,7 +183,7 @@ class Friction:
 
     def _angles(self, nodes: Array, rates: Array, place: float) -> Array:
         """Angles at a place of every interval of positive length."""
-        lasting = np.diff(nodes[:, 0]) > 0.0
+        lasting = np.diff(nodes[:, TIME]) > 0.0
         rows, moved = self._between(nodes, rates, place)
         rows = rows[lasting]
         if moved is None:
@@ -189,22 +195,24 @@ class Friction:
 
         Exact where the model is linear; else a polynomial of fifth degree through both nodes.
         """
-        n = self._model.properties.n_modes
+        layout = self._model.layout
+        n = layout.modes
         rows = nodes[:-1].copy()
-        rows[:, 0] += place * np.diff(nodes[:, 0])
-        rows[:, 2] += place * np.diff(nodes[:, 2])
-        if self._engine:
-            rows[:, 3 : 5 + 2 * n] = self._engine.between(nodes[:, : 5 + 2 * n], place)
-            if isinstance(self._model, LinearModel):
+        rows[:, TIME] += place * np.diff(nodes[:, TIME])
+        rows[:, GROUND] += place * np.diff(nodes[:, GROUND])
+        end = HEADER + layout.core
+        if self._linear:
+            rows[:, HEADER:end] = self._linear.between(nodes[:, :end], place)
+            if not self._model.integrated:
                 return rows, None
-        turn, spin = 3 + 2 * n, 4 + 2 * n
-        where, velocity = [*range(3, 3 + n), turn], [*range(3 + n, 3 + 2 * n), spin]
-        value, slope, bend = _quintic(nodes[:, where], nodes[:, velocity], rates, np.diff(nodes[:, 0]), place)
-        integrated = (nodes[:-1, 1] != 0.0) | (self._engine is None)
+        turn, spin = HEADER + layout.rotation, HEADER + layout.spin
+        where, velocity = [*range(HEADER, HEADER + n), turn], [*range(HEADER + n, HEADER + 2 * n), spin]
+        value, slope, bend = _quintic(nodes[:, where], nodes[:, velocity], rates, np.diff(nodes[:, TIME]), place)
+        integrated = (nodes[:-1, SIDE] != 0.0) | (self._linear is None)
         rows[np.ix_(integrated, where)] = value[integrated]
         rows[np.ix_(integrated, velocity)] = slope[integrated]
-        rows[:, -EXTRA:] = 0.0
-        return rows, bend if self._engine is None else None
+        rows[:, end:] = 0.0
+        return rows, bend if self._linear is None else None
 
     def _reactions_at(self, nodes: Array, rates: Array) -> Reactions:
         return (printed_reactions if self._printed else reactions)(self._model, nodes, rates)

@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 
 from rockflex._checks import finite_rows
 from rockflex._values import Value
-from rockflex.models import EXTRA, NonlinearModel, RockingModel
-from rockflex.response._accelerations import accelerations
+from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, accelerations, quantities, values_of
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
 from rockflex.response._floors import floor_histories
 from rockflex.response._friction import IMPACT_WINDOW, Friction
+from rockflex.response._global import GLOBAL
 from rockflex.response._missing import MissingQuantityError
-from rockflex.response._observables import evaluate, global_observables
 from rockflex.response._tendons import tendon_forces
 
 __all__ = ["History"]
@@ -46,9 +45,7 @@ class History(Value):
     nodes: Array
 
     def __post_init__(self) -> None:
-        columns = 2 * self.model.properties.n_modes + 5
-        if isinstance(self.model, NonlinearModel):
-            columns += EXTRA
+        columns = HEADER + self.model.layout.size
         object.__setattr__(self, "nodes", finite_rows("nodes", self.nodes, "SI units", columns))
 
     def __repr__(self) -> str:
@@ -60,38 +57,37 @@ class History(Value):
     @property
     def time(self) -> Array:
         """Time of the nodes in s, shape (n_nodes,); an event's time stands twice."""
-        return self.nodes[:, 0]
+        return self.nodes[:, TIME]
 
     @property
     def side(self) -> Array:
         """+1 while rocking about the right pivot (θ > 0), -1 about the left one, 0 in contact."""
-        return self.nodes[:, 1]
+        return self.nodes[:, SIDE]
 
     @property
     def ground_acceleration(self) -> Array:
         """Ground acceleration in m/s², shape (n_nodes,)."""
-        return self.nodes[:, 2]
+        return self.nodes[:, GROUND]
 
     @property
     def modal_displacement(self) -> Array:
         """D_n in m, shape (n_nodes, N)."""
-        return self.nodes[:, 3 : 3 + self.model.properties.n_modes]
+        return self.model.layout.displacements(self.nodes)
 
     @property
     def modal_velocity(self) -> Array:
         """D'_n in m/s, shape (n_nodes, N)."""
-        n = self.model.properties.n_modes
-        return self.nodes[:, 3 + n : 3 + 2 * n]
+        return self.model.layout.velocities(self.nodes)
 
     @property
     def rotation(self) -> Array:
         """θ in rad, shape (n_nodes,)."""
-        return self.nodes[:, 3 + 2 * self.model.properties.n_modes]
+        return self.model.layout.of(self.nodes, self.model.layout.rotation)
 
     @property
     def rotation_velocity(self) -> Array:
         """θ' in rad/s, shape (n_nodes,)."""
-        return self.nodes[:, 4 + 2 * self.model.properties.n_modes]
+        return self.model.layout.of(self.nodes, self.model.layout.spin)
 
     @property
     def modal_acceleration(self) -> Array:
@@ -106,9 +102,9 @@ class History(Value):
     @property
     def yielding(self) -> Array:
         """Z of the Bouc-Wen superstructure (Eq. 38), no unit, shape (n_nodes,); zero where it is elastic."""
-        if not isinstance(self.model, NonlinearModel):
+        if not self.model.integrated:
             return np.zeros(self.nodes.shape[0])
-        return self.nodes[:, 5 + 2 * self.model.properties.n_modes]
+        return self.model.layout.of(self.nodes, self.model.layout.hysteresis)
 
     @property
     def top_displacement(self) -> Array:
@@ -254,7 +250,7 @@ class History(Value):
 
     @cached_property
     def _global(self) -> Array:
-        values = evaluate(global_observables(self.model), self.model, self.nodes)
+        values = values_of(self.model, quantities(self.model, GLOBAL), self.nodes)
         values.setflags(write=False)
         return values
 

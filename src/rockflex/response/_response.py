@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from rockflex._files import path_of
 from rockflex._values import Value
-from rockflex.models import LinearModel, RockingModel
+from rockflex.models import RockingModel, floor_accelerations
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._file import load, save
 from rockflex.response._floor_peaks import FloorPeaks
-from rockflex.response._floors import floor_accelerations
+from rockflex.response._global import GLOBAL, tracked_of_floors
 from rockflex.response._history import History
 from rockflex.response._missing import MissingQuantityError
-from rockflex.response._observables import GLOBAL
 from rockflex.response._tendons import largest_tendon_force
 from rockflex.response._warnings import warnings_of
 from rockflex.solve import Solution
@@ -212,51 +211,51 @@ PEAKS = tuple(f.name for f in fields(Response) if f.name not in ("floors", "hist
 KINDS: dict[str, type] = {name: Response.__annotations__[name] for name in PEAKS}
 
 
-def respond(model: RockingModel, motion: str, solution: Solution) -> Response:
-    """Name what a solver returned; its rows are those of `global_observables`, then of the floors."""
-    rotation = float(solution.peaks[0])
-    globals_end = 1 + len(GLOBAL)
-    floors = None
-    if solution.peaks.size > globals_end:
-        floors = _floor_peaks(model, solution, solution.peaks[globals_end:])
+def respond(model: RockingModel, motion: str, solution: Solution, *, floors: bool = False) -> Response:
+    """Name what a solver returned; its rows are those of `asked_of`, with those of the floors or without."""
+    p = model.properties
+    rotation, peaks = float(solution.peaks[0]), solution.peaks[1:]
+    right = left = rotation
+    end = count = len(GLOBAL)
+    if not p.symmetric:
+        right, left = peaks[end : end + 2].tolist()
+        end += 2
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0 or rotation > 0.0
     status = "rocking" if left_ground else "no_uplift"
-    tracked = slice(1, globals_end)
-    peaks = {f"max_{name}": float(value) for name, value in zip(GLOBAL, solution.peaks[tracked], strict=True)}
-    times = {f"time_of_max_{name}": float(t) for name, t in zip(GLOBAL, solution.peak_times[tracked], strict=True)}
-    if model.properties.top_height is None:
-        peaks["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
-    force, utilisation = largest_tendon_force(model, rotation)
+    known = {f"max_{name}": value for name, value in zip(GLOBAL, peaks[:count].tolist(), strict=True)}
+    at = solution.peak_times[1 : 1 + count].tolist()
+    times = {f"time_of_max_{name}": value for name, value in zip(GLOBAL, at, strict=True)}
+    if p.top_height is None:
+        known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
+    force, utilisation = largest_tendon_force(model, right, left)
     return Response(
         model=model.label,
         motion=motion,
         status="overturned" if solution.overturned else status,
         max_rotation=rotation,
         time_of_max_rotation=float(solution.peak_times[0]),
-        **peaks,
+        **known,
         **times,
-        min_vertical_reaction=model.properties.resting_reaction - solution.lost_support,
+        min_vertical_reaction=p.resting_reaction - solution.lost_support,
         time_of_min_vertical_reaction=solution.time_of_lost_support,
         max_tendon_force=force,
         tendon_utilisation=utilisation,
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
-        nominal_overturning=rotation > model.properties.nominal_overturning_rotation,
+        nominal_overturning=right > p.pivot(1).nominal_overturning_rotation
+        or left > p.pivot(-1).nominal_overturning_rotation,
         end_time=solution.end_time,
         settled=solution.settled,
-        floors=floors,
+        floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
         history=None if solution.nodes is None else History(model, solution.nodes),
     )
 
 
 def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
-    if isinstance(model, LinearModel):
-        drift, shear, displacement, acceleration = np.split(peaks, 4)
-        return FloorPeaks(drift, shear, acceleration, displacement)
-    # Accelerations of the nonlinear models are no linear functionals: their largest stands at a sample or an event.
+    names = tracked_of_floors(model)
+    found = dict(zip(names, np.split(peaks, len(names)), strict=True))
     floors = model.properties.floors
-    accelerations = np.zeros(0)
-    if floors is not None and solution.nodes is not None:
-        accelerations = np.abs(floor_accelerations(model, floors, solution.nodes)).max(axis=0)
-    drift, shear, displacement = np.split(peaks, 3)
-    return FloorPeaks(drift, shear, accelerations, displacement)
+    if "floor_acceleration" not in found and floors is not None and solution.nodes is not None:
+        # No linear functional in large rotations: the largest stands at a sample or an event.
+        found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.nodes)).max(axis=0)
+    return FloorPeaks(**found)

@@ -5,43 +5,43 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.models import NonlinearModel, RockingModel
+from rockflex.models import RockingModel, stretch_per_arm
 
-__all__ = ["largest_tendon_force", "stretch_per_arm", "tendon_forces"]
+__all__ = ["largest_tendon_force", "tendon_forces"]
 
 Array = NDArray[np.float64]
-
-
-def stretch_per_arm(model: RockingModel, turn: Array) -> Array:
-    """Elongation over the distance from the pivot, at |θ| in rad: 2 sin(|θ|/2), and |θ| in simplified models."""
-    large = isinstance(model, NonlinearModel) and model.complete
-    return 2.0 * np.sin(0.5 * turn) if large else turn
 
 
 def tendon_forces(model: RockingModel, nodes: Array) -> Array:
     """Force of each tendon in N, shape (n_nodes, n_tendons); `nodes` as in `History`."""
     p = model.properties
-    rotation = nodes[:, 3 + 2 * p.n_modes]
+    rotation = model.layout.of(nodes, model.layout.rotation)
     stretch = stretch_per_arm(model, np.abs(rotation))
     forces = np.empty((nodes.shape[0], len(p.tendons)))
     for k, tendon in enumerate(p.tendons):
-        arm = p.half_width - np.sign(rotation) * tendon.position
+        side = np.where(rotation < 0.0, -1.0, 1.0)
+        arm = np.where(side < 0.0, p.pivot(-1).arm, p.pivot(1).arm) - side * tendon.position
         forces[:, k] = tendon.initial_force + tendon.stiffness * arm * stretch
     return forces
 
 
-def largest_tendon_force(model: RockingModel, rotation: float) -> tuple[float, float]:
-    """Largest force of any tendon in N, and over its yield force, up to a rotation |θ|.
+def largest_tendon_force(model: RockingModel, right: float, left: float) -> tuple[float, float]:
+    """Largest force of any tendon in N, and over its yield force, up to a rotation |θ| to each side.
 
-    Zero without tendons; the latter is NaN where no yield force is known. A tendon off the centre has a mirror image,
-    so that one of the two is stretched by the longer arm.
+    Zero without tendons; the latter is NaN where no yield force is known.
     """
     p = model.properties
     if not p.tendons:
         return 0.0, 0.0
-    stretch = float(stretch_per_arm(model, np.array([rotation]))[0])
+    stretches = stretch_per_arm(model, np.array([right, left]))
     largest = [
-        each.initial_force + each.stiffness * (p.half_width + abs(each.position)) * stretch for each in p.tendons
+        each.initial_force
+        + each.stiffness
+        * max(
+            float((p.pivot(side).arm - side * each.position) * stretch)
+            for side, stretch in zip((1, -1), stretches, strict=True)
+        )
+        for each in p.tendons
     ]
     shares = [force / each.yield_force for force, each in zip(largest, p.tendons, strict=True) if each.yield_force]
     return max(largest), max(shares, default=math.nan)

@@ -1,23 +1,23 @@
-"""Solvers: an exact engine for the piecewise linear models, an adaptive one for the nonlinear models."""
+"""Solvers: one engine for all models, exact where a phase is linear, and integrated to some ten digits where not."""
 
-from rockflex.solve._engine import Engine, preparing
-from rockflex.solve._observables import Observables
 from rockflex.solve._pace import Pace, Work, pace_of
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task, WorkLimitError
-from rockflex.solve.adaptive.engine import AdaptiveEngine
-from rockflex.solve.exact.engine import ExactEngine
+from rockflex.solve.engine import Engine, preparing
+from rockflex.solve.exact.closed_form import ClosedForm
+from rockflex.solve.interruption import RunStoppedError, asked_to_stop, stopping_when
 
 __all__ = [
-    "AdaptiveEngine",
+    "ClosedForm",
     "Engine",
-    "ExactEngine",
-    "Observables",
     "Pace",
+    "RunStoppedError",
     "Solution",
     "Task",
     "Work",
     "WorkLimitError",
+    "asked_to_stop",
     "pace_of",
     "preparing",
+    "stopping_when",
 ]

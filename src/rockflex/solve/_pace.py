@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockflex.models import LinearModel, NonlinearModel, RockingModel
-from rockflex.solve.exact.layout import Array
+from rockflex.models import RockingModel
+from rockflex.solve.layout import Array
 
 __all__ = ["Pace", "Work", "pace_of"]
 
@@ -112,27 +112,42 @@ class Pace:
 
 
 def pace_of(model: RockingModel, rows: int) -> Pace:
-    """Return the pace of a model of which the peaks of so many rows are wanted, the rotation included."""
-    linear = model if isinstance(model, LinearModel) else model.linear
-    known = Pace(model.properties.n_modes, rows, _fastest(linear), isinstance(model, NonlinearModel))
-    if isinstance(model, NonlinearModel) and model.bouc_wen is not None:
-        b = model.bouc_wen
-        # z' = (1 - (γ + β) |z|^n) D'/D_y relaxes at this rate about its limit (γ + β)^(-1/n).
-        flow = b.exponent * (b.gamma + b.beta) ** (1.0 / b.exponent) / b.yield_displacement
-        return replace(known, flow=flow)
-    return known
+    """Return the pace of a model of which the peaks of so many rows are wanted, the rotation included.
+
+    The highest frequency is a bound that needs no eigenvalues and is one per cent too high, or less.
+    """
+    p = model.properties
+    squares = p.omega**2
+    moments = p.effective_mass * p.effective_height**2
+    bounds = (
+        _highest_square(squares, moments, pivot.i_theta, pivot.rocking_stiffness)
+        for pivot in (p.pivots if model.lifts else ())
+    )
+    return _pace(model, rows, math.sqrt(max(bounds, default=0.0)))
 
 
-def _fastest(model: LinearModel) -> float:
-    """Highest circular frequency of the undamped model, in contact or rocking."""
-    n = model.properties.n_modes
-    highest = float(model.properties.omega.max(initial=0.0))
-    if not model.lifts:
-        return highest
-    rows = np.vstack((model.modal_accelerations(rocking=True), model.angular_acceleration()))
-    places = [*range(n), 2 * n]
-    try:
-        squares = np.abs(np.linalg.eigvals(rows[:, places]))
-    except np.linalg.LinAlgError:  # numbers that are not finite: the inertia that is left to rotate is rounding
+def _highest_square(squares: Array, moments: Array, inertia: float, stiffness: float) -> float:
+    """Return a bound of the highest ω² of oscillators ω_n², a_n = m*_n h*_n², on a base that rocks.
+
+    The frequencies obey λ (I - Σ a_n) = k + Σ a_n ω_n² + Σ a_n ω_n⁴/(λ - ω_n²). All ω_n of the last sum are put at the
+    highest, which is exact for one mode and leaves a quadratic equation for λ - ω_N².
+    """
+    free = inertia - float(moments.sum())  # the inertia that is left to rotate: what has no mode
+    highest = float(squares.max(initial=0.0))
+    if not free > 0.0:
         return math.inf
-    return max(highest, math.sqrt(float(squares.max())))
+    half = 0.5 * ((stiffness + float(moments @ squares)) / free - highest)
+    beyond = half + math.sqrt(half**2 + float(moments @ squares**2) / free)
+    found = highest + max(beyond, 0.0)
+    return math.inf if math.isnan(found) else found
+
+
+def _pace(model: RockingModel, rows: int, fastest: float) -> Pace:
+    highest = max(fastest, float(model.properties.omega.max(initial=0.0)))
+    known = Pace(model.properties.n_modes, rows, highest, model.integrated)
+    if model.bouc_wen is None:
+        return known
+    b = model.bouc_wen
+    # z' = (1 - (γ + β) |z|^n) D'/D_y relaxes at this rate about its limit (γ + β)^(-1/n).
+    flow = b.exponent * (b.gamma + b.beta) ** (1.0 / b.exponent) / b.yield_displacement
+    return replace(known, flow=flow)

@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
-from rockflex.models import NonlinearModel, RockingModel
+from rockflex.models import HEADER, RockingModel
 from rockflex.solve._pace import Pace, Work, pace_of
-from rockflex.solve.exact.history import HEADER
 
 __all__ = ["Task", "WorkLimitError"]
 
@@ -86,7 +85,7 @@ class Task:
 
     def check_room(self, nodes: float) -> None:
         """Raise `WorkLimitError` if a history of so many nodes takes too much memory."""
-        size = 8.0 * nodes * (HEADER + 2 * self.model.properties.n_modes + 2)
+        size = 8.0 * nodes * (HEADER + self.model.layout.core)
         if size > HISTORY:
             message = (
                 f"The history of {self.model.label} would have {nodes:.3g} states and take {size / 1e9:.3g} GB, but "
@@ -106,7 +105,7 @@ class Task:
 
     def reason(self, work: Work) -> str:
         """Say what makes the run long, and how to make it shorter."""
-        spring = self.model.bouc_wen if isinstance(self.model, NonlinearModel) else None
+        spring = self.model.bouc_wen
         if spring is not None and work.yielding > max(work.vibration, work.samples):
             return (
                 f"its spring, with yield_displacement = {spring.yield_displacement:g} m, yields over and over in every "

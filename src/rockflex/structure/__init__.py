@@ -3,6 +3,7 @@
 from rockflex.structure._beam import Beam
 from rockflex.structure._block import rigid_block
 from rockflex.structure._cantilever import CantileverWithTipMass
+from rockflex.structure._eccentric import Eccentric
 from rockflex.structure._equivalents import equivalent_2hz_long_base, equivalent_s1
 from rockflex.structure._fish_bone import FishBone
 from rockflex.structure._frame import Frame
@@ -17,6 +18,7 @@ from rockflex.structure._wall_frame import WallFrame
 __all__ = [
     "Beam",
     "CantileverWithTipMass",
+    "Eccentric",
     "FishBone",
     "Frame",
     "LumpedMasses",

@@ -2,21 +2,14 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Protocol, SupportsIndex
+from typing import SupportsIndex
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties, Tendon, tendon_set
+from rockflex.structure._based import Based, is_structure
 
 __all__ = ["Restrained"]
-
-
-class Unrestrained(Protocol):
-    """Any structure."""
-
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties: ...
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties: ...
 
 
 @dataclass(frozen=True, init=False)
@@ -30,21 +23,21 @@ class Restrained:
     Attributes
     ----------
     structure
-        Any structure: a `Frame`, a `TaperedTower`, ...
+        Any structure: a `Frame`, a `TaperedTower`, an `Eccentric` one ...
     tendons : tuple of Tendon
-        One in the centre, symmetric pairs, or both.
+        Where and how many you like, within the base.
 
     Raises
     ------
     InputError
-        If the tendons are not symmetric or stand outside the base, or `structure` is none.
+        If a tendon stands outside the base, or `structure` is none.
     """
 
-    structure: Unrestrained
+    structure: Based
     tendons: tuple[Tendon, ...]
 
-    def __init__(self, structure: Unrestrained, tendons: Tendon | Iterable[Tendon]) -> None:
-        if isinstance(structure, type) or not (hasattr(structure, "rocking") and hasattr(structure, "modal")):
+    def __init__(self, structure: Based, tendons: Tendon | Iterable[Tendon]) -> None:
+        if not is_structure(structure):
             message = (
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
                 "take their tendons themselves: RockingProperties(..., tendons=...)."

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, SupportsIndex
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.parallel import core_count, map_dask, map_threads
+from rockflex.parallel import core_count, map_dask
 from rockflex.store import StudyFolder
+from rockflex.study._runs import map_runs
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -123,7 +124,7 @@ def _compute(
 def _here(
     plan: "ChunkedPlan", numbers: "range | list[int]", workers: SupportsIndex | None
 ) -> "Generator[tuple[int, pa.Table]]":
-    yield from map_threads(lambda number: (number, plan.chunk(number)), numbers, workers)
+    yield from map_runs(lambda number: (number, plan.chunk(number)), numbers, workers)
 
 
 def _versions() -> dict[str, str]:

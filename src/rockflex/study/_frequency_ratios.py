@@ -18,6 +18,8 @@ def frequency_ratios(
     structure: Structure | RockingProperties,
     aspect_ratios: Sequence[float],
     n_modes: SupportsIndex | Sequence[SupportsIndex | None] | None = (1, 2, None),
+    *,
+    side: int | None = None,
 ) -> "pd.DataFrame":
     """Frequencies of a structure about its pivot over those on a fixed base, for bases of many widths.
 
@@ -28,12 +30,15 @@ def frequency_ratios(
     Parameters
     ----------
     structure
-        A structure, or its `RockingProperties`, on a base of any width. Tendons stay where they are, so a base must not
-        be narrower than they stand apart.
+        A structure, or its `RockingProperties`, on a base of any width. Tendons and eccentricity stay as they are, so a
+        base must not be narrower than they ask for.
     aspect_ratios
         h*_1/B, positive.
     n_modes
         Modes to keep: 1 for 2DOF-S, 2 for 3DOF-S, None for all; or a sequence of these.
+    side
+        1 for motion about the right edge of the base, -1 about the left one. Default: the edge about which each base
+        lifts first; both are alike if the structure is symmetric.
 
     Returns
     -------
@@ -45,7 +50,7 @@ def frequency_ratios(
     Raises
     ------
     InputError
-        If an aspect ratio is not positive, there are not as many modes, or h*_1 is not positive.
+        If an aspect ratio is not positive, there are not as many modes, h*_1 is not positive, or `side` is neither.
 
     References
     ----------
@@ -62,7 +67,7 @@ def frequency_ratios(
     for label, count in kept:
         for aspect_ratio in ratios:
             based = properties.with_half_width(float(properties.effective_height[0]) / aspect_ratio)
-            found = uplifted_modes(based, count)
+            found = uplifted_modes(based, count, side=side)
             rows += [
                 {
                     "model": label,

@@ -16,7 +16,6 @@ from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
-from rockflex.parallel import map_threads
 from rockflex.response import Response, respond
 from rockflex.study._arguments import (
     WORK_LIMIT,
@@ -27,6 +26,7 @@ from rockflex.study._arguments import (
     properties_of,
     work_limit_of,
 )
+from rockflex.study._runs import map_runs
 from rockflex.study._simulate import make_engine
 
 if TYPE_CHECKING:
@@ -174,7 +174,7 @@ def overturning_spectrum(
     def work(row: int) -> None:
         found[row] = _search(run, pulses[row], tried, width)
 
-    for _ in map_threads(work, range(len(pulses)), workers):
+    for _ in map_runs(work, range(len(pulses)), workers):
         pass
     import pandas as pd
 

@@ -11,7 +11,7 @@ from rockflex._errors import InputError
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.structure import rigid_block
-from rockflex.study._arguments import WORK_LIMIT, positive_numbers
+from rockflex.study._arguments import WORK_LIMIT, check_options, positive_numbers
 from rockflex.study._simulate_many import simulate_many
 
 if TYPE_CHECKING:
@@ -72,6 +72,7 @@ def rocking_spectrum(
     if chosen.n_modes != 0:
         message = f'Blocks have no modes, but the model {chosen.label} was given. Use "rigid" or "rigid-C".'
         raise InputError(message)
+    check_options(None, impact)
     radii = [0.75 * GRAVITY * (time / (2.0 * math.pi)) ** 2 for time in times]
     blocks = [rigid_block(alpha, radius) for alpha in alphas for radius in radii]
     chosen.of(blocks[int(np.argmax(alphas)) * len(radii)], impact)  # the squattest, before any work

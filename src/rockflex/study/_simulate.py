@@ -4,10 +4,10 @@ from typing import Literal
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, LinearModel, Model, RockingModel, parse_model
+from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
-from rockflex.response import Response, elastic_observables, floor_observables, global_observables, respond
-from rockflex.solve import AdaptiveEngine, Engine, ExactEngine, preparing
+from rockflex.response import Response, asked_of, respond
+from rockflex.solve import Engine, preparing
 from rockflex.study._arguments import (
     WORK_LIMIT,
     Output,
@@ -106,18 +106,10 @@ def simulate(
         history=output == "history",
         work_limit=limit,
     )
-    return respond(tied, motion.name, solution)
+    return respond(tied, motion.name, solution, floors=output == "history")
 
 
 def make_engine(model: RockingModel, output: Output) -> Engine:
     """Engine that tracks the global peaks and, for histories, those of the floors."""
     with preparing(model):
-        rows = global_observables(model)
-        floors = model.properties.floors if output == "history" else None
-        if isinstance(model, LinearModel):
-            if floors is not None:
-                rows = rows + floor_observables(model, floors)
-            return ExactEngine(model, rows)
-        if floors is not None:
-            rows = rows + elastic_observables(model, floors)
-        return AdaptiveEngine(model, rows)
+        return Engine(model, asked_of(model, floors=output == "history"))

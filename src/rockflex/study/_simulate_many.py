@@ -7,7 +7,6 @@ from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
 from rockflex.motion import check_horizontal
-from rockflex.parallel import map_threads
 from rockflex.response import respond
 from rockflex.solve import Engine, WorkLimitError
 from rockflex.study._arguments import (
@@ -25,6 +24,7 @@ from rockflex.study._arguments import (
     work_limit_of,
 )
 from rockflex.study._initial import InitialState
+from rockflex.study._runs import map_runs
 from rockflex.study._simulate import make_engine
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._table import Table
@@ -143,9 +143,9 @@ def simulate_many(
                 if isinstance(error, WorkLimitError):
                     refused.append(error)
                 continue
-            table.enter(row, respond(model, motion.name, solution))
+            table.enter(row, respond(model, motion.name, solution, floors=output == "history"))
 
-    for _ in map_threads(work, tasks(), workers):
+    for _ in map_runs(work, tasks(), workers):
         pass
     if len(refused) == table.status.size:
         raise refused[0]

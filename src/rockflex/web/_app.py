@@ -1,5 +1,6 @@
 """The server: questions in JSON, answers in JSON, and the files of the page. It keeps nothing of a visitor's state."""
 
+import asyncio
 import logging
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
@@ -18,6 +19,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
+from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web._cloud import cloud_plan, cloud_view
 from rockflex.web._design import design_plan, design_view
 from rockflex.web._download import cloud_files, design_files, download
@@ -37,6 +39,7 @@ from rockflex.web._uploads import Uploads, read_matrices, read_record
 
 __all__ = ["LOOPBACK", "create"]
 
+LOOK = 0.2  # s between looks at whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
 LOOPBACK = ("127.0.0.1", "localhost")
 THREADS = 4  # answers computed at once: the kernels hold no lock, and long ones must not keep short ones waiting
@@ -66,6 +69,28 @@ class Server:
         if most not in self._limiters:
             self._limiters[most] = anyio.CapacityLimiter(most)
         return await anyio.to_thread.run_sync(work, limiter=self._limiters[most])
+
+    async def _run(self, request: Request, work: Answer, most: int = THREADS) -> Any:
+        """Compute as `_answer` does, and stop the runs in it once the visitor no longer waits for them."""
+        gone = Event()
+
+        def guarded() -> Any:
+            with stopping_when(gone.is_set):
+                return work()
+
+        async def watch() -> None:
+            while not await request.is_disconnected():
+                await anyio.sleep(LOOK)
+            gone.set()
+
+        watching = asyncio.create_task(watch())
+        try:
+            return await self._answer(guarded, most)
+        except RunStoppedError as error:
+            message = "The run was stopped, for nobody waits for its answer."
+            raise Refusal(message, 499) from error
+        finally:
+            watching.cancel()
 
     async def about(self, _: Request) -> Response:
         """Forms, presets, suites, pulses and limits, and whether the kernels are ready."""
@@ -103,7 +128,7 @@ class Server:
         """Response tab."""
         state, content = await question_of(request)
         focus = content.get("focus")
-        return JSONResponse(await self._answer(lambda: response_view(state, self.uploads, focus)))
+        return JSONResponse(await self._run(request, lambda: response_view(state, self.uploads, focus)))
 
     async def upload(self, request: Request) -> Response:
         """A record from a file, whose bytes are the body; its name and unit are in the query."""
@@ -128,7 +153,7 @@ class Server:
         """A file of what the page shows."""
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self._answer(lambda: download(state, what, self.uploads), FILES))
+        return file_answer(*await self._run(request, lambda: download(state, what, self.uploads), FILES))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""

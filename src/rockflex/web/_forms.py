@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex.structure.file import KINDS, Table, TendonTable
+from rockflex.structure.file import KINDS, StructureEntry, Table, TendonTable
 from rockflex.study.assumed import BoucWenTable
 from rockflex.web._limits import INFINITE, RANGES
 from rockflex.web._packing import plain
@@ -37,6 +37,7 @@ SYMBOLS = {
     "l0r": "L₀ʳ",
     "m_tot": "Total mass",
     "zeta": "Damping ratio",
+    "eccentricity": "Eccentricity e of the base",
     "omega": "ω",
     "post_yield_ratio": "Post-yield stiffness ratio α",
     "gamma": "γ",
@@ -49,10 +50,15 @@ _TAIL = re.compile(r",? an? (whole )?number( or one for each \w+)?( from 0 to in
 
 
 def forms() -> dict[str, Any]:
-    """Return the fields of every kind of structure, of a tendon and of a hysteresis, and the presets."""
-    kinds = {name: {"title": TITLES.get(name, name), "fields": _fields(table)} for name, table in KINDS.items()}
+    """Return the fields of every kind of structure, of its base, of a tendon and a hysteresis, and the presets."""
     return plain(
-        {"kinds": kinds, "tendon": _fields(TendonTable), "bouc_wen": _fields(BoucWenTable), "presets": PRESETS}
+        {
+            "kinds": {name: {"title": TITLES.get(name, name), "fields": _fields(KINDS[name])} for name in KINDS},
+            "eccentricity": _field("eccentricity", StructureEntry.model_fields["eccentricity"]),
+            "tendon": _fields(TendonTable),
+            "bouc_wen": _fields(BoucWenTable),
+            "presets": PRESETS,
+        }
     )
 
 

@@ -10,6 +10,7 @@ from time import monotonic
 from typing import Any
 
 from rockflex._errors import InputError, SolverError
+from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.study.plans import Plan
 from rockflex.web._refusal import Refusal
 
@@ -46,10 +47,13 @@ class Job:
                 if self.cancelled.is_set() or monotonic() - self.seen > FORGOTTEN:
                     self.status = "cancelled"
                     return
-                table = self.plan.chunk(number)
+                with stopping_when(self.cancelled.is_set):
+                    table = self.plan.chunk(number)
                 self.tables.append(table)
                 self.runs += table.num_rows
             self.status = "done"
+        except RunStoppedError:
+            self.status = "cancelled"
         except (InputError, SolverError) as error:
             self.status, self.message = "failed", str(error)
         except Exception:
@@ -102,7 +106,7 @@ class Jobs:
         return job
 
     def cancel(self, token: str) -> None:
-        """Stop a job after the chunk that is being computed; what has come stays."""
+        """Stop a job; the chunks that have come stay."""
         job = self.get(token)
         job.cancelled.set()
         if job.status == "waiting":

@@ -59,6 +59,7 @@ RANGES: dict[str, tuple[float, float]] = {
     "damping_ratio": (0.0, 0.99),
     "zeta": (0.0, 0.99),
     "half_width": (1e-3, 1000.0),
+    "eccentricity": (-1000.0, 1000.0),
     "base_radius": (1e-2, 500.0),
     "top_radius": (1e-2, 500.0),
     "wall": (1e-3, 100.0),

@@ -114,5 +114,23 @@ PRESETS: list[dict[str, Any]] = [
             },
         },
     },
+    {
+        "title": "Bridge pier beside the middle of its footing, with a tendon to one side",
+        "structure": {
+            "name": "Eccentric pier",
+            "cantilever": {
+                "height": 14.0,
+                "tip_mass": 420e3,
+                "mass_per_length": 9e3,
+                "bending_stiffness": 5.0e10,
+                "base_mass": 150e3,
+                "half_width": 1.9,
+                "damping_ratio": 0.03,
+                "n_modes": 3,
+            },
+            "eccentricity": 0.3,
+            "tendons": [{"position": 0.9, "initial_force": 0.9e6, "stiffness": 9e6, "yield_force": 2.2e6}],
+        },
+    },
 ]
 """Title and structure of each preset: Table 1 of Silva & Stojadinović 2024, its chimney, and others."""

@@ -70,6 +70,7 @@ def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[st
             "kind": state.structure.kind,
             "heights": built.heights,
             "half_width": p.half_width,
+            "eccentricity": p.eccentricity,
             "shapes_known": built.modes is not None,
             "tendons": [tendon.position for tendon in p.tendons],
             "nominal": p.nominal_overturning_rotation,
@@ -130,9 +131,7 @@ def _kept(history: History) -> NDArray[np.intp]:
 def _fall_time(history: History) -> float | None:
     """Time at which the rotation passes that of balance for good, if it does."""
     p = history.model.properties
-    if p.rocking_stiffness >= 0.0:
-        return None
-    balance = -p.resisting_moment / p.rocking_stiffness
+    balance = np.where(history.rotation < 0.0, p.pivot(-1).balance_rotation, p.pivot(1).balance_rotation)
     inside = np.flatnonzero(np.abs(history.rotation) <= balance)
     if not inside.size or inside[-1] == history.time.size - 1:
         return None

@@ -134,14 +134,14 @@ def _structure(entry: StructureEntry) -> list[str]:
     arguments = {name: value for name, value in given.arguments("").items() if value is not None}
     inner = ", ".join(f"{name}={_literal(value)}" for name, value in arguments.items())
     lines = [f"structure = rf.{makes.__name__}({inner})"]
-    if entry.tendons:
-        tendons = [_literal(Tendon(**each.model_dump())) for each in entry.tendons]
-        held = f"[{', '.join(tendons)}]"
-        if entry.kind in ("properties", "block"):
-            lines += ["from dataclasses import replace", f"structure = replace(structure, tendons={held})"]
-        else:
-            lines.append(f"structure = rf.Restrained(structure, {held})")
-    return lines
+    held = [_literal(Tendon(**each.model_dump())) for each in entry.tendons]
+    based = {"eccentricity": repr(entry.eccentricity)} if entry.eccentricity else {}
+    based |= {"tendons": f"[{', '.join(held)}]"} if held else {}
+    if based and entry.kind in ("properties", "block"):
+        changes = ", ".join(f"{name}={value}" for name, value in based.items())
+        return [*lines, "from dataclasses import replace", f"structure = replace(structure, {changes})"]
+    wraps = {"eccentricity": "Eccentric", "tendons": "Restrained"}
+    return lines + [f"structure = rf.{wraps[name]}(structure, {value})" for name, value in based.items()]
 
 
 def _motion(state: State, upload_name: str) -> list[str]:

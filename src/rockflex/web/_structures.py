@@ -1,6 +1,7 @@
 """The Structure tab: what a structure is, its modes, and how many of them it needs."""
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
-from rockflex.modal import ModalProperties, RockingProperties, adequacy, uplifted_modes
+from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure.file import Structure, StructureEntry
 from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
@@ -111,6 +112,7 @@ def structure_view(entry: StructureEntry) -> dict[str, Any]:
             "shapes": built.shapes[:, :SHOWN].T,
             "shapes_known": built.modes is not None,
             "half_width": p.half_width,
+            "eccentricity": p.eccentricity,
             "tendons": [tendon.position for tendon in p.tendons],
             "properties": _parameters(p),
             "modes": modes,
@@ -132,28 +134,34 @@ def _judged(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | Non
 
 
 def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
-    """Parameters with symbols, units and meaning."""
-    falls = p.rocking_stiffness < 0.0
-    alpha = -p.resisting_moment / p.rocking_stiffness if falls else None
-    return [
+    """Parameters with symbols, units and meaning; those of each edge of the base where the two differ."""
+    moved = {"symbol": "e", "value": p.eccentricity, "unit": "m", "help": "masses to the right of the base's middle"}
+    base = [
         {"symbol": "B", "value": p.half_width, "unit": "m", "help": "half the width of the base"},
+        *([moved] if p.eccentricity else []),
         {"symbol": "m_tot", "value": p.m_tot, "unit": "kg", "help": "total mass with the base"},
-        {"symbol": "M_r", "value": p.resisting_moment, "unit": "N m", "help": "moment at which the base lifts"},
-        {"symbol": "L₀ʳ", "value": p.l0r, "unit": "kg m", "help": "sum of mass times height"},
-        {"symbol": "I_θ", "value": p.i_theta, "unit": "kg m²", "help": "inertia about the pivot"},
-        {
-            "symbol": "a_lift",
-            "value": p.resisting_moment / p.l0r,
-            "unit": "m/s²",
-            "help": "slow ground acceleration that lifts the base",
-        },
-        {"symbol": "α", "value": alpha, "unit": "rad", "help": "rotation at which it no longer stands up by itself"},
-        {
-            "symbol": "θ_nom",
-            "value": p.nominal_overturning_rotation,
-            "unit": "rad",
-            "help": "nominal limit 0.7 atan(B/h*₁)",
-        },
+    ]
+    arm = {"symbol": "L₀ʳ", "value": p.l0r, "unit": "kg m", "help": "sum of mass times height"}
+    if p.symmetric:
+        lifting, *rest = _of_pivot(p, p.pivot(1), "")
+        return [*base, lifting, arm, *rest]
+    edges = {1: "to the right: ", -1: "to the left: "}
+    return [*base, arm, *(each for pivot in p.pivots for each in _of_pivot(p, pivot, edges[pivot.side]))]
+
+
+def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, Any]]:
+    alpha = pivot.balance_rotation if math.isfinite(pivot.balance_rotation) else None
+    lifting, nominal = pivot.resisting_moment / p.l0r, pivot.nominal_overturning_rotation
+    limit = "nominal limit 0.7 atan(B/h*₁)" if p.symmetric else "nominal limit 0.7 atan(b/h*₁), b to this edge"
+    said = [
+        ("M_r", pivot.resisting_moment, "N m", "moment at which the base lifts"),
+        ("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
+        ("a_lift", lifting, "m/s²", "slow ground acceleration that lifts the base"),
+        ("α", alpha, "rad", "rotation at which it no longer stands up by itself"),
+        ("θ_nom", nominal, "rad", limit),
+    ]
+    return [
+        {"symbol": symbol, "value": value, "unit": unit, "help": about + text} for symbol, value, unit, text in said
     ]
 
 
@@ -161,7 +169,7 @@ def _modes(built: Built) -> list[dict[str, Any]]:
     p = built.properties
     if not p.n_modes:
         return []
-    lifted = uplifted_modes(p)
+    lifted = [uplifted_modes(p, side=pivot.side) for pivot in p.pivots]
     return [
         {
             "period": 2.0 * np.pi / p.omega[n],
@@ -169,8 +177,13 @@ def _modes(built: Built) -> list[dict[str, Any]]:
             "mass_share": p.effective_mass[n] / p.m_tot,
             "effective_height": p.effective_height[n],
             "damping": p.zeta[n],
-            "uplifted_period": 2.0 * np.pi / lifted.omega[n] if lifted.omega[n] > 0.0 else None,
-            "uplifted_damping": lifted.damping_ratio[n],
+            "uplifted": [
+                {
+                    "period": 2.0 * np.pi / each.omega[n] if each.omega[n] > 0.0 else None,
+                    "damping": each.damping_ratio[n],
+                }
+                for each in lifted
+            ],
         }
         for n in range(p.n_modes)
     ]
@@ -181,6 +194,8 @@ def _beside(entry: StructureEntry, message: str) -> Mapping[str, str]:
     said = message.removeprefix(f"[{entry.kind}]: ").removeprefix("[[tendons]]: ")
     if message.startswith("[[tendons]]"):
         return {"structure.tendons": said}
+    if message.startswith("eccentricity "):
+        return {"structure.eccentricity": said}
     names = list(type(entry.table).model_fields)
     spots = {name: said.find(name) for name in names if name in said}
     if not spots:

@@ -6,15 +6,27 @@ which only those that come near their peaks are given.
 
 import numpy as np
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import LINEAR, SWAY, VERTICAL, field_rates, observe, posture_of
-from rockflex.solve.adaptive.layout import Flow, Stages
-from rockflex.solve.adaptive.step import place_at
-from rockflex.solve.exact.layout import ROCKING, Array, Log
-from rockflex.solve.exact.peaks import raise_row, size_of
+from rockflex.solve.adaptive.layout import (
+    AT_ENDS,
+    AT_ENDS_AHEAD,
+    AT_STARTS,
+    AT_STARTS_AHEAD,
+    END,
+    END_RATES,
+    PLACE,
+    PLACE_RATES,
+    TOLD,
+    Flow,
+    Stages,
+)
+from rockflex.solve.adaptive.step import choose_branch, place_at
 from rockflex.solve.exact.probe import cubic_range
+from rockflex.solve.layout import Array, Log, Span, System
+from rockflex.solve.peaks import raise_row, size_of
 
-__all__ = ["curves_hide", "is_curved", "raise_curves", "stretch", "tell"]
+__all__ = ["curves_hide", "is_curved", "raise_curves", "stretch", "tell", "values_of_rows"]
 
 STRAY = 0.2
 NEAR = 0.7  # of its peak: what a row must come near to be looked at twice
@@ -30,10 +42,12 @@ def is_curved(flow: Flow, f: int, side: float) -> bool:
     return side != 0.0 and flow.kinds[f] != LINEAR
 
 
-@kernel
-def tell(flow: Flow, side: float, acceleration: float, motion: Array, rates: Array, values: Array) -> None:
-    """Fill in the values of the curved rows; of the last one, as in `Log`, the loss of support times the side."""
-    n, last = flow.field.omega2.size, flow.rows.shape[2] - 2
+@inlined_kernel
+def tell(
+    system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array
+) -> None:
+    """Fill in the values of the curved rows; of the last one, as in `Log`, the loss of support."""
+    n, last, side = flow.field.modes.shape[1], system.plain_rows.shape[2] - 2, system.phases[phase].side
     posture = posture_of(flow.field, side, acceleration, motion, rates)
     for f in range(1, values.size):
         kind = flow.kinds[f]
@@ -42,9 +56,9 @@ def tell(flow: Flow, side: float, acceleration: float, motion: Array, rates: Arr
         value = 0.0
         if kind < VERTICAL:
             for i in range(n if kind == SWAY else last):
-                value += flow.rows[ROCKING, f, i] * motion[i]
+                value += system.plain_rows[phase, f, i] * motion[i]
         value = observe(kind, value, flow.levers[f, 0], flow.levers[f, 1], posture)
-        values[f] = side * (flow.rest - value) if kind == VERTICAL else value
+        values[f] = flow.rest - value if kind == VERTICAL else value
 
 
 @kernel
@@ -57,142 +71,150 @@ def stretch(first: float, last: float, before: float, after: float) -> tuple[flo
     return low - slack, high + slack
 
 
-@kernel
+@inlined_kernel
 def curves_hide(
+    system: System,
     flow: Flow,
-    side: float,
-    here: float,
-    slope: float,
-    step: float,
-    time: float,
+    phase: int,
+    span: Span,
     end: Array,
     end_rates: Array,
     log: Log,
     room: Stages,
 ) -> bool:
-    """Whether a curved row may hide a new peak between the motion and `end`, `step` seconds later.
+    """Whether a curved row may hide a new peak between the motion and `end`, over a span.
 
-    The peaks at the start are noted, for forces jump at events; the values at the end are left in `room.ends`, and
-    `room.doubt` marks the rows in question.
+    The peaks at the start are noted, for forces jump at events; the values at the end are left in
+    `room.rows[AT_ENDS]`, and `room.doubt` marks the rows in question.
     """
-    there = here + slope * step
-    if not room.told[0]:
-        tell(flow, side, here, room.motion, room.rates[0], room.starts)
-    room.told[0] = True
-    tell(flow, side, there, end, end_rates, room.ends)
+    there = span.ground + span.slope * span.length
+    if not room.at.told:
+        tell(system, flow, phase, span.ground, room.motion, room.rates[0], room.rows[AT_STARTS])
+    room.at.told = True
+    tell(system, flow, phase, there, end, end_rates, room.rows[AT_ENDS])
     near = False
     for f in range(1, log.peaks.size):
         room.doubt[f] = False
         if flow.kinds[f] == LINEAR:
             continue
-        size = max(size_of(room.starts[f], f, side, log), size_of(room.ends[f], f, side, log))
+        size = max(size_of(room.rows[AT_STARTS, f], f, log), size_of(room.rows[AT_ENDS, f], f, log))
         scale = abs(log.peaks[f])
         if flow.kinds[f] == VERTICAL:
             scale = max(scale, LIGHT * flow.rest)
         room.doubt[f] = size > log.peaks[f] - (1.0 - NEAR) * scale
         near = near or room.doubt[f]
-        raise_row(f, room.starts[f], side, time, log)
+        raise_row(f, room.rows[AT_STARTS, f], span.time, log)
     if not near:
         return False
-    look_ahead(flow, side, here, slope, step, room.motion, room.rates[0], room.starts_ahead, room)
-    look_ahead(flow, side, there, slope, step, end, end_rates, room.ends_ahead, room)
+    look_ahead(system, flow, phase, span.ground, span, room.motion, room.rates[0], room.rows[AT_STARTS_AHEAD], room)
+    look_ahead(system, flow, phase, there, span, end, end_rates, room.rows[AT_ENDS_AHEAD], room)
     hidden = False
     for f in range(1, log.peaks.size):
         if room.doubt[f]:
-            first, last = room.starts[f], room.ends[f]
-            before, after = (room.starts_ahead[f] - first) / AHEAD, (room.ends_ahead[f] - last) / AHEAD
+            first, last = room.rows[AT_STARTS, f], room.rows[AT_ENDS, f]
+            before, after = (
+                (room.rows[AT_STARTS_AHEAD, f] - first) / AHEAD,
+                (room.rows[AT_ENDS_AHEAD, f] - last) / AHEAD,
+            )
             low, high = stretch(first, last, before, after)
-            known = max(log.peaks[f], size_of(last, f, side, log))
-            room.doubt[f] = max(size_of(low, f, side, log), size_of(high, f, side, log)) > known
+            known = max(log.peaks[f], size_of(last, f, log))
+            room.doubt[f] = max(size_of(low, f, log), size_of(high, f, log)) > known
             hidden = hidden or room.doubt[f]
     return hidden
 
 
-@kernel
+@inlined_kernel
 def look_ahead(
+    system: System,
     flow: Flow,
-    side: float,
-    acceleration: float,
-    slope: float,
-    step: float,
+    phase: int,
+    ground: float,
+    span: Span,
     motion: Array,
     rates: Array,
     values: Array,
     room: Stages,
 ) -> None:
     """Values of the curved rows a little later."""
-    later = acceleration + slope * AHEAD * step
+    later = ground + span.slope * AHEAD * span.length
     for i in range(motion.size):
-        room.place[i] = motion[i] + AHEAD * step * rates[i]
-    field_rates(flow.field, side, room.branch[0], later, room.place, room.place_rates)
-    tell(flow, side, later, room.place, room.place_rates, values)
+        room.vectors[PLACE, i] = motion[i] + AHEAD * span.length * rates[i]
+    field_rates(
+        flow.field, system.phases[phase].side, room.at.branch, later, room.vectors[PLACE], room.vectors[PLACE_RATES]
+    )
+    tell(system, flow, phase, later, room.vectors[PLACE], room.vectors[PLACE_RATES], values)
 
 
 @kernel
-def raise_curves(
-    flow: Flow,
-    side: float,
-    here: float,
-    slope: float,
-    step: float,
-    stop: float,
-    time: float,
-    log: Log,
-    room: Stages,
-) -> None:
+def raise_curves(system: System, flow: Flow, phase: int, span: Span, stop: float, log: Log, room: Stages) -> None:
     """Raise the peaks of all curved rows over [0, stop] of the step whose extension is in `room.bends`."""
-    place_at(stop, room, room.end)
-    field_rates(flow.field, side, room.branch[0], here + slope * step * stop, room.end, room.end_rates)
-    hidden = curves_hide(flow, side, here, slope, step * stop, time, room.end, room.end_rates, log, room)
+    side, length = system.phases[phase].side, span.length * stop
+    place_at(stop, room, room.vectors[END])
+    field_rates(
+        flow.field, side, room.at.branch, span.ground + span.slope * length, room.vectors[END], room.vectors[END_RATES]
+    )
+    part = Span(span.time, span.until, span.ground, span.slope, length)
+    hidden = curves_hide(system, flow, phase, part, room.vectors[END], room.vectors[END_RATES], log, room)
     for f in range(1, log.peaks.size):
         if is_curved(flow, f, side):
-            raise_row(f, room.ends[f], side, time + step * stop, log)
+            raise_row(f, room.rows[AT_ENDS, f], span.time + length, log)
             if hidden and room.doubt[f]:
-                raise_curve(flow, f, side, here, slope, step, stop, time, log, room)
+                raise_curve(system, flow, phase, f, span, stop, log, room)
 
 
 @kernel
 def raise_curve(
-    flow: Flow,
-    f: int,
-    side: float,
-    here: float,
-    slope: float,
-    step: float,
-    stop: float,
-    time: float,
-    log: Log,
-    room: Stages,
+    system: System, flow: Flow, phase: int, f: int, span: Span, stop: float, log: Log, room: Stages
 ) -> None:
     """Raise one curved row's peak to its largest size over [0, stop]."""
     best, where = -np.inf, 0.0
     for k in range(LOOKS + 1):
         u = stop * k / LOOKS
-        size = size_of(curve_at(flow, f, u, side, here, slope, step, room), f, side, log)
+        size = size_of(curve_at(system, flow, phase, f, u, span, room), f, log)
         if size > best:
             best, where = size, u
     width = stop / LOOKS
     for _ in range(CLOSER):
         middle = min(max(where, width), stop - width)
-        left = size_of(curve_at(flow, f, middle - width, side, here, slope, step, room), f, side, log)
-        centre = size_of(curve_at(flow, f, middle, side, here, slope, step, room), f, side, log)
-        right = size_of(curve_at(flow, f, middle + width, side, here, slope, step, room), f, side, log)
+        left = size_of(curve_at(system, flow, phase, f, middle - width, span, room), f, log)
+        centre = size_of(curve_at(system, flow, phase, f, middle, span, room), f, log)
+        right = size_of(curve_at(system, flow, phase, f, middle + width, span, room), f, log)
         bend = left - 2.0 * centre + right
         if bend >= 0.0:
             break
         u = middle + width * min(max(0.5 * (left - right) / bend, -1.0), 1.0)
-        size = size_of(curve_at(flow, f, u, side, here, slope, step, room), f, side, log)
+        size = size_of(curve_at(system, flow, phase, f, u, span, room), f, log)
         if size > best:
             best, where = size, u
         width *= 0.125
-    raise_row(f, curve_at(flow, f, where, side, here, slope, step, room), side, time + step * where, log)
+    raise_row(f, curve_at(system, flow, phase, f, where, span, room), span.time + span.length * where, log)
 
 
 @kernel
-def curve_at(flow: Flow, f: int, u: float, side: float, here: float, slope: float, step: float, room: Stages) -> float:
+def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Span, room: Stages) -> float:
     """Value of a curved row at the fraction `u` of a step."""
-    acceleration = here + slope * step * u
-    place_at(u, room, room.place)
-    field_rates(flow.field, side, room.branch[0], acceleration, room.place, room.place_rates)
-    tell(flow, side, acceleration, room.place, room.place_rates, room.values)
-    return room.values[f]
+    ground = span.ground + span.slope * span.length * u
+    place_at(u, room, room.vectors[PLACE])
+    field_rates(
+        flow.field, system.phases[phase].side, room.at.branch, ground, room.vectors[PLACE], room.vectors[PLACE_RATES]
+    )
+    tell(system, flow, phase, ground, room.vectors[PLACE], room.vectors[PLACE_RATES], room.rows[TOLD])
+    return room.rows[TOLD, f]
+
+
+@kernel
+def values_of_rows(system: System, flow: Flow, phase: int, ground: float, room: Stages) -> None:
+    """Fill `room.rows[TOLD]` with all rows at the present motion, where a stretch of acceleration begins."""
+    side, rows = system.phases[phase].side, system.plain_rows
+    n = rows.shape[2] - 2
+    if flow.field.hysteretic:
+        choose_branch(flow, side, ground, room)
+    field_rates(flow.field, side, room.at.branch, ground, room.motion, room.rates[0])
+    if side != 0.0 and flow.field.complete:
+        tell(system, flow, phase, ground, room.motion, room.rates[0], room.rows[TOLD])
+    for f in range(room.rows.shape[1]):
+        if not is_curved(flow, f, side):
+            value = rows[phase, f, n] * ground + rows[phase, f, n + 1]
+            for i in range(n):
+                value += rows[phase, f, i] * room.motion[i]
+            room.rows[TOLD, f] = value

@@ -1,7 +1,6 @@
-"""The arrays that the adaptive engine's kernels pass around, beside those of the exact engine.
+"""The arrays that the Runge-Kutta steps need, beside those of `rockflex.solve.layout`.
 
-The motion is that of `Field`: [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic]. A row is a linear functional
-[D.., D'.., θ, θ', z, a, s] of it, one set a phase; row 0 is the phase's guard, as in the exact engine.
+The state of an integrated model is [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic].
 """
 
 from typing import NamedTuple
@@ -9,23 +8,41 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.models import EXTRA, Field
+from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
-from rockflex.solve.exact.layout import Array
+from rockflex.solve.layout import Array, Progress
 
-__all__ = ["TERMS", "Flow", "Stages", "stages"]
+__all__ = [
+    "AT_ENDS",
+    "AT_ENDS_AHEAD",
+    "AT_STARTS",
+    "AT_STARTS_AHEAD",
+    "END",
+    "END_RATES",
+    "PLACE",
+    "PLACE_RATES",
+    "TERMS",
+    "TOLD",
+    "TRIAL",
+    "Flow",
+    "Stages",
+    "stages_of",
+]
 
 TERMS = 8  # of the polynomial across a step
 
+# Places in `Stages.vectors`: the state at the end of the step, within it, and where a stretch of it ends, with the
+# rates of the latter two; and in `Stages.rows`: at the start of the step and at its end, a little after each, and
+# within it.
+TRIAL, PLACE, PLACE_RATES, END, END_RATES = 0, 1, 2, 3, 4
+AT_STARTS, AT_ENDS, AT_STARTS_AHEAD, AT_ENDS_AHEAD, TOLD = 0, 1, 2, 3, 4
+
 
 class Flow(NamedTuple):
-    """A nonlinear model made ready."""
+    """The phases of a model that no closed form carries."""
 
     field: Field
-    resistance: float  # M_r; infinite on a base that cannot lift
-    free_inertia: float  # I_θ - Σ m* h*²
-    rows: Array  # (2, F, 2N + 5)
-    kinds: NDArray[np.int64]  # (F,): what becomes of the rows while rocking, see `rockflex.models`
+    kinds: NDArray[np.int64]  # (F,): what becomes of the rows while rocking, see `rockflex.models.observe`
     levers: Array  # (F, 2): of those that are no linear functionals
     rest: float  # vertical reaction at rest
     scale: Array  # (2N + 3,): sizes below which a component's error does not matter
@@ -35,52 +52,40 @@ class Flow(NamedTuple):
 class Stages(NamedTuple):
     """Room for one step."""
 
-    motion: Array  # (2N + 6,), at the start of the step; the exact engine's `state` is the front of it
-    trial: Array  # (2N + 6,)
-    rates: Array  # (16, 2N + 6)
-    bends: Array  # (7, 2N + 6): the continuous extension
+    motion: Array  # (S',): at the start of the step; `Motion.state`
+    vectors: Array  # (5, S'): states and rates beside it, at the places above
+    rates: Array  # (16, S')
+    bends: Array  # (7, S'): the continuous extension
     polys: Array  # (F + 1, 8)
-    ends: Array  # (F,): the rows at the end of the step
-    step: Array  # (1,): length that the error control proposes
-    branch: Array  # (1,): sign of the hysteretic spring's velocity
-    known: NDArray[np.bool_]  # (1,): whether the first stage is the last one of the step before
-    size: Array  # (2N + 3,): largest magnitude of each component so far
-    place: Array  # (2N + 6,): the motion within the step
-    place_rates: Array  # (2N + 6,)
-    end: Array  # (2N + 6,): the motion where the stretch under examination ends
-    end_rates: Array  # (2N + 6,)
-    starts: Array  # (F,): the curved rows at the start of the step
-    starts_ahead: Array  # (F,): a little later
-    ends_ahead: Array  # (F,): a little after its end
-    values: Array  # (F,): within it
-    told: NDArray[np.bool_]  # (1,): whether `starts` is filled in
+    rows: Array  # (5, F): values of the rows, at the places above
     doubt: NDArray[np.bool_]  # (F,): curved rows that may hide a peak
+    size: Array  # (2N + 3,): largest magnitude of each moving entry so far
     work: Array  # (5,): `Log.work`
+    at: Progress
 
 
-def stages(motion: Array, rows: int, work: Array) -> Stages:
-    """Room for one run that starts from `motion`; `work` is that of its log."""
+def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) -> Stages:
+    """Room for one run that starts from `motion`, whose first `moving` entries count in the errors.
+
+    `work` is that of its log.
+    """
     n = motion.size
     return Stages(
         motion,
-        np.zeros(n),
+        np.zeros((5, n)),
         np.zeros((STAGES, n)),
         np.zeros((TERMS - 1, n)),
         np.zeros((rows + 1, TERMS)),
-        np.zeros(rows),
-        np.full(1, np.inf),
-        np.ones(1),
-        np.zeros(1, dtype=np.bool_),
-        np.zeros(n - EXTRA + 1),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(1, dtype=np.bool_),
+        np.zeros((5, rows)),
         np.zeros(rows, dtype=np.bool_),
+        np.zeros(moving),
         work,
+        at,
     )
+
+
+class Integrator(NamedTuple):
+    """What carries a phase that is not linear."""
+
+    flow: Flow
+    room: Stages

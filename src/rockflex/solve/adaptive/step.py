@@ -2,18 +2,19 @@
 
 import numpy as np
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates
-from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
+from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, TERMS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
-from rockflex.solve.exact.layout import LEFT, STEP, Array
+from rockflex.solve.layout import LEFT, STEP, Array, Span, System
 
 __all__ = [
     "FAILED",
     "choose_branch",
     "expand_nested",
     "extend",
+    "forget",
     "place_at",
     "row_poly",
     "settle_on",
@@ -26,55 +27,60 @@ FAILED = -1.0
 SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 
-@kernel
-def take_step(flow: Flow, side: float, acceleration: float, slope: float, longest: float, room: Stages) -> float:
-    """Try steps of at most `longest` until one is accurate; return its length, or `FAILED`, also where no work is left.
+@inlined_kernel
+def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
+    """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`.
 
-    `room.trial` holds the end of the step, `room.rates` the stages up to it.
+    `room.vectors[TRIAL]` holds the end of the step, `room.rates` the stages up to it. The work is counted and looked at
+    between steps alone: what was learnt of a step in the midst of its tries would be lost.
     """
-    step = min(room.step[0], longest)
-    if not room.known[0]:
-        room.told[0] = False
+    longest = rest.length
+    step = min(room.at.step, longest)
+    if not room.at.known:
+        room.at.told = False
         if flow.field.hysteretic:
-            choose_branch(flow, side, acceleration, room)
-        field_rates(flow.field, side, room.branch[0], acceleration, room.motion, room.rates[0])
-    room.known[0] = True
+            choose_branch(flow, side, rest.ground, room)
+        field_rates(flow.field, side, room.at.branch, rest.ground, room.motion, room.rates[0])
+    room.at.known = True
     most = MOST
     while True:
         room.work[LEFT] -= room.work[STEP]
-        if room.work[LEFT] < 0.0:
-            return FAILED
         for stage in range(1, LAST + 1):
-            place_stage(stage, step, room.motion, room.rates, room.trial)
+            place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL])
             field_rates(
-                flow.field, side, room.branch[0], acceleration + slope * step * C[stage], room.trial, room.rates[stage]
+                flow.field,
+                side,
+                room.at.branch,
+                rest.ground + rest.slope * step * C[stage],
+                room.vectors[TRIAL],
+                room.rates[stage],
             )
         error = error_of(flow, step, room)
         if error <= 1.0:
             grown = step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
             # A step cut short by a sample or an event says little about the next one.
-            room.step[0] = grown if step < longest else max(grown, room.step[0])
+            room.at.step = grown if step < longest else max(grown, room.at.step)
             return step
         most = 1.0
         shrunk = max(LEAST, SAFETY * error**-0.125) if error < np.inf else LEAST
         step *= shrunk
-        room.step[0] = step
+        room.at.step = step
         if not step > SHORTEST:
             return FAILED
 
 
-@kernel
+@inlined_kernel
 def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) -> None:
     """Set the branch of the hysteresis by the sign of the velocity, or where it is zero, of what it will be."""
-    n = flow.field.omega2.size
+    n = flow.field.modes.shape[1]
     velocity = room.motion[n]
     if velocity == 0.0:
         field_rates(flow.field, side, 1.0, acceleration, room.motion, room.rates[0])
         velocity = room.rates[0, n]
-    room.branch[0] = 1.0 if velocity >= 0.0 else -1.0
+    room.at.branch = 1.0 if velocity >= 0.0 else -1.0
 
 
-@kernel
+@inlined_kernel
 def error_of(flow: Flow, step: float, room: Stages) -> float:
     """Norm of the step's error over what is tolerated; infinite where the step left all numbers."""
     fifth = third = 0.0
@@ -83,7 +89,7 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
         for k in range(5, LAST):
             coarse += ERROR_3[k] * room.rates[k, i]
             fine += ERROR_5[k] * room.rates[k, i]
-        size = max(room.size[i], abs(room.motion[i]), abs(room.trial[i]), flow.scale[i])
+        size = max(room.size[i], abs(room.motion[i]), abs(room.vectors[TRIAL, i]), flow.scale[i])
         fifth += (fine / size) ** 2
         third += (coarse / size) ** 2
     if fifth == 0.0:
@@ -92,17 +98,22 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
     return error if np.isfinite(error) else np.inf
 
 
-@kernel
-def extend(flow: Flow, side: float, acceleration: float, slope: float, step: float, room: Stages) -> None:
+@inlined_kernel
+def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
     """Fill `room.bends`, the continuous extension of the step just taken."""
-    n = room.motion.size
+    n, step = room.motion.size, span.length
     for stage in range(LAST + 1, STAGES):
         place_stage(stage, step, room.motion, room.rates, room.bends[0])
         field_rates(
-            flow.field, side, room.branch[0], acceleration + slope * step * C[stage], room.bends[0], room.rates[stage]
+            flow.field,
+            side,
+            room.at.branch,
+            span.ground + span.slope * step * C[stage],
+            room.bends[0],
+            room.rates[stage],
         )
     for i in range(n):
-        rise = room.trial[i] - room.motion[i]
+        rise = room.vectors[TRIAL, i] - room.motion[i]
         room.bends[0, i] = rise
         room.bends[1, i] = step * room.rates[0, i] - rise
         room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
@@ -115,21 +126,28 @@ def extend(flow: Flow, side: float, acceleration: float, slope: float, step: flo
 
 
 @kernel
+def forget(room: Stages) -> None:
+    """Note that the motion is no longer where the last step left it, so that its rates are not known."""
+    room.at.known = False
+
+
+@inlined_kernel
 def step_over(room: Stages) -> None:
     """Put the motion at the end of the step in place of that at its start."""
     for i in range(room.motion.size):
-        room.motion[i] = room.trial[i]
+        room.motion[i] = room.vectors[TRIAL, i]
         room.rates[0, i] = room.rates[LAST, i]
     for i in range(room.size.size):
         room.size[i] = max(room.size[i], abs(room.motion[i]))
-    for f in range(room.ends.size):
-        room.starts[f] = room.ends[f]
+    for f in range(room.rows.shape[1]):
+        room.rows[AT_STARTS, f] = room.rows[AT_ENDS, f]
 
 
 @kernel
 def settle_on(u: float, room: Stages) -> None:
     """Put the motion at the fraction `u` of the step in place of that at its start."""
     place_at(u, room, room.motion)
+    forget(room)
 
 
 @kernel
@@ -143,25 +161,23 @@ def place_at(u: float, room: Stages, place: Array) -> None:
         place[i] = room.motion[i] + u * value
 
 
-@kernel
-def row_poly(
-    row: int, weights: Array, acceleration: float, slope: float, side: float, step: float, room: Stages
-) -> None:
-    """Coefficients, in `room.polys[row]`, of one row over the step, time in units of it."""
-    n = weights.size - 2
-    start = weights[n] * acceleration + weights[n + 1] * side
-    polys = room.polys
+@inlined_kernel
+def row_poly(system: System, phase: int, row: int, span: Span, room: Stages) -> None:
+    """Coefficients, in `room.polys[row]`, of one row of a phase over the step, time in units of it."""
+    rows, polys = system.plain_rows, room.polys
+    n = rows.shape[2] - 2
+    start = rows[phase, row, n] * span.ground + rows[phase, row, n + 1]
     for k in range(TERMS):
         polys[row, k] = 0.0
     for i in range(n):
-        weight = weights[i]
+        weight = rows[phase, row, i]
         if weight != 0.0:
             start += weight * room.motion[i]
             for j in range(TERMS - 1):
                 polys[row, j] += weight * room.bends[j, i]
     expand_nested(polys, row)
     polys[row, 0] = start
-    polys[row, 1] += weights[n] * slope * step
+    polys[row, 1] += rows[phase, row, n] * span.slope * span.length
 
 
 @kernel

@@ -1,13 +1,13 @@
 """Sums of stages, written out: loops over so few weights would cost more than the arithmetic."""
 
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.tableau import A
-from rockflex.solve.exact.layout import Array
+from rockflex.solve.layout import Array
 
 __all__ = ["place_stage"]
 
 
-@kernel
+@inlined_kernel
 def place_stage(stage: int, step: float, start: Array, rates: Array, out: Array) -> None:
     """Where a stage is evaluated: `start` + step Σ A rates; stage 12 is the end of the step."""
     if stage == 1:

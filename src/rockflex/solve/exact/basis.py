@@ -8,14 +8,15 @@ opposite directions, which would drown a small rotation.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.solve.exact.layout import Array, Physics
+from rockflex.models import FREEDOMS, Arrow, RockingModel
+from rockflex.solve.layout import Array
 
-__all__ = ["Basis", "contact_basis", "rocking_basis"]
+__all__ = ["Basis", "basis_of", "with_constant"]
 
 WORST_CONDITION = 1e5  # of the eigenvectors in energy scale: beyond it five digits are lost
 
@@ -24,53 +25,70 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Basis:
-    """Everything of a phase that does not depend on the time step: x' = B x + ..., state = basis · x."""
+    """Everything of a phase that depends on neither time step nor rows: x' = B x + ..., state = basis · x."""
 
-    basis: Array  # (2K, 2K), K = N + 1; coordinates k and K + k form pair k
+    basis: Array  # (2K, 2K), K = N + b; coordinates k and K + k form pair k
     inverse: Array  # (2K, 2K)
     matrix: Array  # (2K, 2K): B; block diagonal in the pairs unless `dense`
     pairs: Array  # (K, 2, 2): the blocks of B
     roots: Complex  # (K, 2): their eigenvalues, the one with the larger real part first
-    forced: Array  # (3, 2K): the forced solution's coefficients of a, a', s
-    rows: Array  # (F, 2K)
-    row_forcing: Array  # (F, 3): of a, a', s
+    steady: Array  # (3, 2K): the forced solution's coefficients of a, a', 1, as states
     dense: bool
     fastest: float  # largest eigenvalue magnitude, rad/s
 
 
-def contact_basis(physics: Physics, rows: Array) -> Basis:
-    """Uncoupled coordinates of full contact (Eq. 15), the last pair empty; `rows` (F, 2N + 4) over state, a and s."""
-    n = physics.omega2.size
-    omega = np.sqrt(physics.omega2)
+def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:
+    """Uncoupled coordinates of one phase; `accelerations` D'' and q'' over state, a and 1, shape (K, 2K + 2)."""
+    p = model.properties
+    omega2, damping = p.omega**2, 2.0 * p.zeta * p.omega
+    if not arrow.free:
+        return _contact_basis(omega2, damping, accelerations.shape[0])
+    return _rocking_basis(accelerations, _energy_scale(p.effective_mass, omega2, arrow))
+
+
+def with_constant(known: Basis, arrow: Arrow) -> Basis:
+    """Return the basis of a phase whose arrow differs from that of a known one in its constant forces alone."""
+    steady = known.steady.copy()
+    steady[2] = 0.0
+    places = known.steady.shape[1] // 2 - arrow.constant.size
+    # At rest the modes are still, and the stiffness of the base balances the constant forces.
+    steady[2, 2 * places :: 2] = np.linalg.solve(arrow.stiffness, arrow.constant)
+    return replace(known, steady=steady)
+
+
+def _contact_basis(omega2: Array, damping: Array, pairs_in_all: int) -> Basis:
+    """Uncoupled coordinates of full contact (Eq. 15), the last pairs empty."""
+    n, count = omega2.size, pairs_in_all
+    omega = np.sqrt(omega2)
     modes = np.arange(n)
-    speeds = modes + n + 1  # the second coordinate of each pair
-    pairs = np.zeros((n + 1, 2, 2))
+    speeds = modes + count  # the second coordinate of each pair
+    pairs = np.zeros((count, 2, 2))
     pairs[:n, 0, 1] = omega
     pairs[:n, 1, 0] = -omega
-    pairs[:n, 1, 1] = -physics.damping
-    half = -0.5 * physics.damping + 0j
-    spread = np.sqrt(half * half - physics.omega2)
-    roots = np.zeros((n + 1, 2), dtype=np.complex128)
+    pairs[:n, 1, 1] = -damping
+    half = -0.5 * damping + 0j
+    spread = np.sqrt(half * half - omega2)
+    roots = np.zeros((count, 2), dtype=np.complex128)
     roots[:n, 0] = half + spread
     roots[:n, 1] = half - spread
-    basis = np.zeros((2 * n + 2, 2 * n + 2))
+    basis = np.zeros((2 * count, 2 * count))
     basis[modes, modes] = 1.0
     basis[n + modes, speeds] = omega
-    inverse = np.zeros((2 * n + 2, 2 * n + 2))
+    inverse = np.zeros((2 * count, 2 * count))
     inverse[modes, modes] = 1.0
     inverse[speeds, n + modes] = 1.0 / omega
-    forced = np.zeros((3, 2 * n + 2))
-    forced[0, :n] = -1.0 / physics.omega2
-    forced[1, :n] = physics.damping / physics.omega2**2
-    forced[1, n : 2 * n] = forced[0, :n]
-    return _basis(rows, basis, inverse, pairs, roots, forced)
+    steady = np.zeros((3, 2 * count))
+    steady[0, :n] = -1.0 / omega2
+    steady[1, :n] = damping / omega2**2
+    steady[1, n : 2 * n] = steady[0, :n]
+    return _basis(basis, inverse, pairs, roots, steady)
 
 
-def rocking_basis(physics: Physics, accelerations: Array, rows: Array) -> Basis:
-    """Uncoupled coordinates of rocking; rows over state, a and s: `accelerations` D'' and θ'' (Eq. 23), `rows` any."""
-    order = _positions_and_speeds(physics.omega2.size)
-    matrix, by_acceleration, by_side = _first_order(accelerations, order)
-    scale = _energy_scale(physics)[order]
+def _rocking_basis(accelerations: Array, energy_scale: Array) -> Basis:
+    """Uncoupled coordinates of rocking (Eq. 23)."""
+    order = _positions_and_speeds(accelerations.shape[0])
+    matrix, by_acceleration, constant = _first_order(accelerations)
+    scale = energy_scale[order]
     scaled = matrix * (scale[:, None] / scale)
     values, vectors = np.linalg.eig(scaled)
     columns, pairs, roots = _real_pairs(values, vectors)
@@ -88,44 +106,33 @@ def rocking_basis(physics: Physics, accelerations: Array, rows: Array) -> Basis:
     basis[order] = columns / scale[:, None]
     back = np.empty((size, size))
     back[:, order] = inverse * scale
-    forced = np.zeros((3, size))
-    steady = -np.linalg.solve(matrix, np.stack((by_acceleration, by_side), axis=1))
-    forced[0, order] = steady[:, 0]
-    forced[1, order] = np.linalg.solve(matrix, steady[:, 0])
-    forced[2, order] = steady[:, 1]
-    return _basis(rows, basis, back, pairs, roots, forced, scaled if dense else None)
+    steady = np.zeros((3, size))
+    found = -np.linalg.solve(matrix, np.stack((by_acceleration, constant), axis=1))
+    steady[0, order] = found[:, 0]
+    steady[1, order] = np.linalg.solve(matrix, found[:, 0])
+    steady[2, order] = found[:, 1]
+    return _basis(basis, back, pairs, roots, steady, scaled if dense else None)
 
 
 def _basis(
-    rows: Array,
-    basis: Array,
-    inverse: Array,
-    pairs: Array,
-    roots: Complex,
-    forced: Array,
-    dense: Array | None = None,
+    basis: Array, inverse: Array, pairs: Array, roots: Complex, steady: Array, dense: Array | None = None
 ) -> Basis:
-    size = rows.shape[1] - 2
-    forcing = rows[:, :size] @ forced.T
-    forcing[:, 0] += rows[:, size]
-    forcing[:, 2] += rows[:, size + 1]
     return Basis(
         basis=basis,
         inverse=inverse,
         matrix=_block_diagonal(pairs) if dense is None else dense,
         pairs=pairs,
         roots=roots,
-        forced=forced @ inverse.T,
-        rows=rows[:, :size] @ basis,
-        row_forcing=forcing,
+        steady=steady,
         dense=dense is not None,
         fastest=float(np.abs(roots).max()),
     )
 
 
-def _first_order(accelerations: Array, order: NDArray[np.intp]) -> tuple[Array, Array, Array]:
-    """Eq. 23 as y' = A y + f a + g s with y = [D, θ, D', θ'], from the rows of D'' and θ''."""
+def _first_order(accelerations: Array) -> tuple[Array, Array, Array]:
+    """Eq. 23 as y' = A y + f a + g with y = [D, θ, D', θ'], from the rows of D'' and θ''."""
     half = accelerations.shape[0]
+    order = _positions_and_speeds(half)
     matrix = np.zeros((2 * half, 2 * half))
     matrix[:half, half:] = np.eye(half)
     matrix[half:] = accelerations[:, order]
@@ -134,18 +141,20 @@ def _first_order(accelerations: Array, order: NDArray[np.intp]) -> tuple[Array, 
     return matrix, rest[:, 0], rest[:, 1]
 
 
-def _positions_and_speeds(n: int) -> NDArray[np.intp]:
-    """Places of [D, θ, D', θ'] in the state [D, D', θ, θ']."""
-    return np.concatenate((np.arange(n), [2 * n], np.arange(n, 2 * n), [2 * n + 1])).astype(np.intp)
+def _positions_and_speeds(pairs: int) -> NDArray[np.intp]:
+    """Places of [D, q, D', q'] in the state [D, D', q_1, q'_1, ..]."""
+    n, freedoms = pairs - len(FREEDOMS), 2 * np.arange(len(FREEDOMS))
+    modes = np.arange(n)
+    return np.concatenate((modes, 2 * n + freedoms, n + modes, 2 * n + freedoms + 1)).astype(np.intp)
 
 
-def _energy_scale(physics: Physics) -> Array:
+def _energy_scale(mass: Array, omega2: Array, arrow: Arrow) -> Array:
     """Factors that turn the state into square roots of energies, in which the eigenvectors are nearly orthogonal."""
-    speed = np.sqrt(physics.mass)
-    spin = math.sqrt(physics.inertia)
-    omega = np.sqrt(physics.omega2)
-    slowest = omega[0] if omega.size else math.sqrt(abs(physics.gravity) / physics.inertia)
-    return np.concatenate((speed * omega, speed, [spin * slowest, spin]))
+    speed, omega = np.sqrt(mass), np.sqrt(omega2)
+    spin = 1.0 / np.sqrt(np.diag(arrow.flexibility))
+    stiffness = np.abs(np.diag(arrow.stiffness))
+    slowest = np.full(spin.size, omega[0]) if omega.size else np.sqrt(stiffness) / spin
+    return np.concatenate((speed * omega, speed, np.column_stack((spin * slowest, spin)).ravel()))
 
 
 def _real_pairs(values: Complex, vectors: Complex) -> tuple[Array, Array, Complex]:

@@ -1,12 +1,29 @@
-"""The fast path: one phase carried over whole samples, as long as nothing can hide in them."""
+"""The fast path: one linear phase carried over whole samples, as long as nothing can hide in them."""
 
 import math
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.history import append
-from rockflex.solve.exact.layout import CONTACT, ROCKING, ZERO, Array, Log, Scratch, System
-from rockflex.solve.exact.peaks import raise_peaks
 from rockflex.solve.exact.probe import NOTHING, examine, probe, set_limits
+from rockflex.solve.history import keep
+from rockflex.solve.layout import (
+    ENDS,
+    FINAL,
+    FIRST,
+    INTO,
+    LOWER,
+    NOW,
+    OUT,
+    SAG,
+    UPPER,
+    VALUES,
+    ZERO,
+    Array,
+    Log,
+    Motion,
+    Progress,
+    System,
+)
+from rockflex.solve.peaks import raise_peaks
 
 __all__ = ["march", "to_coordinates", "to_state"]
 
@@ -14,93 +31,92 @@ WHOLE = ZERO  # the level of a whole sample
 
 
 @kernel
-def to_state(system: System, phase: int, acceleration: float, slope: float, side: float, room: Scratch) -> None:
-    """State from the coordinates of a phase."""
-    for i in range(room.w.size):
-        room.state[i] = 0.0
-    for k in range(room.w.size):
-        forced = system.forced[phase, 0, k] * acceleration + system.forced[phase, 1, k] * slope
-        value = room.w[k] + forced + system.forced[phase, 2, k] * side
-        for i in range(room.w.size):
-            room.state[i] += system.basis[phase, k, i] * value
+def to_state(system: System, at: Progress, ground: float, motion: Motion) -> None:
+    """State from the coordinates of the present phase."""
+    p, size = at.phase, motion.w.shape[1]
+    for i in range(size):
+        motion.state[i] = 0.0
+    for k in range(size):
+        forced = system.forced[p, 0, k] * ground + system.forced[p, 1, k] * at.slope
+        value = motion.w[NOW, k] + forced + system.forced[p, 2, k]
+        for i in range(size):
+            motion.state[i] += system.basis[p, OUT, k, i] * value
 
 
 @kernel
-def to_coordinates(system: System, phase: int, acceleration: float, slope: float, side: float, room: Scratch) -> None:
-    """Coordinates of a phase from the state."""
-    for k in range(room.w.size):
-        forced = system.forced[phase, 0, k] * acceleration + system.forced[phase, 1, k] * slope
-        room.w[k] = -forced - system.forced[phase, 2, k] * side
-    for i in range(room.w.size):
-        for k in range(room.w.size):
-            room.w[k] += system.inverse[phase, i, k] * room.state[i]
+def to_coordinates(system: System, at: Progress, ground: float, motion: Motion) -> None:
+    """Coordinates of the present phase from the state."""
+    p, size = at.phase, motion.w.shape[1]
+    for k in range(size):
+        forced = system.forced[p, 0, k] * ground + system.forced[p, 1, k] * at.slope
+        motion.w[NOW, k] = -forced - system.forced[p, 2, k]
+    for i in range(size):
+        for k in range(size):
+            motion.w[NOW, k] += system.basis[p, INTO, i, k] * motion.state[i]
 
 
 @kernel
-def march(
-    system: System,
-    record: Array,
-    dt: float,
-    first: int,
-    offset: int,
-    side: float,
-    slope: float,
-    log: Log,
-    room: Scratch,
-    nodes: Array,
-    count: int,
-) -> tuple[int, float, int, int]:
-    """Carry `room.w` over samples from `first` on; stop before one that needs a closer look, or at the end.
+def march(system: System, piece: Array, dt: float, most: int, at: Progress, log: Log, motion: Motion) -> None:
+    """Carry `motion.w` over at most so many samples of a piece; stop before one that needs a closer look.
 
-    `offset` is the number of samples before this record. Returns the sample reached, the slope of the acceleration
-    that `w` refers to and the count of nodes. The sample that needs a closer look is left examined in `room`.
+    That sample is left examined in `motion`, and `at.finding` says what it may hide.
     """
-    phase = ROCKING if side != 0.0 else CONTACT
-    pairs = room.norms.size
-    active = pairs if phase == ROCKING else pairs - 1
-    uncoupled = phase == CONTACT or system.dense.shape[0] == 0
+    p = at.phase
+    pairs = motion.norms.size
+    active = pairs if system.phases[p].side != 0.0 else system.layout.modes
+    uncoupled = not system.phases[p].dense
     rate = 1.0 / dt
-    started = False
-    set_limits(side, system.physics.resistance, log, room)
-    for i in range(first, record.size - 1):
-        here, there = record[i], record[i + 1]
+    at.finding = NOTHING
+    started, slope, first = at.started, at.slope, at.index
+    last = min(first + most, piece.size - 1)
+    forced, blocks, sag = system.forced[p, 1], system.blocks[p, WHOLE], system.bounds[p, SAG, WHOLE]
+    rows, forcing = system.rows[p, VALUES], system.row_forcing[p]
+    now, ends = motion.w[NOW], motion.w[ENDS]
+    lower, upper = motion.values[LOWER], motion.values[UPPER]
+    begins, closes = motion.values[FIRST], motion.values[FINAL]
+    set_limits(system, p, log, motion)
+    for i in range(first, last):
+        here, there = piece[i], piece[i + 1]
         incline = (there - here) * rate
         for k in range(2 * pairs):
-            room.w[k] -= system.forced[phase, 1, k] * (incline - slope)
+            now[k] -= forced[k] * (incline - slope)
         slope = incline
         if started and uncoupled:
             for k in range(active):
-                x, y = room.w[k], room.w[pairs + k]
-                room.norms[k] = math.sqrt(x * x + y * y)
-                room.w_end[k] = system.blocks[phase, 0, 0, k] * x + system.blocks[phase, 0, 1, k] * y
-                room.w_end[pairs + k] = system.blocks[phase, 0, 2, k] * x + system.blocks[phase, 0, 3, k] * y
-            for f in range(room.start.size):
-                value = system.row_forcing[phase, f, 0] * there + system.row_forcing[phase, f, 1] * slope
-                value += system.row_forcing[phase, f, 2] * side
+                x, y = now[k], now[pairs + k]
+                motion.norms[k] = math.sqrt(x * x + y * y)
+                ends[k] = blocks[0, k] * x + blocks[1, k] * y
+                ends[pairs + k] = blocks[2, k] * x + blocks[3, k] * y
+            for f in range(begins.size):
+                value = forcing[f, 0] * there + forcing[f, 1] * slope + forcing[f, 2]
                 for k in range(active):
-                    value += system.rows[phase, f, k] * room.w_end[k]
-                    value += system.rows[phase, f, pairs + k] * room.w_end[pairs + k]
-                room.start[f] = room.end[f]
-                room.end[f] = value
+                    value += rows[f, k] * ends[k]
+                    value += rows[f, pairs + k] * ends[pairs + k]
+                begins[f] = closes[f]
+                closes[f] = value
         else:
-            examine(system, phase, WHOLE, side, here, there, slope, room)
+            examine(system, p, WHOLE, here, there, slope, motion)
             started = True
         safe = True
-        for f in range(room.start.size):
-            sag = 0.0
+        for f in range(begins.size):
+            leeway = 0.0
             for k in range(active):
-                sag += system.sag[phase, 0, f, k] * room.norms[k]
-            low, high = min(room.start[f], room.end[f]), max(room.start[f], room.end[f])
-            safe = safe and low - sag >= room.lower[f] and high + sag <= room.upper[f]
+                leeway += sag[f, k] * motion.norms[k]
+            low, high = min(begins[f], closes[f]), max(begins[f], closes[f])
+            safe = safe and low - leeway >= lower[f] and high + leeway <= upper[f]
         if not safe:
-            finding = probe(system, phase, WHOLE, side, slope, room)
-            if finding != NOTHING:
-                return i, slope, finding, count
-            raise_peaks(room.end, side, (offset + i + 1) * dt, log)
-            set_limits(side, system.physics.resistance, log, room)
+            at.finding = probe(system, p, WHOLE, slope, motion)
+            if at.finding != NOTHING:
+                at.stated = at.stated and i == first
+                at.slope, at.index, at.started = slope, i, False
+                return
+            raise_peaks(closes, system.phases[p].side, (at.offset + i + 1) * dt, log)
+            set_limits(system, p, log, motion)
         for k in range(2 * pairs):
-            room.w[k] = room.w_end[k]
-        if nodes.shape[0] > 0:
-            to_state(system, phase, there, slope, side, room)
-            count = append(nodes, count, (offset + i + 1) * dt, side, there, room.state)
-    return record.size - 1, slope, NOTHING, count
+            now[k] = ends[k]
+        if log.history.shape[0] > 0:
+            at.slope = slope
+            to_state(system, at, there, motion)
+            keep(log, (at.offset + i + 1) * dt, system.phases[p].side, there, motion.state)
+    at.stated = at.stated and last == first
+    at.slope, at.index, at.started = slope, last, started

@@ -5,117 +5,121 @@ import math
 import numpy as np
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.layout import ROCKING, Log, Scratch, System
+from rockflex.solve.layout import (
+    ASKED,
+    DOUBT,
+    ENDS,
+    FINAL,
+    FIRST,
+    GUARD,
+    LOWER,
+    NOW,
+    RIPPLE,
+    SAG,
+    SLOPES,
+    SWING,
+    UPPER,
+    VALUES,
+    Log,
+    Motion,
+    System,
+    unit_of,
+)
 
-__all__ = ["EVENT", "NOTHING", "PEAK", "QUARTER_TURN", "cubic_range", "examine", "probe", "set_limits"]
+__all__ = ["EVENT", "NOTHING", "PEAK", "cubic_range", "examine", "probe", "set_limits"]
 
-QUARTER_TURN = 0.5 * math.pi
 NOTHING, PEAK, EVENT = 0, 1, 2  # what a step may hide; the first row hides events, and the peak of the rotation
 
 
 @kernel
-def set_limits(side: float, resistance: float, log: Log, room: Scratch) -> None:
-    """Limits beyond which a row calls for an event (row 0) or a new peak (all others, and row 0 while rocking)."""
+def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
+    """Limits beyond which a row calls for an event (row 0) or a new peak (all others, and the rotation)."""
     support = log.peaks.size - 1
     for f in range(log.peaks.size):
-        room.lower[f] = -log.peaks[f]
-        room.upper[f] = log.peaks[f]
-    if side == 0.0:
-        room.lower[0] = -resistance
-        room.upper[0] = resistance
-    elif side > 0.0:
-        room.lower[0] = 0.0
+        motion.values[LOWER, f] = -log.peaks[f]
+        motion.values[UPPER, f] = log.peaks[f]
+    if system.phases[phase].side == 0.0:
+        motion.values[LOWER, GUARD] = system.phases[phase].low
+        motion.values[UPPER, GUARD] = system.phases[phase].high
     else:
-        room.upper[0] = 0.0
-    if side <= 0.0:
-        room.upper[support] = np.inf
-    if side >= 0.0:
-        room.lower[support] = -np.inf
+        motion.values[LOWER, GUARD] = max(system.phases[phase].low, -log.peaks[GUARD])
+        motion.values[UPPER, GUARD] = min(system.phases[phase].high, log.peaks[GUARD])
+    motion.values[LOWER, support] = -np.inf
 
 
 @kernel
-def examine(
-    system: System,
-    phase: int,
-    level: int,
-    side: float,
-    here: float,
-    there: float,
-    slope: float,
-    room: Scratch,
-) -> None:
-    """Carry `room.w` over a step into `room.w_end`, with the rows asked for at both ends and the pairs' norms."""
-    pairs = room.norms.size
-    count = pairs if phase == ROCKING else pairs - 1
+def examine(system: System, phase: int, level: int, here: float, there: float, slope: float, motion: Motion) -> None:
+    """Carry `motion.w` over a step into `w_end`, with the rows asked for at both ends and the pairs' norms."""
+    pairs = motion.norms.size
+    count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
     for k in range(count):
-        x, y = room.w[k], room.w[pairs + k]
-        room.norms[k] = math.sqrt(x * x + y * y)
-        room.w_end[k] = system.blocks[phase, level, 0, k] * x + system.blocks[phase, level, 1, k] * y
-        room.w_end[pairs + k] = system.blocks[phase, level, 2, k] * x + system.blocks[phase, level, 3, k] * y
-    if phase == ROCKING and system.dense.shape[0] > 0:
-        for i in range(room.w.size):
-            room.w_end[i] = 0.0
-            for k in range(room.w.size):
-                room.w_end[i] += system.dense[level, i, k] * room.w[k]
-    for f in range(room.start.size):
-        if not room.asked[f]:
+        x, y = motion.w[NOW, k], motion.w[NOW, pairs + k]
+        motion.norms[k] = math.sqrt(x * x + y * y)
+        motion.w[ENDS, k] = system.blocks[phase, level, 0, k] * x + system.blocks[phase, level, 1, k] * y
+        motion.w[ENDS, pairs + k] = system.blocks[phase, level, 2, k] * x + system.blocks[phase, level, 3, k] * y
+    if system.phases[phase].dense:
+        for i in range(motion.w.shape[1]):
+            motion.w[ENDS, i] = 0.0
+            for k in range(motion.w.shape[1]):
+                motion.w[ENDS, i] += system.propagator[phase, level, i, k] * motion.w[NOW, k]
+    for f in range(motion.values.shape[1]):
+        if not motion.flags[ASKED, f]:
             continue
-        common = system.row_forcing[phase, f, 1] * slope + system.row_forcing[phase, f, 2] * side
+        common = system.row_forcing[phase, f, 1] * slope + system.row_forcing[phase, f, 2]
         before = common + system.row_forcing[phase, f, 0] * here
         after = common + system.row_forcing[phase, f, 0] * there
         for k in range(count):
-            before += system.rows[phase, f, k] * room.w[k]
-            before += system.rows[phase, f, pairs + k] * room.w[pairs + k]
-            after += system.rows[phase, f, k] * room.w_end[k]
-            after += system.rows[phase, f, pairs + k] * room.w_end[pairs + k]
-        room.start[f] = before
-        room.end[f] = after
+            before += system.rows[phase, VALUES, f, k] * motion.w[NOW, k]
+            before += system.rows[phase, VALUES, f, pairs + k] * motion.w[NOW, pairs + k]
+            after += system.rows[phase, VALUES, f, k] * motion.w[ENDS, k]
+            after += system.rows[phase, VALUES, f, pairs + k] * motion.w[ENDS, pairs + k]
+        motion.values[FIRST, f] = before
+        motion.values[FINAL, f] = after
 
 
 @kernel
-def probe(system: System, phase: int, level: int, side: float, slope: float, room: Scratch) -> int:
-    """What can hide in the step examined: nothing, a peak, or an event; `room.doubt` marks the rows in question.
+def probe(system: System, phase: int, level: int, slope: float, motion: Motion) -> int:
+    """What can hide in the step examined: nothing, a peak, or an event; `motion.doubt` marks the rows in question.
 
     A row within `sag` of its chord is settled at once. Else a slope that keeps its sign, within `swing` of
     its chord, proves that the row has its extremes at the ends, where `raise_peaks` picks them up; and a row that turns
     is settled where it stays within `ripple` of the cubic through both ends.
     """
-    pairs = room.norms.size
-    count = pairs if phase == ROCKING else pairs - 1
+    pairs = motion.norms.size
+    count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
     finding = NOTHING
-    for f in range(room.start.size):
-        room.doubt[f] = False
-        if not room.asked[f]:
+    for f in range(motion.values.shape[1]):
+        motion.flags[DOUBT, f] = False
+        if not motion.flags[ASKED, f]:
             continue
         sag = 0.0
         for k in range(count):
-            sag += system.sag[phase, level, f, k] * room.norms[k]
-        first, last = room.start[f], room.end[f]
+            sag += system.bounds[phase, SAG, level, f, k] * motion.norms[k]
+        first, last = motion.values[FIRST, f], motion.values[FINAL, f]
         low, high = min(first, last), max(first, last)
-        if low - sag >= room.lower[f] and high + sag <= room.upper[f]:
+        if low - sag >= motion.values[LOWER, f] and high + sag <= motion.values[UPPER, f]:
             continue
         swing = ripple = 0.0
         before = after = system.row_forcing[phase, f, 0] * slope
         for k in range(count):
-            swing += system.swing[phase, level, f, k] * room.norms[k]
-            ripple += system.ripple[phase, level, f, k] * room.norms[k]
-            before += system.slope_rows[phase, f, k] * room.w[k]
-            before += system.slope_rows[phase, f, pairs + k] * room.w[pairs + k]
-            after += system.slope_rows[phase, f, k] * room.w_end[k]
-            after += system.slope_rows[phase, f, pairs + k] * room.w_end[pairs + k]
+            swing += system.bounds[phase, SWING, level, f, k] * motion.norms[k]
+            ripple += system.bounds[phase, RIPPLE, level, f, k] * motion.norms[k]
+            before += system.rows[phase, SLOPES, f, k] * motion.w[NOW, k]
+            before += system.rows[phase, SLOPES, f, pairs + k] * motion.w[NOW, pairs + k]
+            after += system.rows[phase, SLOPES, f, k] * motion.w[ENDS, k]
+            after += system.rows[phase, SLOPES, f, pairs + k] * motion.w[ENDS, pairs + k]
         hidden = min(before, after) <= swing and max(before, after) >= -swing
         if hidden:
-            step = float(system.steps[level])
+            step = unit_of(system, level)
             low, high = cubic_range(first, last, before * step, after * step)
-            hidden = low - ripple < room.lower[f] or high + ripple > room.upper[f]
-        elif f == 0:
-            if side == 0.0:
-                hidden = low < room.lower[0] or high > room.upper[0]
-            else:
-                hidden = side * last <= 0.0 or side * first < 0.0 or abs(last) >= QUARTER_TURN
-        room.doubt[f] = hidden
+            hidden = low - ripple < motion.values[LOWER, f] or high + ripple > motion.values[UPPER, f]
+        elif f == GUARD:
+            # A rotation may start on its limit, where it has just left the ground, but not end there.
+            hidden = first < system.phases[phase].low or first > system.phases[phase].high
+            hidden = hidden or last <= system.phases[phase].low or last >= system.phases[phase].high
+        motion.flags[DOUBT, f] = hidden
         if hidden:
-            finding = max(finding, EVENT if f == 0 else PEAK)
+            finding = max(finding, EVENT if f == GUARD else PEAK)
     return finding
 
 

@@ -1,4 +1,4 @@
-"""Propagators and curvature bounds of both phases for the steps dt, dt/2, ... dt/2^J.
+"""Propagators and curvature bounds of a phase for the steps dt, dt/2, ... dt/2^J, and the tables that hold them.
 
 The bounds say where an event or a peak can hide between two instants. Over a step h a row leaves its chord by at
 most h²/8 max|row''|, its slope leaves its own chord by h²/8 max|row'''|, and the row leaves the cubic through the
@@ -12,61 +12,142 @@ import numpy as np
 from scipy.linalg import expm
 
 from rockflex._errors import InputError
+from rockflex.models import FREEDOMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis
-from rockflex.solve.exact.layout import Array, Physics, System
+from rockflex.solve.layout import (
+    CONSTANT,
+    COUPLING,
+    DAMPING,
+    DRIVE,
+    FLEXIBILITY,
+    INTO,
+    LEVERAGE,
+    LINKS,
+    OUT,
+    PHASE,
+    RIPPLE,
+    SAG,
+    SLOPES,
+    STIFFNESS,
+    SWING,
+    VALUES,
+    Array,
+    System,
+)
 
-__all__ = ["propagate", "tabulate"]
+__all__ = ["check_step", "empty_system", "grown", "levels_of", "propagate", "put_phase", "terms_of"]
 
 LONGEST_FALL = 300.0  # e-folds of the rotation within a time step: beyond it numbers overflow
-NONE = np.empty((0, 0, 0))
 
 
-def tabulate(physics: Physics, plain_rows: Array, contact: Basis, rocking: Basis, dt: float) -> System:
-    """A system for one time step; `plain_rows` (2, F, 2K + 2).
+def check_step(basis: Basis, dt: float) -> None:
+    """Check that no rotation grows beyond all numbers within a time step.
 
     Raises
     ------
     InputError
-        If the time step is so long that a rotation grows beyond all numbers within it.
+        If one does.
     """
-    fall = float(rocking.roots.real.max())
+    fall = float(basis.roots.real.max())
     if fall * dt > LONGEST_FALL:
         message = (
             f"The time step of {dt:g} s is too long: a rocking rotation of this structure grows e-fold in "
             f"{1.0 / fall:.3g} s. Give the motion at a step of at most {LONGEST_FALL / fall:.3g} s."
         )
         raise InputError(message)
-    fastest = max(contact.fastest, rocking.fastest)
-    halvings = max(0, math.ceil(math.log2(max(fastest * dt, 1.0))))  # then no mode turns by more than one radian
-    steps: Array = dt * 0.5 ** np.arange(halvings + 1, dtype=np.float64)
-    sag, swing, ripple = zip(*(_bounds(basis, steps) for basis in (contact, rocking)), strict=True)
-    return System(
-        physics=physics,
-        plain_rows=plain_rows,
-        basis=np.ascontiguousarray(np.stack((contact.basis.T, rocking.basis.T))),
-        inverse=np.ascontiguousarray(np.stack((contact.inverse.T, rocking.inverse.T))),
-        forced=np.stack((contact.forced, rocking.forced)),
-        rows=np.stack((contact.rows, rocking.rows)),
-        row_forcing=np.stack((contact.row_forcing, rocking.row_forcing)),
-        slope_rows=np.stack((contact.rows @ contact.matrix, rocking.rows @ rocking.matrix)),
-        blocks=np.stack((_blocks(contact, steps), _blocks(rocking, steps))),
-        dense=np.stack([expm(rocking.matrix * h) for h in steps]) if rocking.dense else NONE,
-        sag=np.stack(sag),
-        swing=np.stack(swing),
-        ripple=np.stack(ripple),
-        steps=steps,
-        hold=_pair_norm(contact.rows),
-        order=_series_order(fastest * float(steps[-1])),
-    )
 
 
-def _series_order(turn: float) -> int:
-    """Order at which a series that starts at t³, as at an uplift, has converged for a mode that turns by `turn`."""
+def levels_of(fastest: float, dt: float) -> int:
+    """How often a time step is halved until no mode turns by more than one radian."""
+    return max(0, math.ceil(math.log2(max(fastest * dt, 1.0))))
+
+
+def terms_of(fastest: float, dt: float) -> int:
+    """Terms with which a series that starts at t³, as at an uplift, has converged over the finest step of a phase."""
+    turn = fastest * dt * 0.5 ** levels_of(fastest, dt)
     order, term = 3, 1.0
     while term > 1e-17:
         order += 1
         term *= turn / order
-    return order
+    return order + 1
+
+
+def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, levels: int, *, dense: bool) -> System:
+    """Return tables with room for so many phases and halvings of the time step, and none in them yet."""
+    p, layout, b = model.properties, model.layout, len(FREEDOMS)
+    n, core, pairs, columns = layout.modes, layout.core, layout.core // 2, layout.columns
+    whole = (capacity, levels + 1)
+    links = np.full((capacity, LINKS), -1, dtype=np.int64)
+    return System(
+        layout=layout,
+        dt=dt,
+        modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
+        phases=np.zeros(capacity, dtype=PHASE),
+        links=links,
+        border=np.zeros((capacity, b, 2, n)),
+        base=np.zeros((capacity, 3, b, b)),
+        push=np.zeros((capacity, 2, b)),
+        plain_rows=np.zeros((capacity, rows, columns)),
+        basis=np.zeros((capacity, 2, core, core)),
+        forced=np.zeros((capacity, 3, core)),
+        rows=np.zeros((capacity, 2, rows, core)),
+        row_forcing=np.zeros((capacity, rows, 3)),
+        blocks=np.zeros((*whole, 4, pairs)),
+        propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
+        bounds=np.zeros((capacity, 3, levels + 1, rows, pairs)),
+    )
+
+
+def grown(system: System, larger: System) -> System:
+    """Return `larger` with all that `system` holds."""
+    for old, new in zip(system[2:], larger[2:], strict=True):
+        if old.size and new.shape != old.shape:
+            new[tuple(slice(length) for length in old.shape)] = old
+        elif old.size:
+            new[...] = old
+    return larger
+
+
+def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_rows: Array, twin: int) -> None:
+    """Enter one phase at place `p`; `plain_rows` (F, C). Where it is not linear, there is no basis.
+
+    `twin` is the place of a phase whose motion differs by constant forces alone, or -1: what both share is copied.
+    """
+    guard, arrow, dt = phase.guards[0], phase.arrow, system.dt
+    system.plain_rows[p] = plain_rows
+    if basis is None or arrow is None:
+        system.phases[p] = phase.side, guard.low, guard.high, 0, 0, False, False
+        return
+    levels = levels_of(basis.fastest, dt)
+    system.phases[p] = phase.side, guard.low, guard.high, levels, terms_of(basis.fastest, dt), True, basis.dense
+    system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
+    system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
+    system.base[p, STIFFNESS] = arrow.stiffness
+    system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
+    core, own = basis.basis.shape[0], slice(levels + 1)
+    moving = plain_rows[:, :core]
+    rows = moving @ basis.basis
+    first = rows @ basis.matrix
+    forcing = moving @ basis.steady.T
+    forcing[:, 0] += plain_rows[:, -2]
+    forcing[:, 2] += plain_rows[:, -1]
+    system.basis[p, OUT], system.basis[p, INTO] = basis.basis.T, basis.inverse.T
+    system.forced[p] = basis.steady @ basis.inverse.T
+    system.rows[p, VALUES], system.rows[p, SLOPES] = rows, first
+    system.row_forcing[p] = forcing
+    if twin >= 0 and np.array_equal(np.abs(moving), np.abs(system.plain_rows[twin, :, :core])):
+        system.blocks[p], system.bounds[p] = system.blocks[twin], system.bounds[twin]
+        if basis.dense:
+            system.propagator[p] = system.propagator[twin]
+        return
+    steps: Array = dt * 0.5 ** np.arange(levels + 1, dtype=np.float64)
+    system.blocks[p, own] = _blocks(basis, steps)
+    if basis.dense:
+        system.propagator[p, own] = np.stack([expm(basis.matrix * h) for h in steps])
+        bounds = _dense_bounds(basis, rows, steps)
+    else:
+        bounds = _bounds(basis, rows, first, steps)
+    system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
 
 
 def _blocks(basis: Basis, steps: Array) -> Array:
@@ -88,28 +169,25 @@ def _blocks(basis: Basis, steps: Array) -> Array:
 def _pair_norm(rows: Array) -> Array:
     """Norm of each row over each pair of coordinates (k, K + k)."""
     half = rows.shape[-1] // 2
-    return np.hypot(rows[..., :half], rows[..., half:])
+    return np.sqrt(rows[..., :half] ** 2 + rows[..., half:] ** 2)
 
 
-def _bounds(basis: Basis, steps: Array) -> tuple[Array, Array, Array]:
+def _bounds(basis: Basis, rows: Array, first: Array, steps: Array) -> tuple[Array, Array, Array]:
     """Sag, swing and ripple of every row over every step, (J + 1, F, K) each."""
-    if basis.dense:
-        return _dense_bounds(basis, steps)
     h = steps[:, None, None]
     growth = np.exp(np.maximum(basis.roots.real.max(axis=1), 0.0) * h)
-    first = basis.rows @ basis.matrix
     second = first @ basis.matrix
     third = second @ basis.matrix
     fourth = third @ basis.matrix
-    sag = np.minimum(_pair_norm(second) * h**2 / 8.0, 2.0 * _pair_norm(basis.rows)) * growth
+    sag = np.minimum(_pair_norm(second) * h**2 / 8.0, 2.0 * _pair_norm(rows)) * growth
     swing = np.minimum(_pair_norm(third) * h**2 / 8.0, 2.0 * _pair_norm(first)) * growth
     return sag, swing, _pair_norm(fourth) * h**4 / 384.0 * growth
 
 
-def _dense_bounds(basis: Basis, steps: Array) -> tuple[Array, Array, Array]:
+def _dense_bounds(basis: Basis, rows: Array, steps: Array) -> tuple[Array, Array, Array]:
     """The same from |row B² exp(B t)| on the finest grid, and a norm bound between its points."""
     finest, between = expm(basis.matrix * steps[-1]), expm(np.abs(basis.matrix) * steps[-1])
-    second = basis.rows @ basis.matrix @ basis.matrix
+    second = rows @ basis.matrix @ basis.matrix
     third = second @ basis.matrix
     moving = np.stack((second, third, third @ basis.matrix))
     worst = np.abs(moving) @ between

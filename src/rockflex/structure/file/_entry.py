@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, Tendon
-from rockflex.structure import Restrained
+from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._matrix_files import checksum
 from rockflex.structure.file._beam_table import BeamTable
 from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
@@ -49,14 +49,14 @@ KINDS: dict[str, type[StructureTable]] = {
 class TendonTable(Table):
     """The arguments of `Tendon`."""
 
-    position: float = Field(0.0, description="the distance from the centre of the base, a number in m")
+    position: float = Field(0.0, description="the distance to the right of the axis of the masses, a number in m")
     initial_force: float = Field(description="the force while the base stands on the ground, a number in N")
     stiffness: float = Field(description="EA/L over the unbonded length, a number in N/m")
     yield_force: float | None = Field(None, description="the force at which the tendon yields, a number in N")
 
 
 class StructureEntry(Table):
-    """A structure, perhaps with a name, and the tendons that hold it down.
+    """A structure, perhaps with a name, where it stands on its base, and the tendons that hold it down.
 
     Attributes
     ----------
@@ -64,6 +64,8 @@ class StructureEntry(Table):
         Empty where none was given.
     frame, fish_bone, wall_frame, tapered_tower, cantilever, beam, lumped, matrices, modes, properties, block
         One of them is a table, the others are None.
+    eccentricity : float or None
+        In m; None in the middle of the base.
     tendons : list of TendonTable
         Perhaps none.
     """
@@ -80,6 +82,9 @@ class StructureEntry(Table):
     modes: ModesTable | None = Field(None, description=_A_TABLE)
     properties: PropertiesTable | None = Field(None, description=_A_TABLE)
     block: BlockTable | None = Field(None, description=_A_TABLE)
+    eccentricity: float | None = Field(
+        None, description="how far the masses stand to the right of the middle of the base, a number in m"
+    )
     tendons: list[TendonTable] = Field(
         default_factory=list[TendonTable], description="a list of tables, each under a heading [[tendons]]"
     )
@@ -115,7 +120,7 @@ class StructureEntry(Table):
 
         Returns
         -------
-        Frame, Beam, ..., Restrained or RockingProperties
+        Frame, Beam, ..., Eccentric, Restrained or RockingProperties
 
         Raises
         ------
@@ -128,6 +133,11 @@ class StructureEntry(Table):
         except InputError as error:
             message = f"[{self.kind}]: {error}"
             raise InputError(message) from error
+        if self.eccentricity:
+            if isinstance(built, RockingProperties):
+                built = replace(built, eccentricity=self.eccentricity)
+            else:
+                built = Eccentric(built, self.eccentricity)
         if not self.tendons:
             return built
         try:
@@ -151,6 +161,8 @@ class StructureEntry(Table):
         return {f"{self.kind}.{name}": checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
-        """Return the values of the structure's table, and its tendons if there are any."""
-        tendons = [each.model_dump(exclude_none=True) for each in self.tendons]
-        return {**self.table.values(), **({"tendons": tendons} if tendons else {})}
+        """Return the values of the structure's table, and eccentricity and tendons if there are any."""
+        more: dict[str, Any] = {"eccentricity": self.eccentricity} if self.eccentricity else {}
+        if self.tendons:
+            more["tendons"] = [each.model_dump(exclude_none=True) for each in self.tendons]
+        return {**self.table.values(), **more}

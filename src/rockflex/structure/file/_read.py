@@ -23,8 +23,9 @@ def read_structure(path: str | Path) -> Built:
     (`FishBone`), ``[wall_frame]`` (`WallFrame`), ``[tapered_tower]`` (`TaperedTower`), ``[cantilever]``
     (`CantileverWithTipMass`), ``[beam]`` (`Beam`, with lists of values at the heights ``z``), ``[lumped]``
     (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
-    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[tendons]]`` (`Tendon`) hold it down. Units are kg,
-    m, s, N and rad; paths of matrices start from the folder of the file.
+    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[tendons]]`` (`Tendon`) hold it down, and a number
+    ``eccentricity`` above all tables moves it from the middle of its base (`Eccentric`). Units are kg, m, s, N and rad;
+    paths of matrices start from the folder of the file.
 
     Parameters
     ----------
@@ -34,7 +35,7 @@ def read_structure(path: str | Path) -> Built:
 
     Returns
     -------
-    Frame, Beam, ..., Restrained or RockingProperties
+    Frame, Beam, ..., Eccentric, Restrained or RockingProperties
 
     Raises
     ------

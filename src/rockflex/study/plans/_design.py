@@ -217,7 +217,7 @@ def run_design(
         One row a run, tendons outermost, then half widths from the least, motions, models and scales. The columns of
         `run_cloud`, where `structure` names the design, and after it `half_width` (m); `aspect_ratio` = h*_1/B;
         `tendon`, the name of the level; `prestress_ratio` = ΣF_0/(m_tot g); `stiffness_ratio` = the tendons' stiffness
-        against rotation over L_0^r g; `resisting_moment` (M_r in N m).
+        against rotation over L_0^r g, about the edge that lifts first; `resisting_moment` (M_r in N m).
 
     Raises
     ------

@@ -25,7 +25,8 @@ class TendonLevel:
     With W = m_tot g and L_0^r g/B² of the design itself, M_r is (1 + prestress_ratio) W B, and the static moment while
     rocking changes by (stiffness_ratio - 1) L_0^r g a radian: with 0 it falls as without a tendon, with 1 it stays
     constant, above 1 it rises (compare Eqs. 23 and 24 of Silva & Stojadinović 2024). So EA/L in N/m is less for a
-    wider base. Within 1 % of 1 runs take longer, since the adaptive engine carries them.
+    wider base. Within 1 % of 1 runs take longer, since the adaptive engine carries them. On an eccentric base B is half
+    its width all the same, so that the two ratios hold between those about its edges.
 
     Attributes
     ----------

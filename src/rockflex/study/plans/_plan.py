@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Protocol, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex.motion import Suite, check_horizontal
-from rockflex.parallel import map_threads
+from rockflex.study._runs import map_runs
 from rockflex.study.plans._records import checksums
 from rockflex.study.plans._tables import Columns, Row, Table, tabulate, to_frame
 
@@ -123,6 +123,6 @@ def run_plan(plan: Plan, workers: SupportsIndex | None = None) -> "pd.DataFrame"
     def work(number: int) -> None:
         tables[number] = plan.chunk(number)
 
-    for _ in map_threads(work, range(plan.n_chunks), workers):
+    for _ in map_runs(work, range(plan.n_chunks), workers):
         pass
     return to_frame(*(tables[number] for number in range(plan.n_chunks)))

@@ -4,17 +4,16 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
-import numpy as np
 from pydantic import Field, field_validator
 
 from rockflex._checks import whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
-from rockflex.models import LinearModel
+from rockflex.models import LinearModel, modal_displacement
 from rockflex.motion import GroundMotion, Suite
-from rockflex.response import Response, global_observables, respond
-from rockflex.solve import ExactEngine, Observables
+from rockflex.response import Response, asked_of, respond
+from rockflex.solve import Engine
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study._subjects import Motions, motions_of
@@ -133,10 +132,8 @@ class PopulationPlan(ChunkedPlan):
 
     def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
         """Response, and the peak of the last of the model's first two modes."""
-        modal = np.zeros((1, 2 * model.properties.n_modes + 4))
-        modal[0, min(model.properties.n_modes, 2) - 1] = 1.0
-        tracked = global_observables(model) + Observables(modal, modal)
-        engine = ExactEngine(model, tracked)
+        mode = min(model.properties.n_modes, 2) - 1
+        engine = Engine(model, asked_of(model) + modal_displacement(model, mode))
         solution = engine.run(
             motion.acceleration, motion.dt, free_vibration=self.free_vibration, work_limit=self.work_limit
         )

@@ -23,7 +23,8 @@ async function request(path, options) {
   let response;
   try {
     response = await fetch(path, options);
-  } catch {
+  } catch (error) {
+    if (error.name === "AbortError") throw new Refusal({}, 0); // a later question has taken its place
     throw new Refusal({ "": "The server does not answer. Is rockflex serve still running?" }, 0);
   }
   return checked(response);
@@ -33,8 +34,15 @@ export async function get(path) {
   return (await request(path)).json();
 }
 
+// A new question takes the place of one on the same path that is not answered yet: the server stops its runs.
+const asking = new Map();
+
 export async function ask(path, body) {
-  const options = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  asking.get(path)?.abort();
+  const controller = new AbortController();
+  asking.set(path, controller);
+  const headers = { "Content-Type": "application/json" };
+  const options = { method: "POST", headers, body: JSON.stringify(body), signal: controller.signal };
   return (await request(path, options)).json();
 }
 

@@ -29,9 +29,16 @@ export class Stage {
     this.draw();
   }
 
-  // What is drawn of a model at a time, in metres from the centre of the base.
+  // The left and the right edge of the base, in metres from the axis of the masses.
+  edges() {
+    const { half_width: b, eccentricity: e } = this.view;
+    return [-b - e, b - e];
+  }
+
+  // What is drawn of a model at a time, in metres from the axis of the masses.
   frameAt(index, time, amplification) {
-    const { heights, half_width: b } = this.view;
+    const { heights } = this.view;
+    const [left, right] = this.edges();
     const model = this.view.models[index];
     const n = heights.length;
     const [low, high, share] = bracket(model.t, time);
@@ -41,7 +48,7 @@ export class Stage {
     const side = theta > 0 ? 1 : theta < 0 ? -1 : 0;
     const turned = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, theta * amplification));
     const place = (x, y) => {
-      const pivot = side * b;
+      const pivot = side > 0 ? right : side < 0 ? left : 0;
       const dx = x - pivot;
       return [pivot + dx * Math.cos(turned) + y * Math.sin(turned), y * Math.cos(turned) - dx * Math.sin(turned)];
     };
@@ -49,7 +56,7 @@ export class Stage {
     return {
       theta, side, u, place,
       points: u.map((value, i) => place(amplification * value, heights[i])),
-      base: [place(-b, 0), place(b, 0)],
+      base: [place(left, 0), place(right, 0)],
       impact: model.impact_times.some((t) => time >= t && time - t < IMPACT),
     };
   }
@@ -66,7 +73,8 @@ export class Stage {
     g.clearRect(0, 0, width, this.height);
     const count = this.view.models.length;
     const cell = width / count;
-    const { heights, half_width: b } = this.view;
+    const { heights } = this.view;
+    const b = Math.max(...this.edges().map(Math.abs));
     const top = heights[heights.length - 1];
     const falls = this.view.models.some((model) => model.status === "overturned" || model.fall_time !== null);
     const reach = falls ? top + 2 * b : Math.max(0.32 * top, 1.6 * b);
@@ -108,7 +116,8 @@ export class Stage {
   }
 
   #body(g, frame, path, to) {
-    const { heights, half_width: b, kind } = this.view;
+    const { heights, kind } = this.view;
+    const [low, high] = this.edges();
     const top = heights[heights.length - 1];
     const stroke = (points, width) => {
       g.lineWidth = width;
@@ -117,7 +126,7 @@ export class Stage {
     };
     if (kind === "block") {
       g.fillStyle = color("shade");
-      path([frame.place(-b, 0), frame.place(b, 0), frame.place(b, top), frame.place(-b, top)]);
+      path([frame.place(low, 0), frame.place(high, 0), frame.place(high, top), frame.place(low, top)]);
       g.closePath();
       g.fill();
       g.stroke();
@@ -126,7 +135,8 @@ export class Stage {
     const at = (x, i) => frame.place(x + this.amplification * frame.u[i], heights[i]);
     const whole = (x) => heights.map((_, i) => at(x, i));
     if (["frame", "fish_bone", "lumped"].includes(kind)) {
-      const [left, right] = [-0.82 * b, 0.82 * b];
+      const b = 0.82 * Math.min(-low, high);
+      const [left, right] = [-b, b];
       stroke(whole(left), 2.4);
       stroke(whole(right), 2.4);
       const width = heights.length > 25 ? 1 : 3.2;
@@ -155,7 +165,7 @@ export class Stage {
   #blow(g, to) {
     g.strokeStyle = color("lost");
     g.lineWidth = 2.5;
-    for (const x of [-this.view.half_width, this.view.half_width]) {
+    for (const x of this.edges()) {
       g.beginPath();
       g.arc(...to([x, 0]), 8, 0, 7);
       g.stroke();

@@ -22,13 +22,14 @@ function picture(view, shape, n) {
   const x = (u) => WIDTH / 2 + (u / largest) * SWAY;
   const y = (z) => HEIGHT - 40 - (z / top) * tall;
   const b = Math.min(30, Math.max(6, (view.half_width / top) * tall));
+  const middle = x(0) - (view.eccentricity / view.half_width) * b;
   const points = view.heights.map((z, i) => `${x(shape[i]).toFixed(1)},${y(z).toFixed(1)}`).join(" ");
   const floors = view.heights.length < 26 ? view.heights.slice(1) : [];
   const texts = mode ? [`Mode ${n + 1}`, `T = ${number(mode.period, 3)} s`] : [];
   const name = mode ? `Mode ${n + 1}, period ${number(mode.period)} s` : "Outline of the rigid block";
   return svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": name },
     svg("line", { x1: x(0), x2: x(0), y1: y(0), y2: y(top), stroke: color("control"), "stroke-dasharray": "4 3" }),
-    svg("line", { x1: x(0) - b, x2: x(0) + b, y1: y(0), y2: y(0), stroke: color("structure"), "stroke-width": 4 }),
+    svg("line", { x1: middle - b, x2: middle + b, y1: y(0), y2: y(0), stroke: color("structure"), "stroke-width": 4 }),
     svg("polyline", { points, fill: "none", stroke: color("c0"), "stroke-width": 2 }),
     ...floors.map((z, i) => svg("circle", { cx: x(shape[i + 1]), cy: y(z), r: 2.6, fill: color("c0") })),
     ...texts.map((text, line) => svg("text", {
@@ -39,14 +40,15 @@ function picture(view, shape, n) {
 export function table(view) {
   if (!view.modes.length)
     return h("p", { class: "help" }, "A rigid block has no modes: simulate it with the model “rigid”.");
+  const edges = view.modes[0].uplifted.length > 1 ? [", right edge", ", left edge"] : [""];
   const head = ["Mode", "Period T [s]", "Mass m* [kg]", "of the total", "Height h* [m]", "Damping",
-    "Period while uplifted [s]", "Damping while uplifted"];
+    ...edges.flatMap((edge) => [`Period while uplifted${edge} [s]`, `Damping while uplifted${edge}`])];
   const value = (v) => h("td", { "data-value": v }, number(v));
   const percent = (v) => h("td", {}, `${number(100 * v, 3)} %`);
   const rows = view.modes.slice(0, ROWS).map((m, i) => h("tr", {},
     h("th", { scope: "row" }, String(i + 1)),
     value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
-    value(m.uplifted_period), percent(m.uplifted_damping)));
+    m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
   return h("div", {},
     h("div", { class: "scroll" }, h("table", { id: "modes" },
       h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),

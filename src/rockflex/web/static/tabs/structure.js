@@ -9,7 +9,7 @@ import { INNER, KINDS, TENDON } from "../structure/starts.js";
 const MOST_TENDONS = 6;
 
 export default function structureTab(app) {
-  const { kinds, tendon, presets, limits } = app.about;
+  const { kinds, eccentricity, tendon, presets, limits } = app.about;
   const current = () => clone(app.state.structure);
   const kindOf = (structure) => Object.keys(kinds).find((key) => structure[key]) ?? "frame";
   let drawn = false; // whether the form has the fields of the present structure
@@ -33,12 +33,13 @@ export default function structureTab(app) {
   const kind = select("kind", "Kind", titles, "frame", (name) => put(fresh(name), true));
   const name = h("input", { type: "text", maxlength: 80, onchange: () => put({ ...current(), name: name.value }) });
   const fields = h("div");
+  const moved = h("div");
   const tendonList = h("div");
   const results = h("div", { class: "results" });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Structure"), preset, kind, field("structure.name", "Name", name),
-        h("div", { "data-path": "structure" }, fields, trouble()), h("p", { class: "error foot", role: "alert" })),
+        h("div", { "data-path": "structure" }, fields, moved, trouble()), h("p", { class: "error foot", role: "alert" })),
       importing(limits.file, current, (structure) => put(structure, true)),
       h("fieldset", { "data-path": "structure.tendons" },
         h("legend", {}, "Tendons that hold the base down"), tendonList, trouble())),
@@ -60,6 +61,11 @@ export default function structureTab(app) {
     if (drawn) return;
     drawn = true;
     fields.replaceChildren(...kinds[now].fields.map((spec) => entry(now, spec, structure[now])));
+    moved.replaceChildren(tableField("structure.eccentricity", eccentricity, structure.eccentricity, (value) => {
+      const next = current();
+      set(next, "eccentricity", value);
+      put(next);
+    }));
     tendons(structure.tendons ?? []);
   }
 

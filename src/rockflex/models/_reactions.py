@@ -9,8 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._constants import GRAVITY
-from rockflex.models import HORIZONTAL, VERTICAL, NonlinearModel, RockingModel, observe_all
-from rockflex.response._accelerations import acting_side, rates_of
+from rockflex.models._kept import acting_side, rates_of
+from rockflex.models._label import RockingModel
+from rockflex.models._layout import GROUND, HEADER
+from rockflex.models._nonlinear import NonlinearModel
+from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
 
 __all__ = ["Reactions", "printed_reactions", "reactions"]
 
@@ -30,16 +33,16 @@ def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
     In the simplified models as Eq. 23 has them, for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
     m_tot (g + s B θ''). `nodes` as in `History`, and D''_n and θ'' at each of them, shape (n, N + 1).
     """
-    if isinstance(model, NonlinearModel) and model.complete:
+    if model.complete:
         return _of_large_rotations(model, nodes, rates)
-    p = model.properties
+    p, layout = model.properties, model.layout
     turn, push = rates[:, -1], rates[:, :-1] @ p.effective_mass
-    raised = p.m_tot * turn * p.half_width
-    pull = p.half_width * p.axial_stiffness * np.abs(nodes[:, 3 + 2 * p.n_modes])
-    return Reactions(
-        p.m_tot * nodes[:, 2] + p.l0r * turn + push,
-        p.resting_reaction + acting_side(nodes) * raised + pull,
-    )
+    side, rotation = acting_side(nodes), layout.of(nodes, layout.rotation)
+    vertical = np.full(side.size, p.resting_reaction)
+    for each in (1, -1):
+        pivot, on = p.pivot(each), side == each
+        vertical[on] += each * (p.m_tot * pivot.arm * turn[on] + pivot.axial_stiffness_moment * rotation[on])
+    return Reactions(p.m_tot * nodes[:, GROUND] + p.l0r * turn + push, vertical)
 
 
 def printed_reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
@@ -50,9 +53,9 @@ def printed_reactions(model: RockingModel, nodes: Array, rates: Array) -> Reacti
 
 def _of_large_rotations(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
     field = NonlinearModel(model.label, model.properties, model.lifts, model.law).field()
-    side, motion = acting_side(nodes), np.ascontiguousarray(nodes[:, 3:])
+    side, motion = acting_side(nodes), np.ascontiguousarray(nodes[:, HEADER:])
     moving = np.ascontiguousarray(rates_of(model, nodes, rates))
     x, z = np.zeros(side.size), np.zeros(side.size)
     for kind, values in ((HORIZONTAL, x), (VERTICAL, z)):
-        observe_all(field, kind, values, 0.0, 0.0, side, nodes[:, 2].copy(), motion, moving)
+        observe_all(field, kind, values, 0.0, 0.0, side, nodes[:, GROUND].copy(), motion, moving)
     return Reactions(x, z)

@@ -1,8 +1,8 @@
 """The peaks of a run, raised wherever the motion is looked at."""
 
 from rockflex._kernel import kernel
-from rockflex.solve.exact.layout import CONTACT, ROCKING, Array, Log, Scratch, System
-from rockflex.solve.exact.series import bend, evaluate, first_descent
+from rockflex.solve.layout import GUARD, Array, Log, Motion, Span, System
+from rockflex.solve.polynomials import bend, evaluate, first_descent
 
 __all__ = ["raise_peak", "raise_peaks", "raise_row", "raise_to", "raise_to_state", "size_of"]
 
@@ -11,15 +11,15 @@ MOST_TURNS = 64  # of a row within a unit, in which no mode turns by more than a
 
 
 @kernel
-def size_of(value: float, row: int, side: float, log: Log) -> float:
+def size_of(value: float, row: int, log: Log) -> float:
     """What the peak of a row is the largest of: the magnitude, or for the last row the loss of support."""
-    return side * value if row == log.peaks.size - 1 else abs(value)
+    return value if row == log.peaks.size - 1 else abs(value)
 
 
 @kernel
-def raise_row(row: int, value: float, side: float, time: float, log: Log) -> None:
+def raise_row(row: int, value: float, time: float, log: Log) -> None:
     """Note one value of a row."""
-    size = size_of(value, row, side, log)
+    size = size_of(value, row, log)
     if size > log.peaks[row]:
         log.peaks[row] = size
         log.times[row] = time
@@ -29,19 +29,20 @@ def raise_row(row: int, value: float, side: float, time: float, log: Log) -> Non
 def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
     """Note the values at the end of a step in which nothing hid."""
     for f in range(0 if side != 0.0 else 1, values.size):
-        raise_row(f, values[f], side, time, log)
+        raise_row(f, values[f], time, log)
 
 
 @kernel
-def raise_peak(polys: Array, row: int, side: float, stop: float, time: float, step: float, log: Log) -> None:
+def raise_peak(polys: Array, row: int, stop: float, span: Span, log: Log) -> None:
     """Raise a row's peak to the largest size of its polynomial over [0, stop]; the last polynomial is for work."""
+    time, step = span.time, span.length
     reach = 0.0
     for k in range(polys.shape[1]):
         reach += abs(polys[row, k])
     if reach <= log.peaks[row]:
         return
-    first = size_of(polys[row, 0], row, side, log)
-    last = size_of(evaluate(polys, row, stop)[0], row, side, log)
+    first = size_of(polys[row, 0], row, log)
+    last = size_of(evaluate(polys, row, stop)[0], row, log)
     if max(first, last) > log.peaks[row]:
         log.peaks[row] = max(first, last)
         log.times[row] = time + (step * stop if last >= first else 0.0)
@@ -59,25 +60,23 @@ def raise_peak(polys: Array, row: int, side: float, stop: float, time: float, st
         u = first_descent(polys, work, u, stop)
         if u >= stop:
             return
-        raise_row(row, evaluate(polys, row, u)[0], side, time + step * u, log)
+        raise_row(row, evaluate(polys, row, u)[0], time + step * u, log)
         direction = -direction
         u += 1e-9
 
 
 @kernel
-def raise_to(
-    rows: Array, phase: int, row: int, acceleration: float, side: float, time: float, log: Log, room: Scratch
-) -> None:
-    """Raise a row's peak to its magnitude in the present state: all that a row without an inner peak needs."""
-    value = rows[phase, row, room.state.size] * acceleration + rows[phase, row, room.state.size + 1] * side
-    for i in range(room.state.size):
-        value += rows[phase, row, i] * room.state[i]
-    raise_row(row, value, side, time, log)
+def raise_to(system: System, phase: int, row: int, ground: float, time: float, log: Log, motion: Motion) -> None:
+    """Raise a row's peak to its size in the present state: all that a row without an inner peak needs."""
+    rows, moving = system.plain_rows, system.plain_rows.shape[2] - 2
+    value = rows[phase, row, moving] * ground + rows[phase, row, moving + 1]
+    for i in range(moving):
+        value += rows[phase, row, i] * motion.state[i]
+    raise_row(row, value, time, log)
 
 
 @kernel
-def raise_to_state(system: System, side: float, acceleration: float, time: float, log: Log, room: Scratch) -> None:
+def raise_to_state(system: System, phase: int, ground: float, time: float, log: Log, motion: Motion) -> None:
     """Raise all peaks to the present state."""
-    phase = ROCKING if side != 0.0 else CONTACT
-    for f in range(0 if side != 0.0 else 1, log.peaks.size):
-        raise_to(system.plain_rows, phase, f, acceleration, side, time, log, room)
+    for f in range(GUARD if system.phases[phase].side != 0.0 else 1, log.peaks.size):
+        raise_to(system, phase, f, ground, time, log, motion)

@@ -1,0 +1,50 @@
+"""How far the uplifted frequencies of few modes lie above those of all."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex.modal._rocking import RockingProperties
+from rockflex.modal._uplifted import lowest_uplifted
+
+__all__ = ["frequency_errors"]
+
+Float = NDArray[np.float64]
+
+
+def frequency_errors(p: RockingProperties, missing: float) -> tuple[Float, Float]:
+    """Return `Adequacy.frequency_error` (N, 2) and `reference_error` (2,), each the larger of those about both pivots.
+
+    Parameters
+    ----------
+    p : RockingProperties
+        With N modes, one or more.
+    missing : float
+        Inertia in kg m² that no mode at hand carries; zero if they are all there are.
+    """
+    errors = [_about(p, missing, pivot.side) for pivot in p.pivots]
+    largest, reference = (np.maximum.reduce(each) for each in zip(*errors, strict=True))
+    return largest, reference
+
+
+def _about(p: RockingProperties, missing: float, side: int) -> tuple[Float, Float]:
+    found = np.full((p.n_modes, 2), np.nan)
+    for k in range(1, p.n_modes + 1):
+        found[k - 1, :k] = lowest_uplifted(p.truncated(k), 2, side)
+    reference = np.zeros(2)
+    if missing:
+        reference = np.maximum(found[-1] / _lowest(p, missing, side) - 1.0, 0.0)
+    return np.maximum(found / found[-1] - 1.0, 0.0), reference
+
+
+def _lowest(p: RockingProperties, inertia: float, side: int) -> Float:
+    """Return the first two uplifted frequencies if `inertia` in kg m² that is missing moves with the last mode's."""
+    # Two modes of one frequency: one with the inertia of both, and one that the rotation does not excite.
+    if p.n_modes == 1:  # the latter is the lowest
+        return np.append(p.omega, np.nan)
+    height = p.effective_height.copy()
+    height[-1] = math.sqrt(height[-1] ** 2 + inertia / p.effective_mass[-1])
+    both = lowest_uplifted(replace(p, effective_height=height), 2, side)
+    return np.sort(np.append(both, p.omega[-1]))[:2]

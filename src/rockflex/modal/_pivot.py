@@ -1,0 +1,130 @@
+"""What a rocking structure is like while it turns about one edge of its base."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rockflex._checks import real_or_nan
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.modal._tendons import Tendon, balanced
+
+__all__ = ["PIVOT_VALUES", "Pivot", "checked_side", "pivot_inertia", "pivot_of"]
+
+PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
+"""What `pivot_of` takes of `RockingProperties`, by name."""
+
+_OVERTURNING_SHARE = 0.7
+
+
+@dataclass(frozen=True)
+class Pivot:
+    """The properties of a rocking structure that belong to one edge of its base: `RockingProperties.pivot`.
+
+    A tendon at x from the axis of the masses stands at the distance r = `arm` - `side` x from the pivot.
+
+    Attributes
+    ----------
+    side : int
+        1 for the right edge, about which the structure turns while θ > 0, and -1 for the left one.
+    arm : float
+        Distance of the pivot from the axis of the masses in m: B - e to the right, B + e to the left.
+    i_theta : float
+        Moment of inertia about the pivot in kg m².
+    weight_moment : float
+        m_tot g times `arm`, in N m.
+    prestress_moment : float
+        Sum of F_0 r over the tendons, in N m.
+    tendon_stiffness : float
+        Sum of k r² over the tendons, in N m/rad.
+    axial_stiffness_moment : float
+        Sum of k r over the tendons, in N/rad: how fast their pull grows with the rotation.
+    rocking_stiffness : float
+        Slope of the static moment over the rotation in N m/rad: `tendon_stiffness` - L_0^r g.
+    nominal_overturning_rotation : float
+        Nominal limit 0.7 atan(`arm`/h*_1) of the rotation in rad (Silva & Stojadinović 2024, Section 3.3); of a rigid
+        block with L_0^r/m_tot.
+    """
+
+    side: int
+    arm: float
+    i_theta: float
+    weight_moment: float
+    prestress_moment: float
+    tendon_stiffness: float
+    axial_stiffness_moment: float
+    rocking_stiffness: float
+    nominal_overturning_rotation: float
+
+    @property
+    def resisting_moment(self) -> float:
+        """M_r in N m: the base turns about this pivot when the overturning moment exceeds it (Eq. 24)."""
+        return self.weight_moment + self.prestress_moment
+
+    @property
+    def balance_rotation(self) -> float:
+        """Rotation |θ| in rad at which the static moment vanishes; infinite where tendons keep it from that."""
+        return -self.resisting_moment / self.rocking_stiffness if self.rocking_stiffness < 0.0 else math.inf
+
+
+def checked_side(side: int) -> int:
+    """Return 1 or -1.
+
+    Raises
+    ------
+    InputError
+        If `side` is neither.
+    """
+    if real_or_nan(side) not in (1.0, -1.0):
+        message = f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given."
+        raise InputError(message)
+    return int(side)
+
+
+def pivot_of(
+    side: int,
+    tendons: Sequence[Tendon],
+    *,
+    half_width: float,
+    eccentricity: float,
+    i_theta: float,
+    translational_inertia: float,
+    m_tot: float,
+    l0r: float,
+    height: float,
+) -> Pivot:
+    """Return one pivot of a structure, from its `RockingProperties` and a height for the slenderness."""
+    arm = half_width - side * eccentricity
+    # About both pivots of a symmetric base the same numbers, to the last digit and in any order of the tendons.
+    alike = eccentricity == 0.0 and balanced(tendons)
+    distances = [arm - (1 if alike else side) * each.position for each in tendons]
+    if alike:
+        prestress = sum((each.initial_force for each in tendons), 0.0) * arm
+        pull = sum((each.stiffness for each in tendons), 0.0) * arm
+    else:
+        prestress = sum((each.initial_force * r for each, r in zip(tendons, distances, strict=True)), 0.0)
+        pull = sum((each.stiffness * r for each, r in zip(tendons, distances, strict=True)), 0.0)
+    stiffness = sum((each.stiffness * r**2 for each, r in zip(tendons, distances, strict=True)), 0.0)
+    return Pivot(
+        side=side,
+        arm=arm,
+        i_theta=pivot_inertia(side * eccentricity, half_width, i_theta, translational_inertia, m_tot),
+        weight_moment=m_tot * GRAVITY * arm,
+        prestress_moment=prestress,
+        tendon_stiffness=stiffness,
+        axial_stiffness_moment=pull,
+        rocking_stiffness=stiffness - l0r * GRAVITY,
+        nominal_overturning_rotation=_OVERTURNING_SHARE * math.atan2(arm, height),
+    )
+
+
+def pivot_inertia(
+    nearer: float, half_width: float, i_theta: float, translational_inertia: float, m_tot: float
+) -> float:
+    """Return I_θ in kg m² about a pivot that is `nearer` by so many m to the axis than `half_width`."""
+    if nearer == 0.0:
+        return i_theta
+    # I_θ may be printed with few digits; close to the axis the rest of it would be wrong, even negative.
+    least = translational_inertia + m_tot * (half_width - nearer) ** 2
+    return max(i_theta - m_tot * nearer * (2.0 * half_width - nearer), least)

@@ -1,0 +1,84 @@
+"""What follows from the states that a history keeps: accelerations, and the values of quantities."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._kernel import python_kernel
+from rockflex.models._field import Field, field_rates
+from rockflex.models._label import RockingModel
+from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
+from rockflex.models._nonlinear import NonlinearModel
+from rockflex.models._observe import LINEAR, observe_all
+from rockflex.models._quantities import Quantities, rows_of
+
+__all__ = ["accelerations", "acting_side", "rates_of", "values_of"]
+
+Array = NDArray[np.float64]
+
+
+def acting_side(states: Array) -> Array:
+    """Side of each state, shape (n,); a contact of no length never acts, so there it is what follows."""
+    side = states[:, SIDE].copy()
+    following = np.append(states[1:, TIME] == states[:-1, TIME], False)
+    for node in np.flatnonzero((side[1:] == 0.0) & (side[:-1] != 0.0)) + 1:
+        end = int(node)
+        while following[end] and side[end] == 0.0:
+            end += 1
+        if states[end, TIME] == states[node - 1, TIME]:
+            side[node:end] = side[end]
+    return side
+
+
+def accelerations(model: RockingModel, states: Array) -> Array:
+    """D''_1..D''_N in m/s² and θ'' in rad/s² at every state, shape (n, N + 1)."""
+    side, layout = acting_side(states), model.layout
+    n = layout.modes
+    if isinstance(model, NonlinearModel):
+        rates = np.zeros((states.shape[0], layout.size))
+        motion = np.ascontiguousarray(states[:, HEADER:])
+        _rates_at(model.field(), side, states[:, GROUND].copy(), motion, rates)
+        return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
+    found = np.zeros((states.shape[0], n + 1))
+    for chosen, key, vector in _by_side(model, states, side):
+        found[chosen] = vector @ model.accelerations(key).T
+    return found
+
+
+def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
+    """D', D'', θ' and θ'' in the order of the state, shape (n, 2N + 2), from the accelerations D'' and θ''."""
+    layout = model.layout
+    return np.column_stack((layout.velocities(states), found[:, :-1], layout.of(states, layout.spin), found[:, -1]))
+
+
+def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
+    """Values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
+    side = acting_side(states)
+    values = np.zeros((states.shape[0], len(quantities)))
+    for chosen, key, vector in _by_side(model, states, side):
+        values[chosen] = vector @ rows_of(model, quantities, key).T
+    curved = np.flatnonzero(quantities.kinds != LINEAR)
+    rocking = side != 0.0
+    if curved.size and rocking.any() and isinstance(model, NonlinearModel) and model.complete:
+        rates = rates_of(model, states, accelerations(model, states))[rocking]
+        known = side[rocking], states[rocking, GROUND], np.ascontiguousarray(states[rocking, HEADER:]), rates
+        for f in curved:
+            found, (near, far) = values[rocking, f], quantities.levers[f].tolist()
+            observe_all(model.field(), int(quantities.kinds[f]), found, near, far, *known)
+            values[rocking, f] = found
+    return values
+
+
+def _by_side(model: RockingModel, states: Array, side: Array) -> list[tuple[NDArray[np.bool_], tuple[int, ...], Array]]:
+    """For each side: which states are on it, its phase, and what its rows are taken over."""
+    moving = states[:, HEADER : HEADER + model.layout.moving]
+    vector = np.column_stack((moving, states[:, GROUND], np.ones(side.size)))
+    chosen = [(side == each, model.start(each)) for each in model.sides]
+    return [(which, key, vector[which]) for which, key in chosen if which.any()]
+
+
+@python_kernel
+def _rates_at(field: Field, side: Array, acceleration: Array, motion: Array, rates: Array) -> None:
+    n = field.modes.shape[1]
+    for k in range(side.size):
+        branch = 1.0 if n == 0 or motion[k, n] >= 0.0 else -1.0
+        field_rates(field, side[k], branch, acceleration[k], motion[k], rates[k])

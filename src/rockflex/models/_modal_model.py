@@ -1,0 +1,190 @@
+"""What all models of N modes on a base share: their elements, and their equations of motion as arrows and rows."""
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex._values import Value
+from rockflex.modal import RockingProperties
+from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._elements import CLOSED, LEFT, RIGHT, Element, border_of, elements_of, first_key
+from rockflex.models._impact import ImpactLaw
+from rockflex.models._layout import StateLayout, layout_of
+from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key
+
+__all__ = ["ModalModel"]
+
+Array = NDArray[np.float64]
+
+QUARTER_TURN = 0.5 * np.pi
+
+
+class ModalModel(Value):
+    """N modes on a base that may uplift: the equations of motion in each phase, as arrows and as rows.
+
+    A *row* is a linear functional of the state, the ground acceleration and 1: `StateLayout`.
+    """
+
+    label: str
+    properties: RockingProperties
+    lifts: bool
+    law: ImpactLaw
+    missing_mass: bool
+
+    @property
+    def complete(self) -> bool:
+        """Whether rotations may be large: Eqs. 13, 14 and 16."""
+        return False
+
+    @property
+    def bouc_wen(self) -> BoucWen | None:
+        """Hysteresis of the one mode; None for an elastic superstructure."""
+        return None
+
+    @property
+    def integrated(self) -> bool:
+        """Whether some phase is integrated step by step, and not carried in closed form."""
+        return False
+
+    @cached_property
+    def layout(self) -> StateLayout:
+        """Places in the state vector."""
+        return layout_of(self.properties.n_modes, integrated=self.integrated)
+
+    @cached_property
+    def elements(self) -> tuple[Element, ...]:
+        """What acts on the base, the base itself first."""
+        return elements_of(self.properties)
+
+    def start(self, side: int) -> Key:
+        """Branches on which a run starts with the base on a side."""
+        return first_key(self.elements, side)
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """Sides on which the base can be: contact, and both pivots where it can lift."""
+        return (CLOSED, RIGHT, LEFT) if self.lifts else (CLOSED,)
+
+    def arrow(self, key: Key) -> Arrow:
+        """Return the equations of motion of a phase that is linear (Eq. 15 or 23)."""
+        known = self._arrows.get(key)
+        if known is None:
+            known = self._arrows[key] = self._new_arrow(key)
+        return known
+
+    @cached_property
+    def _arrows(self) -> dict[Key, Arrow]:
+        return {}
+
+    def _new_arrow(self, key: Key) -> Arrow:
+        p = self.properties
+        b = len(FREEDOMS)
+        leverage = (p.effective_mass * p.effective_height)[None]
+        coupling = p.effective_height[None]
+        free = key[0] != CLOSED
+        border = border_of(self.elements, key) if free else Border.on_rotation()
+        flexibility: Array = np.zeros((b, b))
+        if free:
+            flexibility[:] = np.linalg.inv(border.inertia - leverage @ coupling.T)
+        return Arrow(
+            coupling=coupling.copy(),
+            leverage=leverage,
+            flexibility=flexibility,
+            damping=border.damping,
+            stiffness=border.stiffness,
+            constant=border.constant,
+            drive=border.ground + leverage.sum(axis=1) if free else border.ground,
+            free=free,
+        )
+
+    def free_inertia(self, side: int) -> float:
+        """I_θ - Σ m* h*² about the pivot of a side: what is left to the rotation while the modes move freely, kg m²."""
+        p = self.properties
+        return p.pivot(side).i_theta - float(np.sum(p.effective_mass * p.effective_height**2))
+
+    @cached_property
+    def restoring(self) -> Array:
+        """The restoring accelerations of the modes, ω² D or those of Eq. 37, in m/s²: rows, shape (N, C)."""
+        n, omega2 = self.properties.n_modes, self.properties.omega**2
+        rows = np.zeros((n, self.layout.columns))
+        rows[:, :n] = np.diag(omega2)
+        if self.bouc_wen is not None:
+            share = self.bouc_wen.post_yield_ratio
+            rows[:, :n] *= share
+            rows[:, self.layout.hysteresis] = omega2 * self.bouc_wen.yield_displacement * (1.0 - share)
+        rows.setflags(write=False)
+        return rows
+
+    def overturning_moment(self) -> Array:
+        """Overturning moment in contact, the left-hand side of Eq. 24, or of Eq. 16, in N m: a row, shape (C,)."""
+        p = self.properties
+        row = self._moment.copy()
+        if self.complete:
+            row[: p.n_modes] -= p.effective_mass * GRAVITY
+        return row
+
+    @cached_property
+    def _moment(self) -> Array:
+        p = self.properties
+        n = p.n_modes
+        arm = p.effective_mass * p.effective_height
+        row = -(arm @ self.restoring) if n else np.zeros(self.layout.columns)
+        row[n : 2 * n] -= arm * 2.0 * p.zeta * p.omega
+        row[-2] = p.l0r - arm.sum()
+        return row
+
+    def angular_acceleration(self, key: Key) -> Array:
+        """θ'' in a phase of a simplified model, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (C,)."""
+        return self.accelerations(key)[-1]
+
+    def modal_accelerations(self, key: Key) -> Array:
+        """D'' of every mode in a phase, Eq. 15 or 23, in m/s²: rows, shape (N, C)."""
+        return self.accelerations(key)[:-1]
+
+    def accelerations(self, key: Key) -> Array:
+        """D'' of every mode and θ'' in a phase: rows, shape (N + 1, C); read-only."""
+        known = self._accelerations.get(key)
+        if known is None:
+            known = self._accelerations[key] = self._new_accelerations(key)
+            known.setflags(write=False)
+        return known
+
+    @cached_property
+    def _accelerations(self) -> dict[Key, Array]:
+        return {}
+
+    def _new_accelerations(self, key: Key) -> Array:
+        p = self.properties
+        n, modes = p.n_modes, np.arange(p.n_modes)
+        rows = np.zeros((n + 1, self.layout.columns))
+        rows[:n] -= self.restoring
+        rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
+        rows[:n, -2] = -1.0
+        if key[0] != CLOSED:
+            arrow, turn = self.arrow(key), rows[n]
+            turn -= self._moment
+            turn[self.layout.rotation] -= arrow.stiffness[0, 0]
+            turn[self.layout.spin] -= arrow.damping[0, 0]
+            turn[-1] += arrow.constant[0]
+            turn *= arrow.flexibility[0, 0]
+            rows[:n] -= np.outer(p.effective_height, turn)
+        return rows
+
+    def guards(self, key: Key) -> tuple[Guard, ...]:
+        """Return what ends a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""
+        side, rest = key[0], key[1:]
+        if side != CLOSED:
+            row = np.zeros(self.layout.columns)
+            row[self.layout.rotation] = 1.0
+            lands, tips = Exit(LANDS, (CLOSED, *rest)), Exit(OVERTURNS, key)
+            if side == RIGHT:
+                return (Guard(row, 0.0, QUARTER_TURN, lands, tips),)
+            return (Guard(row, -QUARTER_TURN, 0.0, tips, lands),)
+        if not self.lifts:
+            return (Guard(self.overturning_moment(), -np.inf, np.inf, None, None),)
+        # The base lifts where the forces of the phase that follows would turn it on.
+        right, left = ((turned, *rest) for turned in (RIGHT, LEFT))
+        low, high = (float(border_of(self.elements, key).constant[0]) for key in (right, left))
+        return (Guard(self.overturning_moment(), low, high, Exit(LIFTS, right), Exit(LIFTS, left)),)

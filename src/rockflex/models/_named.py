@@ -1,0 +1,99 @@
+"""The quantities that responses are made of, by name."""
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex.modal import FloorModes
+from rockflex.models._modal_model import ModalModel
+from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
+from rockflex.models._quantities import Quantities, Share, collected, joined
+
+__all__ = ["floor_quantities", "modal_displacement", "quantities", "rotation_by_side"]
+
+Array = NDArray[np.float64]
+
+
+def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
+    """Return quantities of the whole structure, one each, by name.
+
+    `top_displacement` (m), `base_moment` (N m) and `base_shear` (N) of the elastic forces, or of Eq. 37's, with the
+    missing mass where the model counts it; `total_top_displacement` (m), zero where the height of the top is not known;
+    `horizontal_reaction` (N), Eq. 21 for small rotations.
+    """
+    return collected(model.properties.n_modes, [_WHOLE[name](model) for name in names])
+
+
+def _top_displacement(model: ModalModel) -> Share:
+    return LINEAR, {"displacement": model.properties.top_ordinate}
+
+
+def _base_moment(model: ModalModel) -> Share:
+    p = model.properties
+    return _base_force(model, p.effective_mass * p.effective_height, 1)
+
+
+def _base_shear(model: ModalModel) -> Share:
+    return _base_force(model, model.properties.effective_mass, 0)
+
+
+def _base_force(model: ModalModel, masses: Array, moment: int) -> Share:
+    """Σ m* h*^k ω² D, less Σ m_i h_i^k (a + h_i θ'') of the masses left out, which move with the base."""
+    if not model.missing_mass:
+        return LINEAR, {"restoring": masses}
+    left = model.properties.mass_left_out
+    return LEFT_OUT, {"restoring": masses, "ground": -left[moment], "turn": -left[moment + 1]}
+
+
+def _total_top_displacement(model: ModalModel) -> Share:
+    p = model.properties
+    if not p.top_height:
+        return LINEAR, {}
+    return SWAY, {"displacement": p.top_ordinate, "rotation": p.top_height}
+
+
+def _horizontal_reaction(model: ModalModel) -> Share:
+    """ΣF_x = m_tot a + L_0^r θ'' + Σ m* D''."""
+    p = model.properties
+    return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.m_tot}
+
+
+_WHOLE: dict[str, Callable[[ModalModel], Share]] = {
+    "top_displacement": _top_displacement,
+    "base_moment": _base_moment,
+    "base_shear": _base_shear,
+    "total_top_displacement": _total_top_displacement,
+    "horizontal_reaction": _horizontal_reaction,
+}
+
+
+def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]) -> Quantities:
+    """Return quantities of the floors, N_floors each, by name.
+
+    `story_drift` (m): displacement of a floor less that of the one below, relative to the rotated base. `story_shear`
+    (N): sum of the elastic forces from its floor up. `total_floor_displacement` (m): horizontal, relative to the
+    ground. `floor_acceleration` (m/s²): a + h θ'' + Σ Γ φ D'', for small rotations.
+    """
+    p = model.properties
+    count, n = floors.heights.size, p.n_modes
+    shapes = {
+        "story_drift": {"displacement": np.diff(floors.displacement, axis=0, prepend=0.0)},
+        "story_shear": {"restoring": np.cumsum((floors.force / p.omega**2)[::-1], axis=0)[::-1]},
+        "total_floor_displacement": {"displacement": floors.displacement, "rotation": floors.heights},
+        "floor_acceleration": {"acceleration": floors.displacement, "turn": floors.heights, "ground": 1.0},
+    }
+    kinds = {"total_floor_displacement": SWAY}
+    return joined([Quantities.of(count, n, kinds.get(name, LINEAR), **shapes[name]) for name in names])
+
+
+def modal_displacement(model: ModalModel, mode: int) -> Quantities:
+    """Return D of one mode in m, counted from 0."""
+    share = np.zeros(model.properties.n_modes)
+    share[mode] = 1.0
+    return Quantities.of(1, share.size, displacement=share)
+
+
+def rotation_by_side(model: ModalModel) -> Quantities:
+    """Return the rotation to the right in rad, which is zero to the left, and that to the left."""
+    return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])

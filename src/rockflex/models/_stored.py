@@ -1,0 +1,86 @@
+"""Energies that a motion holds, and the floors' accelerations, which depend on how large rotations may be."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._constants import GRAVITY
+from rockflex.modal import FloorModes
+from rockflex.models._kept import accelerations, acting_side
+from rockflex.models._label import RockingModel
+from rockflex.models._layout import GROUND, SIDE
+
+__all__ = ["floor_accelerations", "stored_energies", "stretch_per_arm", "tendon_energy"]
+
+Array = NDArray[np.float64]
+
+
+def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
+    """Kinetic, strain and gravity energy at kept states in J, shape (n,) each.
+
+    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving ground;
+    of complete models those of Eqs. 6-8.
+    """
+    p, layout = model.properties, model.layout
+    side, d, v = states[:, SIDE], layout.displacements(states), layout.velocities(states)
+    rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
+    inertia, arm, weight = (_by_side(side, *values) for values in _pivot_values(model))
+    kinetic = 0.5 * inertia * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
+    kinetic += 0.5 * v**2 @ p.effective_mass
+    share = model.bouc_wen.post_yield_ratio if model.bouc_wen else 1.0
+    strain = 0.5 * share * d**2 @ (p.effective_mass * p.omega**2)
+    if model.complete:
+        offset = side * arm
+        displaced = d @ p.effective_mass
+        kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
+        raised = (p.m_tot * offset - displaced) * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
+        return kinetic, strain, GRAVITY * raised
+    return kinetic, strain, side * weight * rotation - 0.5 * p.l0r * GRAVITY * rotation**2
+
+
+def tendon_energy(model: RockingModel, states: Array) -> Array:
+    """Energy of the tendons at kept states in J, less what they hold in contact, shape (n,)."""
+    layout, p = model.layout, model.properties
+    rotation = layout.of(states, layout.rotation)
+    stretch = stretch_per_arm(model, np.abs(rotation))
+    sides = [p.pivot(side) for side in (1, -1)]
+    prestress = _by_side(rotation, *(each.prestress_moment for each in sides))
+    stiffness = _by_side(rotation, *(each.tendon_stiffness for each in sides))
+    return prestress * stretch + 0.5 * stiffness * stretch**2
+
+
+def stretch_per_arm(model: RockingModel, turn: Array) -> Array:
+    """Elongation of a tendon over its distance from the pivot, at |θ| in rad: 2 sin(|θ|/2), or |θ| if it is small."""
+    return 2.0 * np.sin(0.5 * turn) if model.complete else turn
+
+
+def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) -> Array:
+    """Total horizontal acceleration of each floor in m/s², shape (n, N_floors).
+
+    a + h θ'' + Σ Γ φ D''; in the complete models the second derivative of Eq. 3's horizontal coordinate.
+    """
+    layout = model.layout
+    rates = accelerations(model, states)
+    ground = states[:, GROUND, None]
+    bend = rates[:, :-1] @ floors.displacement.T  # u''
+    angular = rates[:, -1:]
+    if not model.complete:
+        return ground + bend + floors.heights * angular
+    rotation, spin = layout.of(states, layout.rotation)[:, None], layout.of(states, layout.spin)[:, None]
+    sine, cosine = np.sin(rotation), np.cos(rotation)
+    side = acting_side(states)
+    offset = (side * _by_side(side, *(model.properties.pivot(each).arm for each in (1, -1))))[:, None]
+    u = layout.displacements(states) @ floors.displacement.T
+    v = layout.velocities(states) @ floors.displacement.T
+    turning = angular * (offset * sine + floors.heights * cosine - u * sine) - 2.0 * spin * v * sine
+    centrifugal = spin**2 * (offset * cosine - floors.heights * sine - u * cosine)
+    return ground + bend * cosine + turning + centrifugal
+
+
+def _pivot_values(model: RockingModel) -> list[tuple[float, float]]:
+    right, left = (model.properties.pivot(side) for side in (1, -1))
+    return [(right.i_theta, left.i_theta), (right.arm, left.arm), (right.weight_moment, left.weight_moment)]
+
+
+def _by_side(side: Array, right: float, left: float) -> Array:
+    """The value of one pivot or the other, by the sign of a side or a rotation."""
+    return np.where(side < 0.0, left, right)

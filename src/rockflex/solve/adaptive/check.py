@@ -1,0 +1,62 @@
+"""The question before a step's continuous extension: whether an event or a new peak can hide inside the step.
+
+Every row is compared with the cubic through its values and slopes at both ends. A step that the error control accepts
+turns no mode by more than about a radian, over which a row strays from that cubic by a few hundredths of the cubic's
+own bend (for a harmonic of ω: (ωh)²/48); a fifth of the bend is allowed for.
+"""
+
+from rockflex._kernel import inlined_kernel
+from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
+from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
+from rockflex.solve.adaptive.tableau import LAST
+from rockflex.solve.layout import GUARD, Log, Span, System
+from rockflex.solve.peaks import raise_peaks, size_of
+
+__all__ = ["nothing_hides"]
+
+
+@inlined_kernel
+def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:
+    """True where the step just taken holds no event and no new peak but at its end, which is then noted."""
+    rows, side, step = system.plain_rows, system.phases[phase].side, span.length
+    n, modes = rows.shape[2] - 2, flow.field.modes.shape[1]
+    if flow.field.hysteretic:
+        first, last = room.at.branch * room.motion[modes], room.at.branch * room.vectors[TRIAL, modes]
+        before, after = room.at.branch * room.rates[0, modes], room.at.branch * room.rates[LAST, modes]
+        if stretch(first, last, step * before, step * after)[0] < 0.0:
+            return False
+    if (
+        side != 0.0
+        and flow.field.complete
+        and curves_hide(system, flow, phase, span, room.vectors[TRIAL], room.rates[LAST], log, room)
+    ):
+        return False
+    low_limit, high_limit = system.phases[phase].low, system.phases[phase].high
+    for f in range(log.peaks.size):
+        if is_curved(flow, f, side):
+            continue
+        first = rows[phase, f, n] * span.ground + rows[phase, f, n + 1]
+        before = rows[phase, f, n] * span.slope
+        last, after = first + before * step, before
+        for i in range(n):
+            weight = rows[phase, f, i]
+            if weight != 0.0:
+                first += weight * room.motion[i]
+                last += weight * room.vectors[TRIAL, i]
+                before += weight * room.rates[0, i]
+                after += weight * room.rates[LAST, i]
+        low, high = stretch(first, last, step * before, step * after)
+        if f != GUARD:
+            # At the ends a peak is no secret: it is noted below.
+            known = max(log.peaks[f], max(size_of(first, f, log), size_of(last, f, log)))
+            hidden = max(size_of(high, f, log), size_of(low, f, log)) > known
+        elif side == 0.0:
+            hidden = low < low_limit or high > high_limit
+        else:
+            hidden = min(low, first) <= low_limit or max(high, first) >= high_limit
+            hidden = hidden or max(high, -low) > max(log.peaks[GUARD], abs(first), abs(last))
+        if hidden:
+            return False
+        room.rows[AT_ENDS, f] = last
+    raise_peaks(room.rows[AT_ENDS], side, span.time + step, log)
+    return True

@@ -1,0 +1,38 @@
+"""The fast path of the integrated phases: step after step, sample after sample, as long as nothing can hide in them."""
+
+from rockflex._kernel import inlined_kernel
+from rockflex.solve.adaptive.check import nothing_hides
+from rockflex.solve.adaptive.layout import Flow, Stages
+from rockflex.solve.adaptive.step import FAILED, step_over, take_step
+from rockflex.solve.history import keep, room_left
+from rockflex.solve.layout import CARRY, LEFT, Array, Log, Progress, Span, System
+
+__all__ = ["step_through"]
+
+
+@inlined_kernel
+def step_through(system: System, flow: Flow, piece: Array, dt: float, at: Progress, log: Log, stages: Stages) -> bool:
+    """Carry the motion over samples from `at.index` on, of which `at.begun` s are done.
+
+    It stops before a step that needs a closer look, and returns True; or where the work or the room runs out, or at the
+    end of the piece.
+    """
+    rate, side = 1.0 / dt, system.phases[at.phase].side
+    for i in range(at.index, piece.size - 1):
+        slope = (piece[i + 1] - piece[i]) * rate
+        time, until = (at.offset + i) * dt, (at.offset + i + 1) * dt
+        while at.begun < dt:
+            if log.work[LEFT] < 0.0 or room_left(log) < 0:
+                return False
+            here, longest = piece[i] + slope * at.begun, dt - at.begun
+            step = take_step(flow, side, Span(time + at.begun, until, here, slope, longest), stages)
+            if step == FAILED:
+                return True
+            if not nothing_hides(system, flow, at.phase, Span(time + at.begun, until, here, slope, step), log, stages):
+                return True
+            step_over(stages)
+            at.begun = dt if step == longest else at.begun + step
+        log.work[LEFT] -= log.work[CARRY]
+        at.index, at.begun = i + 1, 0.0
+        keep(log, until, side, piece[i + 1], stages.motion)
+    return False

@@ -1,0 +1,160 @@
+"""What carries the motion over one stretch of time: a power series where the phase is linear, else a Runge-Kutta step.
+
+A carrier begins a stretch and gives the guard's polynomial over it, then raises the peaks up to where the stretch is
+cut, and puts the motion there. Models without a vector field (`steps` is None) are compiled with the series alone.
+"""
+
+import math
+
+from rockflex._kernel import inlined_kernel, kernel
+from rockflex.models import field_rates, inertia_left
+from rockflex.solve.adaptive.curves import is_curved, raise_curves
+from rockflex.solve.adaptive.layout import Flow, Integrator, Stages
+from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, step_over, take_step
+from rockflex.solve.adaptive.turning import BARELY
+from rockflex.solve.exact.series import advance, expand, row_series
+from rockflex.solve.exits import phase_exit
+from rockflex.solve.layout import (
+    CONSTANT,
+    DAMPING,
+    DOUBT,
+    DRAG,
+    DRIVE,
+    FLEXIBILITY,
+    GUARD,
+    LEVERAGE,
+    OMEGA2,
+    Array,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+)
+from rockflex.solve.peaks import raise_peak, raise_to
+
+__all__ = ["begin", "first_exit", "free_inertia", "move", "turning_rate"]
+
+
+@inlined_kernel
+def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) -> float:
+    """Begin a stretch over the `rest` of a linear phase's unit, or of the sample; return its length.
+
+    It is `step.FAILED` where no step is short enough.
+    """
+    if steps is None:
+        return rest.length
+    if system.phases[at.phase].linear:
+        return rest.length
+    return take_step(steps.flow, system.phases[at.phase].side, rest, steps.room)
+
+
+@inlined_kernel
+def first_exit(
+    system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion
+) -> tuple[float, int, float]:
+    """Where the phase ends within the stretch, by the polynomial of its guard: see `phase_exit`."""
+    if steps is None:
+        return exit_of_series(system, at, span, motion)
+    if system.phases[at.phase].linear:
+        return exit_of_series(system, at, span, motion)
+    return exit_of_step(system, steps.flow, at, span, steps.room)
+
+
+@inlined_kernel
+def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> tuple[float, int, float]:
+    expand(system, at.phase, motion, span, at.lift)
+    row_series(system, at.phase, GUARD, motion, span)
+    return phase_exit(system, at, motion.polys)
+
+
+@inlined_kernel
+def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Stages) -> tuple[float, int, float]:
+    p, polys = at.phase, room.polys
+    extend(flow, system.phases[p].side, span, room)
+    row_poly(system, p, GUARD, span, room)
+    if not math.isnan(at.lift):
+        # θ and θ' start from zero and θ'' from what the guard says, all of them exactly.
+        polys[GUARD, 0] = polys[GUARD, 1] = 0.0
+        polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
+    return phase_exit(system, at, polys)
+
+
+@inlined_kernel
+def move(
+    system: System,
+    steps: Integrator | None,
+    at: Progress,
+    span: Span,
+    stop: float,
+    turns: bool,
+    log: Log,
+    motion: Motion,
+) -> None:
+    """Put the motion at the fraction `stop` of the stretch, and raise the peaks up to there.
+
+    `turns`: a hysteretic spring turns there.
+    """
+    if steps is None or system.phases[at.phase].linear:
+        move_by_series(system, at, span, stop, log, motion)
+    else:
+        move_by_step(system, steps.flow, at, span, stop, log, steps.room)
+        if turns:
+            motion.state[system.layout.modes] = -steps.room.at.branch * BARELY
+
+
+@inlined_kernel
+def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
+    p = at.phase
+    if system.phases[p].side != 0.0:
+        raise_peak(motion.polys, GUARD, stop, span, log)
+    advance(system, motion, stop, span.length)
+    time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop
+    for f in range(1, log.peaks.size):
+        if at.fresh_rows or motion.flags[DOUBT, f]:
+            row_series(system, p, f, motion, span)
+            raise_peak(motion.polys, f, stop, span, log)
+        else:
+            raise_to(system, p, f, ground, time, log, motion)
+
+
+@inlined_kernel
+def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, room: Stages) -> None:
+    p = at.phase
+    side = system.phases[p].side
+    if side != 0.0:
+        raise_peak(room.polys, GUARD, stop, span, log)
+        if flow.field.complete:
+            raise_curves(system, flow, p, span, stop, log, room)
+    for f in range(1, log.peaks.size):
+        if not is_curved(flow, f, side):
+            row_poly(system, p, f, span, room)
+            raise_peak(room.polys, f, stop, span, log)
+    if stop == 1.0:
+        step_over(room)
+    else:
+        settle_on(stop, room)
+
+
+@kernel
+def free_inertia(system: System, steps: Integrator | None, phase: int, state: Array) -> float:
+    """What is left to the rotation while the modes move freely: I_θ - Σ m* h*², and what D adds in complete models."""
+    if steps is None:
+        return 1.0 / system.base[phase, FLEXIBILITY, 0, 0]
+    return inertia_left(steps.flow.field, system.phases[phase].side, state)
+
+
+@kernel
+def turning_rate(system: System, steps: Integrator | None, phase: int, ground: float, motion: Motion) -> float:
+    """θ'' in a phase that the motion may go on with, at θ = 0."""
+    if steps is None:
+        n = system.layout.modes
+        moment = system.push[phase, CONSTANT, 0] + system.push[phase, DRIVE, 0] * ground
+        moment -= system.base[phase, DAMPING, 0, 0] * motion.state[system.layout.spin]
+        for i in range(n):
+            restoring = system.modes[DRAG, i] * motion.state[n + i] + system.modes[OMEGA2, i] * motion.state[i]
+            moment += system.border[phase, 0, LEVERAGE, i] * restoring
+        return moment * system.base[phase, FLEXIBILITY, 0, 0]
+    forget(steps.room)
+    field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0])
+    return steps.room.rates[0, system.layout.spin]

@@ -1,0 +1,290 @@
+"""A model made ready for records, and the loop that carries a run through, slice by slice."""
+
+import math
+from contextlib import AbstractContextManager
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._computable import computable
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError, SolverError
+from rockflex._kernel import Entry
+from rockflex._shown import shown
+from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, NonlinearModel, Quantities, RockingModel, impact_of
+from rockflex.solve._pace import Pace, pace_of
+from rockflex.solve._solution import Solution
+from rockflex.solve._task import Task
+from rockflex.solve.adaptive.layout import Flow, Integrator, stages_of
+from rockflex.solve.history import MARGIN
+from rockflex.solve.interruption import check_interruption
+from rockflex.solve.layout import (
+    IMPACTS,
+    KEPT,
+    LEFT,
+    UPLIFTS,
+    Array,
+    Course,
+    Log,
+    Motion,
+    Progress,
+    System,
+    motion_of,
+    progress_at_start,
+)
+from rockflex.solve.phases import CompiledPhases
+from rockflex.solve.run import run
+from rockflex.solve.status import Status
+
+__all__ = ["Engine", "preparing"]
+
+QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
+MOST_SAMPLES = 2.0**62  # of free vibration: more than any machine will live to see
+EVENTS = 512  # states of a history between samples that there is room for at first
+SLICE = 0.1  # of work, in s, between two looks at whether the run is to stop
+TOLERANCE = 1e-10  # relative, of a step
+TREMOR = 0.01  # m/s²
+
+# One each, for each has its own set of types: the former knows no vector field, and is compiled without the integrator.
+_closed_form, _integrated = Entry(run), Entry(run)
+
+
+def preparing(model: RockingModel) -> AbstractContextManager[None]:
+    """Tell failures of arithmetic, met while an engine is made ready, in terms of the model's parameters."""
+    return computable(lambda: _described(model))
+
+
+def _described(model: RockingModel) -> str:
+    p = model.properties
+    modes = f"omega from {p.omega.min():.3g} to {p.omega.max():.3g} rad/s, " if p.n_modes else ""
+    return (
+        f"The motion of {model.label} with {modes}i_theta = {p.i_theta:.3g} kg m², l0r = {p.l0r:.3g} kg m, "
+        f"m_tot = {p.m_tot:.3g} kg and half_width = {p.half_width:.3g} m"
+    )
+
+
+class Engine:
+    """A model with its phases, compiled as they are met, for every time step met so far.
+
+    Parameters
+    ----------
+    model
+        The model's parameters.
+    quantities
+        What is asked of the motion: the peaks of these are kept.
+    tolerance
+        Relative error allowed in a step where the motion is integrated.
+    """
+
+    def __init__(self, model: RockingModel, quantities: Quantities, tolerance: float = TOLERANCE) -> None:
+        self.model = model
+        self._n_rows = 2 + len(quantities)  # and the guard, which is the rotation, and the loss of support
+        self._impact, self._failures = impact_of(model.law, model.properties)
+        with preparing(model):
+            self._phases = CompiledPhases(model, quantities)
+            # Of a model that is integrated all phases are few and cheap; else each waits until it is met.
+            for side in model.sides if model.integrated else (0,):
+                self._phases.place(model.start(side))
+            self._flow = _flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
+
+    @cached_property
+    def pace(self) -> Pace:
+        """What the work of its runs grows with."""
+        return pace_of(self.model, self._n_rows)
+
+    def task(
+        self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None = 0.0, *, history: bool = False
+    ) -> Task:
+        """What `run` is asked with these arguments, to estimate its work by."""
+        return Task(self.model, self.pace, acceleration, dt, free_vibration, history)
+
+    def run(
+        self,
+        acceleration: NDArray[np.float64],
+        dt: float,
+        *,
+        free_vibration: float | None = 0.0,
+        state: Array | None = None,
+        history: bool = False,
+        work_limit: float | None = None,
+        slice_of_work: float = SLICE,
+    ) -> Solution:
+        """Run one record, then `free_vibration` seconds (None: until settled), from a state [D.., D'.., θ, θ'].
+
+        `work_limit` is the most work in s, see `Pace`, that the run may be and do; None sets no limit. After every
+        `slice_of_work`, in s, the run may be interrupted: by Ctrl-C, or where `stopping_when` says so.
+
+        Raises
+        ------
+        WorkLimitError
+            If the run is estimated to be more work than that.
+        InputError
+            If the time step is absurd, or the user's impact law fails.
+        SolverError
+            If impacts accumulate without end, the motion does not settle, an impact would gain energy, or the run has
+            done all the work that it may.
+        RunStoppedError
+            If it was asked to stop.
+        """
+        task = self.task(acceleration, dt, free_vibration, history=history)
+        task.check(work_limit)
+        layout = self.model.layout
+        start = np.zeros(layout.size)
+        if state is not None:
+            start[: layout.core] = state
+        outward = float(start[layout.rotation] or start[layout.spin])
+        side = (outward > 0.0) - (outward < 0.0)
+        at = progress_at_start(self._place(side), stated=True)
+        course = self._course(acceleration, dt, free_vibration)
+        room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
+        log = Log(
+            np.zeros(self._n_rows),
+            np.zeros(self._n_rows),
+            np.zeros(4, dtype=np.int64),
+            np.concatenate(([0.0], self.pace.prices(history=history))),
+            np.zeros((room_for, HEADER + layout.size)),
+        )
+        log.peaks[-1] = -np.inf
+        left = math.inf if work_limit is None else work_limit
+        motion, steps = None, None
+        while True:
+            system = self._phases.known_system(dt)
+            if system is None:
+                with preparing(self.model):
+                    system = self._phases.system(dt, self.pace.fastest)
+            motion = self._room(system, start, motion)
+            steps = steps or self._integrator(start, log, at)
+            given = min(slice_of_work, left)
+            log.work[LEFT] = given
+            status = self._carry(system, steps, course, at, log, motion)
+            left -= given - float(log.work[LEFT])
+            if status == Status.LACKS_PHASE:
+                with preparing(self.model):
+                    self._phases.meet(int(at.phase), int(at.lacking))
+                if self._phases.dense:
+                    fastest = max(self.pace.fastest, self._phases.fastest)
+                    replace(task, pace=replace(self.pace, fastest=fastest, dense=True)).check(work_limit)
+            elif status != Status.PAUSED:
+                break
+            elif left < 0.0:
+                self._spent(at, dt, motion.state, task, work_limit)
+            elif history and log.tally[KEPT] > log.history.shape[0] - MARGIN:
+                task.check_room(2 * log.history.shape[0])
+                log = log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
+            check_interruption()
+        self._complain(status, at, dt, motion.state)
+        return self._solution(status, at, dt, log, history=history)
+
+    def _place(self, side: int) -> int:
+        """Place of the phase in which a run begins."""
+        key = self.model.start(side)
+        if self._phases.knows(key):
+            return self._phases.place(key)
+        with preparing(self.model):
+            return self._phases.place(key)
+
+    def _course(self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None) -> Course:
+        after = self._patience() if free_vibration is None else free_vibration
+        return Course(
+            record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),  # the type compiled for
+            quiet=QUIET,
+            dt=dt,
+            free=math.ceil(min(after / dt, MOST_SAMPLES) - 1e-9),
+            settle=free_vibration is None,
+        )
+
+    def _room(self, system: System, state: Array, motion: Motion | None) -> Motion:
+        """Room for the motion; where it was there before, with as many terms as the phases now need."""
+        terms = int(system.phases["terms"].max(initial=4))
+        if motion is None:
+            return motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
+        if motion.series.shape[1] >= terms:
+            return motion
+        return motion._replace(
+            series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))
+        )
+
+    def _integrator(self, state: Array, log: Log, at: Progress) -> Integrator | None:
+        if self._flow is None:
+            return None
+        return Integrator(self._flow, stages_of(state, self.model.layout.moving, self._n_rows, log.work, at))
+
+    def _carry(
+        self, system: System, steps: Integrator | None, course: Course, at: Progress, log: Log, motion: Motion
+    ) -> int:
+        carry = _closed_form if steps is None else _integrated
+        return carry(system, steps, self._impact, course, at, log, motion)
+
+    def _patience(self) -> float:
+        """Longest free vibration that is waited for, s."""
+        p = self.model.properties
+        slowest = float(p.omega.min(initial=math.inf))
+        return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
+
+    def _solution(self, status: int, at: Progress, dt: float, log: Log, *, history: bool) -> Solution:
+        overturned = status == Status.OVERTURNED
+        return Solution(
+            overturned=overturned,
+            settled=status == Status.SETTLED,
+            end_time=float(log.times[0]) if overturned else _samples(at) * dt,
+            peaks=log.peaks[:-1],
+            peak_times=log.times[:-1],
+            lost_support=float(log.peaks[-1]),
+            time_of_lost_support=float(log.times[-1]),
+            n_uplifts=int(log.tally[UPLIFTS]),
+            n_impacts=int(log.tally[IMPACTS]),
+            nodes=log.history[: log.tally[KEPT]] if history else None,
+        )
+
+    def _spent(self, at: Progress, dt: float, state: Array, task: Task, work_limit: float | None) -> None:
+        """Raise: the run has done all the work that it may."""
+        what, mend = task.stopped(_samples(at) * dt, work_limit)
+        self._raise(what, mend, state)
+
+    def _complain(self, status: int, at: Progress, dt: float, state: Array) -> None:
+        """Raise if the run could not be solved."""
+        if status >= 0 and np.isfinite(state[: self.model.layout.core]).all():
+            return
+        law = shown(self.model.law)
+        if Status(status) is Status.BROKEN:
+            failure = self._failures.pop()
+            message = f"{Status.BROKEN.what.format(law=law)}: {failure}"
+            raise InputError(message) from failure
+        ended = Status.INFINITE if status >= 0 else Status(status)
+        # A failure inside a sample is told with the sample's end.
+        time = (_samples(at) + (ended not in (Status.UNSETTLED, Status.INFINITE))) * dt
+        self._raise(ended.what.format(label=self.model.label, law=law, time=time), ended.mend, state)
+
+    def _raise(self, what: str, mend: str, state: Array) -> None:
+        values = ", ".join(f"{value:.6g}" for value in state[: self.model.layout.core])
+        message = f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}"
+        raise SolverError(message)
+
+
+def _samples(at: Progress) -> int:
+    """How many samples the run has come."""
+    return int(at.offset + at.index)
+
+
+def _flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) -> Flow:
+    """What the integrated phases of a model need beside their rows."""
+    own = VERTICAL if model.complete else LINEAR
+    kinds = quantities.kinds if model.complete else np.full(len(quantities), LINEAR, dtype=np.int64)
+    return Flow(
+        field=model.field(),
+        kinds=np.concatenate(([LINEAR], kinds, [own])).astype(np.int64),
+        levers=np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1, 2)))),
+        rest=model.properties.resting_reaction,
+        scale=_scale(model),
+        tolerance=tolerance,
+    )
+
+
+def _scale(model: RockingModel) -> Array:
+    """Sizes of D, D', θ, θ' and z below which errors do not matter: what a ground acceleration of `TREMOR` does."""
+    p = model.properties
+    rotation = TREMOR / GRAVITY * p.m_tot * p.half_width / p.l0r
+    fall = math.sqrt(p.l0r * GRAVITY / p.i_theta)
+    return np.concatenate((TREMOR / p.omega**2, TREMOR / p.omega, [rotation, rotation * fall, TREMOR / GRAVITY]))

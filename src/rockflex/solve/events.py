@@ -1,0 +1,227 @@
+"""The motion carried from event to event: the first root of a guard, a jump, and the phase that follows."""
+
+import numpy as np
+
+from rockflex._kernel import inlined_kernel, kernel
+from rockflex.models import LANDS, OVERTURNS, Impact, kinetic_energy, may_pass, stick, strike
+from rockflex.solve.adaptive.check import nothing_hides
+from rockflex.solve.adaptive.layout import Integrator
+from rockflex.solve.adaptive.step import FAILED, forget, step_over
+from rockflex.solve.adaptive.turning import turning
+from rockflex.solve.carrier import begin, first_exit, free_inertia, move, turning_rate
+from rockflex.solve.exits import INSIDE, LIFTED, PASSING, TOUCHED
+from rockflex.solve.history import keep, room_left
+from rockflex.solve.layout import (
+    BESIDE,
+    EVENT,
+    EVENTS,
+    FOLLOWS,
+    GUARD,
+    IMPACTS,
+    LEFT,
+    SERIES,
+    UPLIFTS,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+    unit_of,
+)
+from rockflex.solve.status import Status
+
+__all__ = ["CROSSED", "PAUSED", "cross", "enter", "start_crossing"]
+
+CROSSED = int(Status.ENDED)
+OVERTURNED, PAUSED, LACKS_PHASE = int(Status.OVERTURNED), int(Status.PAUSED), int(Status.LACKS_PHASE)
+BROKEN, CHATTER, GAINED, STALLED = (
+    int(each) for each in (Status.BROKEN, Status.CHATTER, Status.GAINED, Status.STALLED)
+)
+
+MOST_EVENTS = 20_000  # in one sample
+GAIN = 1e-9  # of the energy before an impact, that rounding may add
+SNAP = 1e-10  # of a unit: an event this close to its end is left to the next unit, which starts on it
+RESUME = 1e-7  # where contact is searched again after a guard that was touched but not passed
+FOLLOWING = 3  # `Progress.lacking`: first the places of `beside`, then those of `follows`
+
+
+@kernel
+def enter(system: System, at: Progress, phase: int) -> None:
+    """Go on in another phase from the present state; in a linear one the walk over the grid goes on at `at.place`."""
+    at.phase, at.tuned, at.stated, at.started = phase, False, True, False
+    levels = system.phases[phase].levels
+    at.place = min(int(at.begun / unit_of(system, levels)), (1 << levels) - 1)
+
+
+@kernel
+def start_crossing(at: Progress, fresh_rows: bool) -> None:
+    """Begin to cross event by event; with `fresh_rows` it is not known which rows may hide a peak."""
+    at.crossing, at.fresh_rows, at.onset, at.lift, at.resume = True, fresh_rows, INSIDE, np.nan, 0.0
+
+
+@kernel
+def beside(side: float) -> int:
+    """Place in `System.beside` of the phase with the base on a side."""
+    return 0 if side == 0.0 else (1 if side > 0.0 else 2)
+
+
+@kernel
+def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) -> int:
+    """Place of the phase that is needed after an event and was not met yet; -1 where none is lacking."""
+    p = at.phase
+    if event == LANDS:
+        for place in range(3):
+            needed = place == 0 or (may_pass(impact) and place != beside(system.phases[p].side))
+            if needed and system.links[p, BESIDE + place] < 0:
+                return place
+    elif event != OVERTURNS and system.links[p, FOLLOWS + bound] < 0:
+        return FOLLOWING + bound
+    return -1
+
+
+@inlined_kernel
+def cross(
+    system: System, steps: Integrator | None, impact: Impact, sample: Span, at: Progress, log: Log, motion: Motion
+) -> int:
+    """Carry the state on from `at.begun`, event by event, to a place on the grid or to the sample's end.
+
+    It ends on the grid where the phase is linear and nothing else is to happen up to there. Where it pauses, `at` holds
+    all that it must know to go on.
+    """
+    while at.begun < sample.length:
+        if log.work[LEFT] < 0.0 or room_left(log) < 0:
+            return PAUSED
+        log.work[LEFT] -= log.work[SERIES]
+        p = at.phase
+        side, linear = system.phases[p].side, system.phases[p].linear
+        here = sample.ground + sample.slope * at.begun
+        now = min(sample.time + at.begun, sample.until)
+        longest, unit = sample.length - at.begun, sample.length
+        if linear:
+            unit = float(unit_of(system, system.phases[p].levels))
+            longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
+        length = begin(system, steps, at, Span(now, sample.until, here, sample.slope, longest))
+        if length == FAILED:
+            return STALLED
+        span = Span(now, sample.until, here, sample.slope, length)
+        whole = length == longest
+        if (
+            steps is not None
+            and not linear
+            and at.onset == INSIDE
+            and nothing_hides(system, steps.flow, p, span, log, steps.room)
+        ):
+            step_over(steps.room)
+            at.begun = sample.length if whole else at.begun + length
+            continue
+        stop, bound, excess = first_exit(system, steps, at, span, motion)
+        event = system.links[p, EVENT + bound]
+        if stop < 0.0:
+            at.lacking = lacks(system, at, event, bound, impact)
+            if at.lacking >= 0:
+                return LACKS_PHASE
+            if side != 0.0:
+                log.tally[EVENTS] += 1
+                enter(system, at, system.links[p, BESIDE + 0])
+                at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
+            else:
+                enter(system, at, system.links[p, FOLLOWS + bound])
+                inertia = free_inertia(system, steps, at.phase, motion.state)
+                at.onset, at.lift = LIFTED, system.phases[at.phase].side * excess / inertia
+            at.fresh_rows = True
+            if steps is not None:
+                forget(steps.room)
+            continue
+        tipped = event == OVERTURNS and stop < 1.0
+        ends = not tipped and stop > 1.0 - SNAP * (unit / length if linear else 1.0)
+        if ends:
+            stop = 1.0
+        turns = False
+        if steps is not None and steps.flow.field.hysteretic:
+            turn = turning(steps.flow, steps.room)
+            turns = turn < stop
+            if turns:
+                stop, ends, tipped = turn, True, False
+        if not ends:
+            at.lacking = lacks(system, at, event, bound, impact)
+            if at.lacking >= 0:
+                return LACKS_PHASE
+        if at.onset >= LIFTED:
+            log.tally[UPLIFTS] += 1
+            log.tally[EVENTS] += 1
+            keep(log, now, 0.0, here, motion.state)
+            keep(log, now, side, here, motion.state)
+        move(system, steps, at, span, stop, turns, log, motion)
+        at.begun = sample.length if whole and stop == 1.0 and not linear else at.begun + stop * length
+        at.onset, at.lift = INSIDE, np.nan
+        if ends:
+            at.resume = 0.0
+            if linear:
+                at.place += 1
+                grid = 1 << system.phases[p].levels
+                at.begun = sample.length if at.place == grid else unit * at.place
+                break
+            continue
+        here = sample.ground + sample.slope * at.begun
+        now = min(sample.time + at.begun, sample.until)
+        if tipped:
+            limit = system.phases[p].high if side > 0.0 else system.phases[p].low
+            log.peaks[GUARD], log.times[GUARD] = abs(limit), now
+            motion.state[system.layout.rotation] = limit
+            keep(log, now, side, here, motion.state)
+            return OVERTURNED
+        motion.state[system.layout.rotation] = 0.0
+        if event == LANDS:
+            keep(log, now, side, here, motion.state)
+            status, next_side = land(system, steps, impact, p, here, motion)
+            if status != CROSSED:
+                return status
+            log.tally[EVENTS] += 1
+            log.tally[IMPACTS] += 1
+            keep(log, now, next_side, here, motion.state)
+            enter(system, at, system.links[p, BESIDE + beside(next_side)])
+            at.onset = PASSING if next_side != 0.0 else INSIDE
+        else:
+            motion.state[system.layout.spin] = 0.0
+            enter(system, at, system.links[p, FOLLOWS + bound])
+            inertia = free_inertia(system, steps, at.phase, motion.state)
+            at.lift = system.phases[at.phase].side * excess / inertia
+            at.onset = LIFTED if excess > 0.0 else TOUCHED
+        at.resume = 0.0
+        at.fresh_rows = True
+        if steps is not None:
+            forget(steps.room)
+        if log.tally[EVENTS] > MOST_EVENTS:
+            return CHATTER
+    at.crossing = False
+    return CROSSED
+
+
+@kernel
+def land(
+    system: System, steps: Integrator | None, impact: Impact, phase: int, ground: float, motion: Motion
+) -> tuple[int, float]:
+    """Apply the impact law; return status and the side to which the rotation goes on, 0 for contact.
+
+    It stays in contact once its next excursion would be too short to count.
+    """
+    state, spin_place = motion.state, system.layout.spin
+    before = kinetic_energy(impact, free_inertia(system, steps, phase, state), state)
+    if not strike(impact, state):
+        return BROKEN, 0.0
+    spin = state[spin_place]
+    if spin == 0.0:
+        after = kinetic_energy(impact, 0.0, state)
+        return (GAINED if after > before * (1.0 + GAIN) else CROSSED), 0.0
+    next_side = 1.0 if spin > 0.0 else -1.0
+    following = system.links[phase, BESIDE + beside(next_side)]
+    after = kinetic_energy(impact, free_inertia(system, steps, following, state), state)
+    if after > before * (1.0 + GAIN):
+        return GAINED, next_side
+    back = -next_side * turning_rate(system, steps, following, ground, motion)
+    if 2.0 * abs(spin) < back * impact.shortest:
+        stick(impact, state)
+        if kinetic_energy(impact, 0.0, state) > before * (1.0 + GAIN):
+            return GAINED, 0.0
+        return CROSSED, 0.0
+    return CROSSED, next_side

@@ -1,0 +1,76 @@
+"""The motion between the states of a history, in closed form where a phase is linear."""
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from rockflex.models import GROUND, HEADER, SIDE, TIME, LinearModel, RockingModel
+from rockflex.solve.exact.basis import Basis, basis_of
+from rockflex.solve.exact.tables import propagate
+from rockflex.solve.layout import Array
+
+__all__ = ["ClosedForm"]
+
+
+class ClosedForm:
+    """The linear phases of a model, uncoupled.
+
+    Parameters
+    ----------
+    model
+        The model.
+    """
+
+    def __init__(self, model: RockingModel) -> None:
+        self._model = model
+
+    @cached_property
+    def _bases(self) -> dict[int, Basis]:
+        phases = {side: self._model.phase(self._model.start(side)) for side in self._model.sides}
+        return {
+            side: basis_of(self._model, phase.arrow, self._model.accelerations(phase.key))
+            for side, phase in phases.items()
+            if phase.arrow is not None
+        }
+
+    @cached_property
+    def fastest(self) -> float:
+        """Largest eigenvalue magnitude of all phases, rad/s; of those that are integrated, for small rotations."""
+        of_bases = [basis.fastest for basis in self._bases.values()]
+        integrated = [side for side in self._model.sides if side not in self._bases]
+        return max([*of_bases, *(_fastest(self._model.linear, side) for side in integrated)])
+
+    def between(self, states: Array, fraction: float) -> Array:
+        """States at one fraction of the way from every kept state to the next, shape (n - 1, 2N + 2).
+
+        Where the phase is not linear they are those of the kept state.
+        """
+        steps = np.diff(states[:, TIME])
+        # Samples' distances differ by the rounding of their times; alike, they share one propagator.
+        steps = np.round(steps, 12 - math.ceil(math.log10(max(float(states[-1, TIME]), 1.0))))
+        safe = np.where(steps > 0.0, steps, 1.0)
+        slopes = np.where(steps > 0.0, np.diff(states[:, GROUND]) / safe, 0.0)
+        start = np.column_stack((states[:-1, GROUND], slopes, np.ones(steps.size)))
+        end = start.copy()
+        end[:, 0] += fraction * steps * slopes
+        moved = states[:-1, HEADER:].copy()
+        for side, basis in self._bases.items():
+            chosen = states[:-1, SIDE] == side
+            if chosen.any():
+                forced = basis.steady @ basis.inverse.T
+                w = moved[chosen] @ basis.inverse.T - start[chosen] @ forced
+                carried = propagate(basis, w, fraction * steps[chosen]) + end[chosen] @ forced
+                moved[chosen] = carried @ basis.basis.T
+        return moved
+
+
+def _fastest(model: LinearModel, side: int) -> float:
+    """Largest eigenvalue magnitude of one phase; there is one even where tendons balance the weight."""
+    size, layout = model.layout.core, model.layout
+    places = [*range(layout.modes), layout.rotation]
+    speeds = [*range(layout.modes, 2 * layout.modes), layout.spin]
+    matrix = np.zeros((size, size))
+    matrix[places, speeds] = 1.0
+    matrix[speeds] = model.accelerations(model.start(side))[:, :size]
+    return float(np.abs(np.linalg.eigvals(matrix)).max())

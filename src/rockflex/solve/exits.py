@@ -1,0 +1,93 @@
+"""Where a phase ends within a stretch of time: the first root of its guard's polynomial, over [0, 1]."""
+
+import numpy as np
+
+from rockflex._kernel import kernel
+from rockflex.solve.layout import GUARD, Array, Progress, System
+from rockflex.solve.polynomials import evaluate, first_descent
+
+__all__ = ["BEFORE", "HIGH", "INSIDE", "LIFTED", "LOW", "PASSING", "TOUCHED", "phase_exit"]
+
+LOW, HIGH = 0, 1  # the limits of a guard
+BEFORE = -1.0  # the phase was over before it began
+
+# How a rotation that starts within the stretch leaves zero: the order of its first term there.
+INSIDE, PASSING, LIFTED, TOUCHED = 0, 1, 2, 3
+
+
+@kernel
+def phase_exit(system: System, at: Progress, polys: Array) -> tuple[float, int, float]:
+    """Where the guard first passes a limit, which one, and by how much it then lies beyond it.
+
+    The place is inf where it passes none. It is `BEFORE` where a moment in contact is beyond a limit to begin with, or
+    where a rotation never left zero.
+    """
+    p = at.phase
+    side, low, high = system.phases[p].side, system.phases[p].low, system.phases[p].high
+    if side != 0.0:
+        inner = LOW if side > 0.0 else HIGH
+        lands = landing(polys, side, at.onset)
+        if lands < 0.0:
+            return BEFORE, inner, 0.0
+        tips = overturning(polys, side, high if side > 0.0 else -low)
+        if tips < lands and tips < 1.0:
+            return tips, 1 - inner, 0.0
+        return lands, inner, 0.0
+    if at.resume == 0.0:
+        excess = max(polys[GUARD, 0] - high, low - polys[GUARD, 0])
+        if excess > 0.0:
+            return BEFORE, (HIGH if polys[GUARD, 0] > high else LOW), excess
+    stop, bound = band_exit(polys, low, high, at.resume)
+    excess = 0.0
+    if at.resume > 0.0 and stop == at.resume:
+        value = evaluate(polys, GUARD, stop)[0]
+        excess = max(value - high, low - value, 0.0)
+    return stop, bound, excess
+
+
+@kernel
+def band_exit(polys: Array, low: float, high: float, start: float) -> tuple[float, int]:
+    """Where the guard reaches one of two limits (Eq. 24), and which."""
+    work = polys.shape[0] - 1
+    exit_at, exit_bound = np.inf, LOW
+    play = 0.0
+    for k in range(1, polys.shape[1]):
+        play += abs(polys[GUARD, k])
+    for bound in range(2):
+        sign = 1.0 if bound == LOW else -1.0
+        limit = low if bound == LOW else high
+        if sign * (polys[GUARD, 0] - limit) > play:
+            continue
+        for k in range(polys.shape[1]):
+            polys[work, k] = sign * polys[GUARD, k]
+        polys[work, 0] -= sign * limit
+        u = first_descent(polys, work, start, 1.0)
+        if u < exit_at:
+            exit_at, exit_bound = u, bound
+    return exit_at, exit_bound
+
+
+@kernel
+def landing(polys: Array, side: float, zeros: int) -> float:
+    """Where the rotation returns to zero; `BEFORE` where it never left. Its `zeros` at 0 are divided out."""
+    work, terms = polys.shape[0] - 1, polys.shape[1]
+    for k in range(terms):
+        polys[work, k] = side * polys[GUARD, k + zeros] if k + zeros < terms else 0.0
+    if zeros > 0 and polys[work, 0] <= 0.0:
+        return BEFORE
+    if polys[work, 0] < 0.0:
+        polys[work, 0] = 0.0
+    return first_descent(polys, work, 0.0, 1.0)
+
+
+@kernel
+def overturning(polys: Array, side: float, limit: float) -> float:
+    """Where the rotation reaches its limit, a quarter turn; inf where it does not."""
+    work, reach = polys.shape[0] - 1, 0.0
+    for k in range(polys.shape[1]):
+        reach += abs(polys[GUARD, k])
+        polys[work, k] = -side * polys[GUARD, k]
+    if reach < limit:
+        return np.inf
+    polys[work, 0] += limit
+    return first_descent(polys, work, 0.0, 1.0)

@@ -1,0 +1,31 @@
+"""The states of a history: every sample, and both sides of every jump."""
+
+from rockflex._kernel import kernel
+from rockflex.models import GROUND, HEADER, SIDE, TIME
+from rockflex.solve.layout import KEPT, Array, Log
+
+__all__ = ["MARGIN", "keep", "room_left"]
+
+MARGIN = 8  # states that a stretch between two pauses may add, at most
+
+
+@kernel
+def keep(log: Log, time: float, side: float, ground: float, state: Array) -> None:
+    """Add a state to the history, where there is one."""
+    if log.history.shape[0] == 0:
+        return
+    k = log.tally[KEPT]
+    log.history[k, TIME] = time
+    log.history[k, SIDE] = side
+    log.history[k, GROUND] = ground
+    for i in range(state.size):
+        log.history[k, HEADER + i] = state[i]
+    log.tally[KEPT] = k + 1
+
+
+@kernel
+def room_left(log: Log) -> int:
+    """How many states may still be kept before the history must grow."""
+    if log.history.shape[0] == 0:
+        return MARGIN
+    return log.history.shape[0] - log.tally[KEPT] - MARGIN

@@ -1,0 +1,49 @@
+"""Stopping runs from outside: whoever started them can ask for it, and they end within a slice of their work."""
+
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+__all__ = ["RunStoppedError", "asked_to_stop", "check_interruption", "stopping_when"]
+
+_ASKED: ContextVar[Callable[[], bool] | None] = ContextVar("asked", default=None)
+
+
+class RunStoppedError(Exception):
+    """A run that was stopped because it was asked to: no failure of the model, and no result."""
+
+
+@contextmanager
+def stopping_when(asked: Callable[[], bool]) -> Generator[None]:
+    """Stop the runs within this context, in this thread, as soon as `asked()` is true.
+
+    `asked` is called between the slices of a run, some ten times a second; for example an event's ``is_set``.
+    """
+    token = _ASKED.set(asked)
+    try:
+        yield
+    finally:
+        _ASKED.reset(token)
+
+
+def asked_to_stop() -> Callable[[], bool]:
+    """Return the question that the runs of this thread are stopped by, for those that it starts in other threads."""
+    return _ASKED.get() or _never
+
+
+def _never() -> bool:
+    return False
+
+
+def check_interruption() -> None:
+    """Check whether the present run was asked to stop.
+
+    Raises
+    ------
+    RunStoppedError
+        If it was.
+    """
+    asked = _ASKED.get()
+    if asked is not None and asked():
+        message = "The run was stopped before its end."
+        raise RunStoppedError(message)

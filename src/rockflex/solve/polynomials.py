@@ -1,0 +1,87 @@
+"""Polynomials as the carriers make them, one a row: their values, and their first root on an interval."""
+
+import math
+
+import numpy as np
+
+from rockflex._kernel import kernel
+from rockflex.solve.layout import Array
+
+__all__ = ["bend", "evaluate", "first_descent"]
+
+SHIFT = 40  # steps after which a polynomial is developed anew
+MOST_STEPS = 10_000  # a few do; only a root touched to a high order takes more, and then this close is close enough
+
+
+@kernel
+def evaluate(polys: Array, row: int, u: float) -> tuple[float, float]:
+    """Value and derivative of the polynomial `polys[row]` at `u` (Horner)."""
+    value = polys[row, polys.shape[1] - 1]
+    slope = 0.0
+    for k in range(polys.shape[1] - 2, -1, -1):
+        slope = slope * u + value
+        value = value * u + polys[row, k]
+    return value, slope
+
+
+@kernel
+def bend(polys: Array, row: int, u: float) -> float:
+    """Bound of the second derivative's magnitude over [0, u]."""
+    total = 0.0
+    for k in range(polys.shape[1] - 1, 1, -1):
+        total = total * u + k * (k - 1.0) * abs(polys[row, k])
+    return total
+
+
+@kernel
+def rootless(value: float, slope: float, curvature: float) -> float:
+    """Length from a point on over which a function, not negative there, cannot fall below zero."""
+    root = math.sqrt(max(slope * slope + 2.0 * curvature * value, 0.0))
+    if slope < 0.0:
+        return 2.0 * value / (root - slope)
+    return (slope + root) / curvature if curvature > 0.0 else np.inf
+
+
+@kernel
+def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
+    """First point of [start, stop] where a polynomial, not negative at `start`, falls to zero; inf if none.
+
+    Each step is the longest over which the bound of the second derivative forbids a root. Near a simple root
+    that is Newton's step, always from the safe side, so no root can be passed over. Where that is slow, roots or turns
+    crowd ahead, and the bound has lost touch with the polynomial: `polys[row]` is then developed anew about the point
+    reached.
+    """
+    curvature = bend(polys, row, stop)
+    base, u = 0.0, start
+    for count in range(1, MOST_STEPS + 1):
+        value, slope = evaluate(polys, row, u)
+        if value <= 0.0 and slope <= 0.0:
+            return base + u
+        step = rootless(value, slope, curvature)
+        if u + step >= stop:
+            return np.inf
+        # Where a polynomial is flat at first, the bound over what lies just ahead is much the lesser one.
+        ahead = min(max(2.0 * u, u + 8.0 * step), stop)
+        near = rootless(value, slope, bend(polys, row, ahead))
+        if u + near >= stop and ahead == stop:
+            return np.inf
+        step = max(step, min(near, ahead - u))
+        if step <= 2e-16:
+            return base + u
+        u += step
+        if count % SHIFT == 0:
+            develop_about(polys, row, u)
+            base += u
+            stop -= u
+            u = 0.0
+            curvature = bend(polys, row, stop)
+    return base + u
+
+
+@kernel
+def develop_about(polys: Array, row: int, u: float) -> None:
+    """Shift the polynomial's origin to `u`, in place."""
+    last = polys.shape[1] - 1
+    for k in range(last):
+        for j in range(last - 1, k - 1, -1):
+            polys[row, j] += u * polys[row, j + 1]

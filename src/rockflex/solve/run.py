@@ -1,0 +1,143 @@
+"""One run: the record, then free vibration for as long as it is asked for, or until nothing more can happen.
+
+The one event loop. In each phase the motion is carried over whole samples as long as nothing can hide in them; a sample
+that may hide something is walked on a grid; and a step of that in which a guard may be passed is crossed event by
+event. The kernel returns wherever its slice of work ends, and when called again goes on there, bit for bit.
+"""
+
+import math
+
+from rockflex._kernel import inlined_kernel, kernel, python_kernel
+from rockflex.models import Impact
+from rockflex.solve.adaptive.curves import values_of_rows
+from rockflex.solve.adaptive.layout import TOLD, Integrator
+from rockflex.solve.adaptive.step import forget
+from rockflex.solve.adaptive.steps import step_through
+from rockflex.solve.events import CROSSED, PAUSED
+from rockflex.solve.exact.march import march, to_coordinates, to_state
+from rockflex.solve.exact.probe import NOTHING
+from rockflex.solve.history import MARGIN, keep, room_left
+from rockflex.solve.layout import (
+    CARRY,
+    EVENTS,
+    GUARD,
+    LEFT,
+    NOW,
+    VALUES,
+    Array,
+    Course,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+)
+from rockflex.solve.peaks import raise_row, raise_to_state
+from rockflex.solve.sample import cross_sample
+from rockflex.solve.status import Status
+
+__all__ = ["run"]
+
+ENDED, SETTLED, UNSETTLED = int(Status.ENDED), int(Status.SETTLED), int(Status.UNSETTLED)
+
+BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: a stretch begins; over whole samples; a closer look at one
+BLOCK = 4096  # samples that are carried at once, at most
+
+
+@python_kernel
+def run(
+    system: System, steps: Integrator | None, impact: Impact, course: Course, at: Progress, log: Log, motion: Motion
+) -> int:
+    """Carry the motion on from where it is; return how the run ended, or why it stops in between."""
+    rate = 1.0 / course.dt
+    while True:
+        remaining = course.free + course.record.size - 1 - at.offset
+        piece = course.record
+        if at.offset > 0:
+            if remaining == 0:
+                return UNSETTLED if course.settle else ENDED
+            piece = course.quiet[: min(course.quiet.size - 1, remaining) + 1]
+        if at.stage == BEGINNING:
+            if begin_piece(system, steps, course, piece[0], at, log, motion):
+                return SETTLED
+            at.stage = CARRYING
+        last = piece.size - 1
+        while at.index < last:
+            if at.stage == CARRYING:
+                if log.work[LEFT] < 0.0 or room_left(log) < 0:
+                    return PAUSED
+                if not carry(system, steps, piece, course.dt, at, log, motion):
+                    continue
+                # In a linear phase the whole sample has been examined.
+                at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.phases[at.phase].linear
+                at.slope = (piece[at.index + 1] - piece[at.index]) * rate
+                log.tally[EVENTS] = 0
+            i = at.index
+            time, until = (at.offset + i) * course.dt, (at.offset + i + 1) * course.dt
+            sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, course.dt)
+            status = cross_sample(system, steps, impact, sample, piece[i + 1], at, log, motion)
+            if status != CROSSED:
+                return status
+            log.work[LEFT] -= log.work[CARRY]
+            at.index, at.stage, at.begun, at.started = i + 1, CARRYING, 0.0, False
+        if system.phases[at.phase].linear and not at.stated:
+            to_state(system, at, piece[piece.size - 1], motion)
+            at.stated = True
+        at.last = piece[piece.size - 1]
+        at.offset += piece.size - 1
+        at.index, at.stage = 0, BEGINNING
+
+
+@kernel
+def begin_piece(
+    system: System, steps: Integrator | None, course: Course, ground: float, at: Progress, log: Log, motion: Motion
+) -> bool:
+    """Prepare for a stretch of acceleration; True where a run that is to settle has done so."""
+    time, side = at.offset * course.dt, system.phases[at.phase].side
+    at.started = False
+    if system.phases[at.phase].linear:
+        at.slope = 0.0
+        to_coordinates(system, at, ground, motion)
+        at.tuned = True
+        if at.offset > 0 and course.settle and side == 0.0 and settled(system, at, log, motion):
+            return True
+    if ground != at.last:  # the start, or a jump of the acceleration at the record's end
+        keep(log, time, side, ground, motion.state)
+        if steps is None:
+            raise_to_state(system, at.phase, ground, time, log, motion)
+        else:
+            forget(steps.room)
+            values_of_rows(system, steps.flow, at.phase, ground, steps.room)
+            for f in range(GUARD if side != 0.0 else 1, log.peaks.size):
+                raise_row(f, steps.room.rows[TOLD, f], time, log)
+    return False
+
+
+@kernel
+def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
+    """True where free vibration in contact can neither lift the base again nor raise a peak."""
+    p, pairs = at.phase, motion.norms.size
+    for f in range(log.peaks.size):
+        bound = 0.0
+        for k in range(pairs):
+            size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
+            bound += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
+        if bound > (min(system.phases[p].high, -system.phases[p].low) if f == GUARD else log.peaks[f]):
+            return False
+    return True
+
+
+@inlined_kernel
+def carry(
+    system: System, steps: Integrator | None, piece: Array, dt: float, at: Progress, log: Log, motion: Motion
+) -> bool:
+    """Carry the motion over whole samples; True where the next one needs a closer look."""
+    if steps is not None and not system.phases[at.phase].linear:
+        return step_through(system, steps.flow, piece, dt, at, log, steps.room)
+    first = at.index
+    most = BLOCK
+    if log.history.shape[0] > 0:
+        most = min(most, room_left(log) + MARGIN // 2)
+    march(system, piece, dt, most, at, log, motion)
+    log.work[LEFT] -= (at.index - first) * log.work[CARRY]
+    return at.finding != NOTHING

@@ -1,0 +1,88 @@
+"""The closer look: one sample walked on a dyadic grid, in the largest steps in which nothing can hide."""
+
+from rockflex._kernel import inlined_kernel
+from rockflex.models import Impact
+from rockflex.solve.adaptive.layout import Integrator
+from rockflex.solve.events import CROSSED, PAUSED, cross, start_crossing
+from rockflex.solve.exact.grid import largest_step
+from rockflex.solve.exact.march import to_coordinates, to_state
+from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe, set_limits
+from rockflex.solve.exact.survey import survey
+from rockflex.solve.history import keep
+from rockflex.solve.layout import ENDS, FINAL, LEFT, LOOK, NOW, Log, Motion, Progress, Span, System, unit_of
+from rockflex.solve.peaks import raise_peaks
+
+__all__ = ["cross_sample"]
+
+
+@inlined_kernel
+def cross_sample(
+    system: System,
+    steps: Integrator | None,
+    impact: Impact,
+    sample: Span,
+    last: float,
+    at: Progress,
+    log: Log,
+    motion: Motion,
+) -> int:
+    """Carry the motion over the rest of a sample, at whose end the ground's acceleration becomes `last`.
+
+    In a linear phase `motion.w` holds the motion at `at.place` of the grid. A state that is `at.stated` is as true as
+    `w` or truer: a rotation that has just left zero is far below the rounding of a modal sum. The walk depends on the
+    guard alone, not on which peaks are asked for, so neither does the motion.
+    """
+    while at.begun < sample.length:
+        p = at.phase
+        if at.crossing or not system.phases[p].linear:
+            if not at.crossing:
+                start_crossing(at, True)
+            status = cross(system, steps, impact, sample, at, log, motion)
+            if status != CROSSED:
+                return status
+            at.level, at.probed = largest_step(at.place, system.phases[at.phase].levels), False
+            continue
+        levels = system.phases[p].levels
+        grid, stride = 1 << levels, 1 << (levels - at.level)
+        unit = unit_of(system, levels)
+        here = sample.ground + sample.slope * unit * at.place
+        now = sample.time + unit * at.place
+        step = Span(now, sample.until, here, sample.slope, unit * stride)
+        if not at.searching:
+            if log.work[LEFT] < 0.0:
+                return PAUSED
+            log.work[LEFT] -= log.work[LOOK]
+            if not at.probed:
+                if not at.tuned:
+                    to_coordinates(system, at, here, motion)
+                    at.tuned = True
+                set_limits(system, p, log, motion)
+                examine(system, p, at.level, here, here + sample.slope * unit * stride, sample.slope, motion)
+                at.finding = probe(system, p, at.level, sample.slope, motion)
+            at.probed = False
+            if at.finding == EVENT and at.level < levels:
+                at.level += 1
+                continue
+            if at.finding == EVENT:
+                if not at.stated:
+                    to_state(system, at, here, motion)
+                at.begun, at.stated, at.tuned = unit * at.place, True, False
+                start_crossing(at, False)
+                continue
+            raise_peaks(motion.values[FINAL], system.phases[p].side, now + unit * stride, log)
+        if at.finding == PEAK and not survey(system, at, step, log, motion):
+            return PAUSED
+        for k in range(motion.w.shape[1]):
+            motion.w[NOW, k] = motion.w[ENDS, k]
+        at.stated = False
+        at.place += stride
+        at.begun = sample.length if at.place == grid else unit * at.place
+        at.level = largest_step(at.place, levels)
+    if system.phases[at.phase].linear:
+        if not at.tuned:
+            to_coordinates(system, at, last, motion)
+            at.tuned = True
+        if not at.stated and log.history.shape[0] > 0:
+            to_state(system, at, last, motion)
+    keep(log, sample.until, system.phases[at.phase].side, last, motion.state)
+    return CROSSED

@@ -1,0 +1,50 @@
+"""How a run ends, or why it stops in between: every status is its own message."""
+
+from enum import IntEnum
+
+__all__ = ["Status"]
+
+
+class Status(IntEnum):
+    """What the kernels return; those below zero are failures, with what is said of them and how to mend it.
+
+    The texts know `label` of the model, `law` of its impacts, and `time` in s.
+    """
+
+    what: str
+    mend: str
+
+    def __new__(cls, value: int, what: str = "", mend: str = "") -> "Status":
+        """Make a member that is a number to the kernels."""
+        member = int.__new__(cls, value)
+        member._value_ = value
+        member.what, member.mend = what, mend
+        return member
+
+    ENDED = 0
+    OVERTURNED = 1
+    SETTLED = 2
+    PAUSED = 3  # the slice of work is used up, or the history is full: to be gone on with
+    LACKS_PHASE = 4  # a phase that was not met before comes next: to be gone on with
+    BROKEN = -1, "The impact law {law} failed", ""
+    CHATTER = (
+        -2,
+        "The impacts of {label} accumulate without end in the sample before {time:.6g} s.",
+        "Check the model's parameters, and refine the record.",
+    )
+    GAINED = (
+        -3,
+        "The impact law {law} returns energy in the sample before {time:.6g} s.",
+        "A law can only lose energy: mend its `after`, or lower its restitution.",
+    )
+    STALLED = (
+        -4,
+        "The motion of {label} cannot be followed in the sample before {time:.6g} s: no step is short enough.",
+        "Check the parameters.",
+    )
+    UNSETTLED = (
+        -5,
+        "The free vibration of {label} has not settled {time:.6g} s after the start.",
+        "Give free_vibration in seconds, or more damping.",
+    )
+    INFINITE = -6, "The motion of {label} is not finite at {time:.6g} s.", "Check the parameters."

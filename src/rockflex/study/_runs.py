@@ -1,0 +1,26 @@
+"""Runs on threads, which stop within a slice of their work once nobody waits for them any more."""
+
+from collections.abc import Callable, Iterable, Iterator
+from threading import Event
+from typing import SupportsIndex, TypeVar
+
+from rockflex.parallel import map_threads
+from rockflex.solve import asked_to_stop, stopping_when
+
+__all__ = ["map_runs"]
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+
+def map_runs(
+    function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
+) -> Iterator[Result]:
+    """Map over tasks as `map_threads` does; the runs in them end when the map is left, as by Ctrl-C."""
+    left, asked = Event(), asked_to_stop()
+
+    def guarded(task: Task) -> Result:
+        with stopping_when(lambda: left.is_set() or asked()):
+            return function(task)
+
+    return map_threads(guarded, tasks, workers, left.set)

@@ -1,0 +1,93 @@
+"""Runs end within a moment once nobody waits for them: alone, on threads, and behind the page."""
+
+import asyncio
+import os
+import signal
+from threading import Event, Timer
+from time import monotonic
+
+import numpy as np
+import pytest
+
+from rockflex import Frame, GroundMotion, simulate, simulate_many
+from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.study._runs import map_runs
+from rockflex.web._app import Server
+from rockflex.web._refusal import Refusal
+
+FRAME = Frame(
+    n_stories=3,
+    story_height=3.0,
+    story_mass=40e3,
+    base_mass=40e3,
+    stiffness_ratio=np.inf,
+    period=0.8,
+    aspect_ratio=6.0,
+    damping_ratio=0.02,
+)
+LONG = GroundMotion(1.2 * np.random.default_rng(0).standard_normal(12_000_000), 0.005, name="long")  # minutes of work
+ASKED, SOON = 0.3, 20.0  # s: when a run is asked to stop, and when it has, on the slowest machine
+
+
+def long_run():
+    return simulate(FRAME, LONG, "2DOF-C", "peaks", work_limit=None)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled():
+    """Compiling is not what is measured."""
+    simulate(FRAME, GroundMotion(LONG.acceleration[:200], LONG.dt), "2DOF-C", "peaks")
+
+
+def test_a_run_that_is_asked_to_stop():
+    begun = monotonic()
+    expected = pytest.raises(RunStoppedError, match=r"^The run was stopped before its end\.$")
+    with expected, stopping_when(lambda: monotonic() - begun > ASKED):
+        long_run()
+    assert monotonic() - begun < SOON
+
+
+@pytest.fixture
+def own_handler():
+    """Python's own answer to Ctrl-C, whatever tests before have put in its place."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("own_handler")
+@pytest.mark.parametrize("run", [long_run, lambda: simulate_many([FRAME], [LONG, LONG], ["2DOF-C"], work_limit=None)])
+def test_an_interrupt(run):
+    begun = monotonic()
+    Timer(ASKED, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        run()
+    assert monotonic() - begun < SOON
+
+
+def test_threads_stop_with_the_map_and_with_whoever_started_it():
+    def run(_):
+        return long_run()
+
+    runs = map_runs(lambda k: long_run() if k else k, [0, 1], 2)
+    assert next(runs) == 0
+    begun = monotonic()
+    runs.close()
+    assert monotonic() - begun < SOON
+    asked = Event()
+    Timer(ASKED, asked.set).start()
+    with stopping_when(asked.is_set), pytest.raises(RunStoppedError):
+        list(map_runs(run, [1, 2], 2))
+    assert monotonic() - begun < 2.0 * SOON
+
+
+def test_the_page_stops_a_run_that_its_visitor_has_left():
+    class Left:
+        async def is_disconnected(self):
+            return monotonic() - begun > ASKED
+
+    begun = monotonic()
+    with pytest.raises(Refusal) as caught:
+        asyncio.run(Server()._run(Left(), long_run))
+    assert caught.value.status == 499
+    assert monotonic() - begun < SOON

@@ -1,0 +1,141 @@
+"""Phases as data: their arrows, guards and borders against the equations as they are printed."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from rockflex import BoucWen, Frame, Tendon
+from rockflex.models import LANDS, LIFTS, OVERTURNS, LinearModel, Model
+from rockflex.models._elements import ElasticTendon, border_of
+
+GRAVITY = 9.81
+FRAME = Frame(
+    n_stories=4,
+    story_height=3.0,
+    story_mass=40e3,
+    base_mass=60e3,
+    stiffness_ratio=0.125,
+    period=0.6,
+    aspect_ratio=9.0,
+    damping_ratio=0.03,
+)
+TENDONS = (Tendon(stiffness=3e6, initial_force=2e5), Tendon(stiffness=1e6, initial_force=9e4, position=0.3))
+PLAIN = FRAME.rocking()
+CASES = {
+    "plain": PLAIN,
+    "tied": dataclasses.replace(PLAIN, tendons=TENDONS),
+    "eccentric": dataclasses.replace(PLAIN, eccentricity=0.2),
+    "eccentric and tied": dataclasses.replace(PLAIN, eccentricity=-0.15, tendons=TENDONS),
+}
+STRUCTURES = pytest.mark.parametrize("name", CASES)
+EITHER = pytest.mark.parametrize("side", [1, -1])
+
+
+def model(name, n=None):
+    return Model(n).of(CASES[name])
+
+
+@EITHER
+@STRUCTURES
+@pytest.mark.parametrize("n", [0, 1, 2, 4])
+def test_an_arrow_solved_for_the_rotation_is_its_angular_acceleration(n, name, side):
+    """Eq. 23 row by row: N oscillators, and the base that borders them."""
+    tied = model(name, n)
+    p, key = tied.properties, tied.start(side)
+    arrow, pivot = tied.arrow(key), tied.properties.pivot(side)
+    # M [D''; θ''] = right, over [D, D', θ, θ', a, 1]
+    mass = np.eye(n + 1)
+    mass[:n, n] = p.effective_height
+    mass[n, :n] = p.effective_mass * p.effective_height
+    mass[n, n] = pivot.i_theta
+    right = np.zeros((n + 1, 2 * n + 4))
+    for i in range(n):
+        right[i, i], right[i, n + i], right[i, -2] = -(p.omega[i] ** 2), -2.0 * p.zeta[i] * p.omega[i], -1.0
+    right[n, 2 * n] = p.l0r * GRAVITY - sum(t.stiffness * reach(p, t, side) ** 2 for t in p.tendons)
+    right[n, -2] = -p.l0r
+    right[n, -1] = -side * p.m_tot * GRAVITY * pivot.arm
+    right[n, -1] -= side * sum(t.initial_force * reach(p, t, side) for t in p.tendons)
+    expected = np.linalg.solve(mass, right)
+    scale = np.abs(expected).max(axis=0) + 1e-300
+    np.testing.assert_allclose(tied.angular_acceleration(key) / scale, expected[n] / scale, rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(tied.modal_accelerations(key) / scale, expected[:n] / scale, rtol=0.0, atol=1e-10)
+    # And the arrow's own coefficients, with D'' eliminated.
+    left = 1.0 / arrow.flexibility[0, 0]
+    assert left == pytest.approx(pivot.i_theta - float(np.sum(p.effective_mass * p.effective_height**2)), rel=1e-9)
+    assert left == pytest.approx(tied.free_inertia(side), rel=1e-9)
+    row = np.zeros(2 * n + 4)
+    row[:n], row[n : 2 * n] = arrow.leverage[0] * p.omega**2, arrow.leverage[0] * 2.0 * p.zeta * p.omega
+    row[2 * n], row[2 * n + 1] = -arrow.stiffness[0, 0], -arrow.damping[0, 0]
+    row[-2], row[-1] = arrow.drive[0], arrow.constant[0]
+    np.testing.assert_allclose(
+        row / left, tied.angular_acceleration(key), rtol=1e-12, atol=1e-12 * np.abs(row).max() / left
+    )
+    assert arrow.free
+
+
+def reach(p, tendon, side):
+    """Distance of a tendon from the pivot of a side."""
+    return p.half_width - side * p.eccentricity - side * tendon.position
+
+
+@STRUCTURES
+def test_in_contact_nothing_of_the_base_is_free(name):
+    tied = model(name)
+    arrow = tied.arrow(tied.start(0))
+    assert not arrow.free
+    assert not arrow.flexibility.any()
+    assert not tied.angular_acceleration(tied.start(0)).any()
+
+
+@STRUCTURES
+@pytest.mark.parametrize("bouc_wen", [None, BoucWen(0.05)])
+@pytest.mark.parametrize("complete", [False, True])
+def test_guards_are_the_resisting_moments_of_the_pivots(name, complete, bouc_wen):
+    tied = Model(1, complete=complete).of(CASES[name], bouc_wen=bouc_wen)
+    p = tied.properties
+    (contact,) = tied.phase(tied.start(0)).guards
+    assert contact.low == pytest.approx(-p.pivot(1).resisting_moment, rel=1e-14)
+    assert contact.high == pytest.approx(p.pivot(-1).resisting_moment, rel=1e-14)
+    assert np.array_equal(contact.row, tied.overturning_moment())
+    assert (contact.below.event, contact.below.key) == (LIFTS, tied.start(1))
+    assert (contact.above.event, contact.above.key) == (LIFTS, tied.start(-1))
+    for side in (1, -1):
+        phase = tied.phase(tied.start(side))
+        (rotation,) = phase.guards
+        assert phase.side == phase.key[0] == side
+        assert rotation.row.tolist() == np.eye(tied.layout.columns)[tied.layout.rotation].tolist()
+        inner, outer = (rotation.below, rotation.above) if side > 0 else (rotation.above, rotation.below)
+        assert (rotation.low, rotation.high) == ((0.0, 0.5 * np.pi) if side > 0 else (-0.5 * np.pi, 0.0))
+        assert (inner.event, inner.key) == (LANDS, tied.start(0))
+        assert outer.event == OVERTURNS
+        assert (phase.arrow is None) == (complete or bouc_wen is not None)
+    assert (tied.phase(tied.start(0)).arrow is None) == (bouc_wen is not None)
+
+
+@EITHER
+@STRUCTURES
+def test_borders_of_tendons_add_up_to_those_of_the_pivot(name, side):
+    tied = model(name)
+    p, pivot, key = tied.properties, tied.properties.pivot(side), tied.start(side)
+    tendons = [each for each in tied.elements if isinstance(each, ElasticTendon)]
+    assert len(tendons) == len(p.tendons) == len(key) - 1
+    borders = [each.border(0, side) for each in tendons]
+    assert sum(each.stiffness[0, 0] for each in borders) == pytest.approx(pivot.tendon_stiffness, rel=1e-13)
+    assert sum(each.constant[0] for each in borders) == pytest.approx(-side * pivot.prestress_moment, rel=1e-13)
+    for each in borders:
+        for nothing in (each.inertia, each.damping, each.ground):
+            assert not nothing.any()
+    whole = border_of(tied.elements, key)
+    assert whole.inertia[0, 0] == pivot.i_theta
+    assert whole.stiffness[0, 0] == pytest.approx(pivot.rocking_stiffness, rel=1e-12)
+    assert whole.constant[0] == pytest.approx(-side * pivot.resisting_moment, rel=1e-14)
+    assert whole.ground[0] == -p.l0r
+
+
+def test_both_sides_of_a_symmetric_base_have_the_same_eigenvectors():
+    tied, skew = model("plain"), model("eccentric")
+    assert tied.arrow(tied.start(1)).alike(tied.arrow(tied.start(-1)))
+    assert not tied.arrow(tied.start(1)).alike(tied.arrow(tied.start(0)))
+    assert not skew.arrow(skew.start(1)).alike(skew.arrow(skew.start(-1)))
+    assert LinearModel("mine", PLAIN).sides == (0, 1, -1)
