@@ -15,6 +15,7 @@ from rockflex.solve.layout import (
     BESIDE,
     EVENT,
     EVENTS,
+    FOLLOWING,
     FOLLOWS,
     GUARD,
     IMPACTS,
@@ -42,7 +43,6 @@ MOST_EVENTS = 20_000  # in one sample
 GAIN = 1e-9  # of the energy before an impact, that rounding may add
 SNAP = 1e-10  # of a unit: an event this close to its end is left to the next unit, which starts on it
 RESUME = 1e-7  # where contact is searched again after a guard that was touched but not passed
-FOLLOWING = 3  # `Progress.lacking`: first the places of `beside`, then those of `follows`
 
 
 @kernel

@@ -34,6 +34,7 @@ __all__ = [
     "FINAL",
     "FIRST",
     "FLEXIBILITY",
+    "FOLLOWING",
     "FOLLOWS",
     "GUARD",
     "HELD",
@@ -90,6 +91,9 @@ CONSTANT, DRIVE = 0, 1
 # Places in `System.links`, of two limits each: what happens there, and which phase follows; -1 for none, or for one
 # that was not met yet. Then the same branches with the base in contact, on its right pivot and on its left one.
 EVENT, FOLLOWS, BESIDE, LINKS = 0, 2, 4, 7
+
+# `Progress.lacking`: first the places of `BESIDE`, then those of `FOLLOWS`.
+FOLLOWING = 3
 
 # Places in `System.basis` and `System.rows`
 OUT, INTO = 0, 1

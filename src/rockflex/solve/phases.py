@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
-from rockflex.solve.layout import BESIDE, EVENT, FOLLOWS, LINKS, Array, System
+from rockflex.solve.layout import BESIDE, EVENT, FOLLOWING, FOLLOWS, LINKS, Array, System
 
 __all__ = ["CompiledPhases"]
 
@@ -73,15 +73,17 @@ class CompiledPhases:
         return key in self._places
 
     def meet(self, phase: int, lacking: int) -> None:
-        """Compile the phase that a run lacks: `Progress.lacking`, at a place of `beside` or, after those, `follows`."""
+        """Compile the phase that a run lacks: `Progress.lacking`, at a place of `beside` or, after those, `follows`.
+
+        Of two that may follow both are compiled: a base that has lifted on one side will mostly lift on the other.
+        """
         known = self._phases[phase]
-        if lacking < 3:
+        if lacking < FOLLOWING:
             self.place(self._beside(known, lacking))
             return
-        guard = known.guards[0]
-        leads = (guard.below, guard.above)[lacking - 3]
-        if leads is not None:
-            self.place(leads.key)
+        for leads in (known.guards[0].below, known.guards[0].above):
+            if leads is not None:
+                self.place(leads.key)
 
     def known_system(self, dt: float) -> System | None:
         """Tables of all phases met so far, for one time step; None where they are not ready."""
