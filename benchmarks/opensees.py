@@ -10,8 +10,6 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "validation" / "opensees"))
 from frames import FLEXURE, SHEAR, load_opensees
 from speed import speeds
 
-__all__ = ["table"]
-
 
 def table() -> Table | str:
     """One excursion under a Ricker pulse, five stories, all modes, undamped: the fastest of OpenSees' settings."""

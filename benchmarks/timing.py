@@ -7,8 +7,6 @@ import numpy as np
 
 import rockflex as rf
 
-__all__ = ["frame", "least", "milliseconds"]
-
 
 def frame(n: int) -> rf.Frame:
     """A shear frame of n stories, T = 1 s, h*_1/B = 10: for five stories structure #1 of Table 1."""

@@ -45,8 +45,7 @@ class Visitor:
         data = answer.read()
         taken = time.perf_counter() - begun
         if answer.status != 200:
-            message = f"{path} answered {answer.status}: {data[:200]!r}"
-            raise RuntimeError(message)
+            raise RuntimeError(f"{path} answered {answer.status}: {data[:200]!r}")
         return data, taken
 
 
@@ -113,8 +112,7 @@ def reach(port: int) -> Visitor:
             return visitor
         except OSError:
             time.sleep(0.1)
-    message = "The server did not start."
-    raise RuntimeError(message)
+    raise RuntimeError("The server did not start.")
 
 
 def table(sessions: int = 20, seconds: float = 15.0) -> Table:

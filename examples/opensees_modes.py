@@ -39,15 +39,13 @@ def structure_of(
     and `from_matrices` has no place for that. Give the floors horizontal mass alone, as the paper does.
     """
     if not len(freedoms) == len(mass) == len(stiffness):
-        message = f"{len(freedoms)} freedoms were given for matrices of {len(mass)} and {len(stiffness)} rows."
-        raise ValueError(message)
+        raise ValueError(f"{len(freedoms)} freedoms were given for matrices of {len(mass)} and {len(stiffness)} rows.")
     for i, freedom in enumerate(freedoms):
         if freedom.kind == "y" and freedom.x != 0.0 and np.any(mass[i]):
-            message = (
+            raise ValueError(
                 f"Vertical mass stands {freedom.x:g} m beside the axis, {freedom.height:g} m high. Give nodes mass in "
                 "the horizontal direction alone: ops.mass(node, m, 0.0, 0.0)."
             )
-            raise ValueError(message)
     sign = np.array([-1.0 if freedom.kind == "turn" else 1.0 for freedom in freedoms])
     signs = np.outer(sign, sign)
     return rf.from_matrices(
@@ -87,8 +85,9 @@ def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, 
         x, y = ops.nodeCoord(node)
         for kind, equation in zip(("x", "y", "turn"), ops.nodeDOFs(node), strict=True):
             if equation in freedoms:
-                message = f"Node {node} shares an equation with another. Model floors without multi-point constraints."
-                raise ValueError(message)
+                raise ValueError(
+                    f"Node {node} shares an equation with another. Model floors without multi-point constraints."
+                )
             if equation >= 0:  # held freedoms have a negative one
                 freedoms[equation] = Freedom(kind, x - axis, y - base)
     return mass, stiffness, [freedoms[i] for i in range(len(mass))]
@@ -141,11 +140,10 @@ def main() -> None:
     try:
         import openseespy.opensees as ops  # pyright: ignore[reportMissingImports]
     except (ImportError, RuntimeError) as error:  # RuntimeError: libraries that it is linked with are missing
-        message = (
+        raise SystemExit(
             "This example needs OpenSeesPy: pip install openseespy; on Debian also apt-get install libblas3 "
             f"liblapack3 ({error})."
-        )
-        raise SystemExit(message) from error
+        ) from error
     run(ops)
 
 

@@ -53,8 +53,7 @@ def find(name: str, folder: Path | None) -> Distribution:
     else:
         package = PathDistribution(folder / f"{name.replace('-', '_')}-{VERSIONS[name]}.dist-info")
     if package.version != VERSIONS[name]:
-        message = f"{name} {VERSIONS[name]} is needed, but {package.version} is installed."
-        raise SystemExit(message)
+        raise SystemExit(f"{name} {VERSIONS[name]} is needed, but {package.version} is installed.")
     return package
 
 
@@ -139,8 +138,7 @@ def write(folder: Path, suite: str, digits: int, source: str, records: list[tupl
 
 def check(condition: bool, what: str) -> None:
     if not condition:
-        message = f"The source is not as expected: {what}."
-        raise SystemExit(message)
+        raise SystemExit(f"The source is not as expected: {what}.")
 
 
 if __name__ == "__main__":

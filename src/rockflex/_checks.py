@@ -12,26 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = [
-    "MOST_MODES",
-    "MOST_STORIES",
-    "damping_ratios",
-    "dimensions",
-    "finite",
-    "finite_matrix",
-    "finite_rows",
-    "finite_vector",
-    "float_array",
-    "in_range",
-    "instance",
-    "mode_count",
-    "one_of",
-    "positive",
-    "real_or_nan",
-    "whole_number",
-    "within",
-]
-
 Float = NDArray[np.float64]
 
 T = TypeVar("T")
@@ -49,8 +29,7 @@ def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite
     if not low_enough or math.isnan(number) or (math.isinf(number) and not infinite):
         kind = "zero or positive" if zero else "positive"
         kind += "" if infinite else ", finite"
-        message = f"{name} must be a {kind} number in {unit}, but {shown(value)} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a {kind} number in {unit}, but {shown(value)} was given.")
     return number
 
 
@@ -67,18 +46,15 @@ def finite_vector(name: str, values: ArrayLike, unit: str) -> Float:
     """Return `values` as a read-only one-dimensional float64 array of finite numbers."""
     array = float_array(values)
     if array is None:
-        message = f"{name} must be a sequence of numbers in {unit}, but {_kind(values)} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a sequence of numbers in {unit}, but {_kind(values)} was given.")
     if array.ndim != 1:
-        message = f"{name} must be one-dimensional, but an array of shape {array.shape} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be one-dimensional, but an array of shape {array.shape} was given.")
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
-        message = (
+        raise InputError(
             f"{name} must be finite, but {bad.size} of {array.size} values are not, the first "
             f"({array[bad[0]]}) at index {bad[0]}. Remove or repair them before use."
         )
-        raise InputError(message)
     array.setflags(write=False)
     return array
 
@@ -87,8 +63,7 @@ def finite(name: str, value: float, unit: str) -> float:
     """Return `value` as a finite float."""
     number = _float_or_none(value)
     if number is None or not math.isfinite(number):
-        message = f"{name} must be a finite number{unit and f' in {unit}'}, but {shown(value)} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a finite number{unit and f' in {unit}'}, but {shown(value)} was given.")
     return number
 
 
@@ -106,8 +81,9 @@ def within(name: str, value: float, limit: float, unit: str) -> float:
     """Return `value` as a float of a magnitude below `limit`; booleans, strings and arrays are refused."""
     number = real_or_nan(value)
     if not abs(number) < limit:
-        message = f"{name} must be a number between {-limit:g} and {limit:g} {unit}, but {shown(value)} was given."
-        raise InputError(message)
+        raise InputError(
+            f"{name} must be a number between {-limit:g} and {limit:g} {unit}, but {shown(value)} was given."
+        )
     return number
 
 
@@ -140,8 +116,9 @@ def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Float:
         return ratios
     ratios = finite_vector(name, values, "fractions of critical damping")
     if ratios.size != n_modes:
-        message = f"{name} must be one number, or one for each of the {n_modes} modes, but {ratios.size} were given."
-        raise InputError(message)
+        raise InputError(
+            f"{name} must be one number, or one for each of the {n_modes} modes, but {ratios.size} were given."
+        )
     outside = np.flatnonzero((ratios < 0.0) | (ratios >= 1.0))
     if outside.size:
         first = int(outside[0])
@@ -161,15 +138,12 @@ def finite_matrix(name: str, values: ArrayLike, unit: str, shape: tuple[int, int
     """Return a float64 copy of `values` that has the given shape and finite entries only."""
     array = float_array(values)
     if array is None:
-        message = f"{name} must be a matrix of numbers in {unit}, but {_kind(values)} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a matrix of numbers in {unit}, but {_kind(values)} was given.")
     if array.shape != shape:
-        message = f"{name} must have the shape {shape}, but an array of shape {array.shape} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must have the shape {shape}, but an array of shape {array.shape} was given.")
     if not np.isfinite(array).all():
         row, column = (int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        message = f"{name} must be finite, but its entry [{row}, {column}] is {array[row, column]}."
-        raise InputError(message)
+        raise InputError(f"{name} must be finite, but its entry [{row}, {column}] is {array[row, column]}.")
     return array
 
 
@@ -194,8 +168,7 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
     """Return `value` if it is a `kind`."""
     if not isinstance(value, kind):
         given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
-        message = f"{name} must be of type {kind.__name__}, but {given} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be of type {kind.__name__}, but {given} was given.")
     return value
 
 
@@ -230,8 +203,7 @@ def _number(name: str, value: float, unit: str) -> float:
     number = _float_or_none(value)
     if number is None:
         of_unit = f" in {unit}" if unit else ""
-        message = f"{name} must be a number{of_unit}, but {shown(value)} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a number{of_unit}, but {shown(value)} was given.")
     return number
 
 

@@ -7,8 +7,6 @@ import numpy as np
 
 from rockflex._errors import InputError
 
-__all__ = ["computable"]
-
 
 @contextmanager
 def computable(what: str | Callable[[], str]) -> Generator[None]:
@@ -30,8 +28,7 @@ def computable(what: str | Callable[[], str]) -> Generator[None]:
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         words = error.args[-1] if error.args else type(error).__name__
         subject = what if isinstance(what, str) else what()
-        message = (
+        raise InputError(
             f"{subject} cannot be computed: numbers arise that double precision cannot hold ({words}). Check the units "
             "(kg, m, s, N, rad throughout), and whether values that belong together are many orders of magnitude apart."
-        )
-        raise InputError(message) from error
+        ) from error

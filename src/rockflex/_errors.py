@@ -2,8 +2,6 @@
 
 from rockflex._shown import shortened
 
-__all__ = ["InputError", "RecordWarning", "SolverError"]
-
 LONGEST = 1900  # characters of a message, where a path or a text of the user would make it any length
 
 

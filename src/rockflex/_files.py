@@ -8,8 +8,6 @@ from uuid import uuid4
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = ["check_regular", "irregular", "path_of", "sweep", "write_whole"]
-
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a pipe"),
@@ -28,8 +26,7 @@ def path_of(name: str, given: object) -> Path:
         If it is no path, or none that a file can have.
     """
     if not isinstance(given, str | Path):
-        message = f"{name} must be a path, but {type(given).__name__} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a path, but {type(given).__name__} was given.")
     path = Path(given)
     try:
         os.fsencode(path)
@@ -40,8 +37,7 @@ def path_of(name: str, given: object) -> Path:
     except OSError as error:
         reason = error.strerror
     if reason:
-        message = f"{name} must be that of a file, but {shown(str(path))} was given: {reason}."
-        raise InputError(message)
+        raise InputError(f"{name} must be that of a file, but {shown(str(path))} was given: {reason}.")
     return path
 
 
@@ -65,8 +61,7 @@ def check_regular(path: Path, name: str = "") -> None:
     kind = irregular(path)
     if kind:
         remedy = "Give a file in it." if kind == "a folder" else "Write what it gives to a file, and give that."
-        message = f"{name}{': ' * bool(name)}{path} is {kind}, but a regular file is expected. {remedy}"
-        raise InputError(message)
+        raise InputError(f"{name}{': ' * bool(name)}{path} is {kind}, but a regular file is expected. {remedy}")
 
 
 def write_whole(path: Path, content: bytes) -> Path:

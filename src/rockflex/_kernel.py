@@ -10,8 +10,6 @@ from typing import Any, TypeVar, cast
 
 from rockflex._numba import compiled, compiled_within, direct
 
-__all__ = ["Callback", "Entry", "inlined_kernel", "kernel", "python_kernel"]
-
 _C_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_size_t, ctypes.c_int64)
 
 _IMPORTS = re.compile(rb"^from rockflex\.([\w.]+) import", re.MULTILINE)

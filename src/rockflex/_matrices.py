@@ -7,8 +7,6 @@ from rockflex._checks import dimensions, finite_matrix, finite_vector
 from rockflex._computable import computable
 from rockflex._errors import InputError
 
-__all__ = ["checked_heights", "checked_mass", "checked_stiffness", "mass_times"]
-
 Float = NDArray[np.float64]
 
 # Asymmetry left by condensation or by printed digits, as a share of the largest entry.
@@ -19,23 +17,20 @@ def checked_heights(heights: ArrayLike) -> Float:
     """Return the heights of the masses above the base (N,) in m, read-only: positive, strictly rising."""
     h = finite_vector("heights", heights, "m")
     if h.size == 0:
-        message = "heights must hold at least one height in m, but none was given."
-        raise InputError(message)
+        raise InputError("heights must hold at least one height in m, but none was given.")
     if h[0] <= 0.0:
-        message = (
+        raise InputError(
             f"heights must be positive, in m above the base, but heights[0] = {h[0]:g} was given. "
             "A mass at the base belongs to base_mass."
         )
-        raise InputError(message)
     falls = np.flatnonzero(h[1:] <= h[:-1])
     if falls.size:
         i = int(falls[0])
-        message = (
+        raise InputError(
             f"heights must rise from the base to the top, but heights[{i + 1}] = {h[i + 1]:g} m is not above "
             f"heights[{i}] = {h[i]:g} m. Sort the masses by height, with the rows and columns of the "
             "matrices, and join masses at equal height."
         )
-        raise InputError(message)
     return h
 
 
@@ -45,18 +40,16 @@ def checked_mass(mass: ArrayLike, size: int) -> Float:
         return _symmetric_positive_definite("mass", mass, "kg", size)
     m = finite_vector("mass", mass, "kg")
     if m.size != size:
-        message = (
+        raise InputError(
             f"mass must hold one mass for each of the {size} heights, but {m.size} were given. "
             "The mass of the base goes to base_mass."
         )
-        raise InputError(message)
     if m.min() <= 0.0:
         i = int(np.argmin(m))
-        message = (
+        raise InputError(
             f"mass must be positive, but mass[{i}] = {m[i]:g} kg was given. "
             "Condense massless floors out of the stiffness matrix first."
         )
-        raise InputError(message)
     return m
 
 
@@ -78,21 +71,19 @@ def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: 
     asymmetry = np.abs(matrix - matrix.T)
     if asymmetry.max() > _SYMMETRY_TOLERANCE * np.abs(matrix).max():
         i, j = sorted(int(k) for k in np.unravel_index(np.argmax(asymmetry), asymmetry.shape))
-        message = (
+        raise InputError(
             f"{name} must be symmetric, but {name}[{i}, {j}] = {matrix[i, j]:.9g} and "
             f"{name}[{j}, {i}] = {matrix[j, i]:.9g} {unit}. "
             "Check the assembly; a result of condensation that is not symmetric hints at an error in it."
         )
-        raise InputError(message)
     matrix = 0.5 * (matrix + matrix.T)
     eigenvalues = np.linalg.eigvalsh(matrix)
     # Below this share of the largest eigenvalue the sign of the smallest is rounding.
     if eigenvalues[0] <= size * np.finfo(float).eps * abs(eigenvalues[-1]):
-        message = (
+        raise InputError(
             f"{name} must be positive definite, but its smallest eigenvalue is {eigenvalues[0]:.3g} {unit} "
             f"(the largest is {eigenvalues[-1]:.3g}). {_MEND[name]}"
         )
-        raise InputError(message)
     matrix.setflags(write=False)
     return matrix
 

@@ -10,8 +10,6 @@ from typing import Any, cast
 
 from numba import njit, typeof
 
-__all__ = ["compiled", "compiled_within", "direct"]
-
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
 # A kernel that only kernels call needs no way in from Python, which takes as long to compile as the kernel.

@@ -13,8 +13,6 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import NativeLowering
 
-__all__ = ["Intermediate"]
-
 # Looked up here, so that a version without them is known before anything is compiled.
 make_function: Any = _dynfunc.make_function  # pyright: ignore[reportUnknownMemberType]
 KNOWN: Any = JITCodeLibrary

@@ -4,8 +4,6 @@ import math
 import reprlib
 from itertools import islice
 
-__all__ = ["shortened", "shown"]
-
 WIDTH = 160  # characters of a value
 
 

@@ -6,8 +6,6 @@ from typing import Any, cast
 
 import numpy as np
 
-__all__ = ["Value"]
-
 
 class Value:
     """Base of frozen dataclasses that hold arrays, written ``@dataclass(frozen=True, eq=False)``.

@@ -18,8 +18,6 @@ from stepping import Scheme, march, settle
 
 import rockflex as rf
 
-__all__ = ["cycles_figure", "excursion_figure", "fixed_figure"]
-
 PROTOTYPE_COLOURS = ("tab:blue", "tab:orange")
 STYLE = {
     "font.size": 9,

@@ -11,8 +11,6 @@ from stepping import Run, Scheme, damp, march, settle
 
 import rockflex as rf
 
-__all__ = ["Excursion", "complete", "pulse", "simplified"]
-
 Float = NDArray[np.float64]
 
 PEAK, PERIOD, QUIET = 0.25 * 9.81, 1.0, 2.0  # m/s², s, s after the pulse
@@ -63,8 +61,7 @@ def crossing(time: Float, values: Float, start: int) -> float:
     """First time from index `start` on at which `values` become positive, on the chord between steps."""
     i = start + int(np.argmax(values[start:] > 0.0))
     if not values[i] > 0.0 or i == 0:
-        message = "The corners of the model never did what was looked for. Shake for longer."
-        raise RuntimeError(message)
+        raise RuntimeError("The corners of the model never did what was looked for. Shake for longer.")
     before, after = values[i - 1], values[i]
     return float(time[i - 1] - before * (time[i] - time[i - 1]) / (after - before))
 

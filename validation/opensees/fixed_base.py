@@ -9,8 +9,6 @@ from stepping import AVERAGE, Scheme, damp, march
 
 import rockflex as rf
 
-__all__ = ["FixedError", "fixed_errors", "modal_differences"]
-
 DAMPING_RATIO = 0.02
 
 

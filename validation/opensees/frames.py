@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 import rockflex as rf
 
-__all__ = ["FLEXURE", "SHEAR", "Contact", "Prototype", "corotational", "fixed", "linear", "load_opensees"]
-
 Float = NDArray[np.float64]
 
 N_STORIES, STORY_HEIGHT, STORY_MASS, BASE_MASS = 5, 3.0, 40e3, 40e3  # m, kg, kg
@@ -39,11 +37,10 @@ def load_opensees() -> Any:
     try:
         import openseespy.opensees as ops
     except (ImportError, RuntimeError) as error:
-        message = (
+        raise ImportError(
             f"OpenSeesPy cannot be imported ({error}). Install it (pip install openseespy) and, on Debian, the "
             "libraries that it is linked with (apt-get install libblas3 liblapack3)."
-        )
-        raise ImportError(message) from error
+        ) from error
     return ops
 
 

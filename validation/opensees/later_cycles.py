@@ -10,8 +10,6 @@ from stepping import AVERAGE, Run, Scheme, damp, march, settle
 
 import rockflex as rf
 
-__all__ = ["CASES", "Case", "Cycles", "impact_share", "later_cycles"]
-
 Float = NDArray[np.float64]
 
 AFTER = 0.02  # s after the first impact in which the rebound is looked for

@@ -12,8 +12,6 @@ from scipy.integrate import solve_ivp
 
 import rockflex as rf
 
-__all__ = ["by_newton"]
-
 Float = NDArray[np.float64]
 
 MASSES = np.concatenate([[BASE_MASS], np.full(N_STORIES, STORY_MASS)])

@@ -10,8 +10,6 @@ from scipy.integrate import solve_ivp
 
 import rockflex as rf
 
-__all__ = ["Reference", "absolute_damping", "hermite", "reference"]
-
 Float = NDArray[np.float64]
 
 

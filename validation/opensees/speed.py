@@ -10,8 +10,6 @@ from references import reference
 
 import rockflex as rf
 
-__all__ = ["Speed", "speeds"]
-
 GRID = [(stiffness, dt) for stiffness in (1e12, 1e13) for dt in (5e-3, 2e-3, 1e-3, 5e-4, 2e-4)]
 REPETITIONS = 4  # of the settings that were chosen, for the least time
 

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 import rockflex as rf
 
-__all__ = ["AVERAGE", "Run", "Scheme", "march", "settle"]
-
 Float = NDArray[np.float64]
 
 
@@ -122,5 +120,6 @@ def march(
 
 def _succeed(code: int, what: str) -> None:
     if code != 0:
-        message = f"{what} did not converge in OpenSees (code {code}). Use a smaller step or a softer contact."
-        raise RuntimeError(message)
+        raise RuntimeError(
+            f"{what} did not converge in OpenSees (code {code}). Use a smaller step or a softer contact."
+        )

@@ -11,8 +11,6 @@ from rockflex._errors import InputError, SolverError
 from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study
 from rockflex.cli._console import complain, note, remarks
 
-__all__ = ["app", "main"]
-
 EPILOG = """[bold]Examples[/bold]
 
 rockflex motion fema-p695-far-field

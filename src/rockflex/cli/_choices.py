@@ -13,16 +13,6 @@ from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, parse
 from rockflex.study import WORK_LIMIT, InitialState
 from rockflex.study.assumed import LAWS, impact_law
 
-__all__ = [
-    "Assumptions",
-    "choose_models",
-    "make_assumptions",
-    "parse_coefficient",
-    "parse_free_vibration",
-    "parse_scales",
-    "parse_work_limit",
-]
-
 USUAL = ("2DOF-S", "MDOF-S", "fixed")
 RIGID = ("rigid", "rigid-C")
 YIELDING = ("2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW")
@@ -118,26 +108,24 @@ def choose_models(
     else:
         labels = [label.strip() for item in given for label in item.split(",") if label.strip()]
     if not labels:
-        message = "No model was given. Expected labels such as 2DOF-S,MDOF-S,fixed."
-        raise InputError(message)
+        raise InputError("No model was given. Expected labels such as 2DOF-S,MDOF-S,fixed.")
     models = {label: parse_model(label) for label in labels}
     for label, model in models.items():
         if model.yields and assumptions.bouc_wen is None:
-            message = f"{label} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure's file."
-            raise InputError(message)
+            raise InputError(
+                f"{label} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure's file."
+            )
         if model.yields and model.n_modes is None and properties.n_modes != 1:
             one = "2DOF-S-BW" if model.lifts else "1DOF-fixed-BW"
-            message = f"{label} would have {properties.n_modes} modes, and what yields has one. Use {one}."
-            raise InputError(message)
+            raise InputError(f"{label} would have {properties.n_modes} modes, and what yields has one. Use {one}.")
         tied = model.of(properties, assumptions.law, assumptions.bouc_wen if model.yields else None)
         if assumptions.initial is not None:
             assumptions.initial.state(tied)
     if by_flag and not any(model.yields for model in models.values()):
-        message = (
+        raise InputError(
             f"A hysteresis was given, but {', '.join(models)} do not yield. Models whose label ends in -BW do, such as "
             "2DOF-S-BW, 2DOF-C-BW or 1DOF-fixed-BW: add one, or leave --yield-displacement out."
         )
-        raise InputError(message)
     return list(models)
 
 
@@ -152,19 +140,17 @@ def parse_free_vibration(given: str, models: Sequence[str]) -> float | Literal["
     if given == "settle":
         restless = [label for label in models if parse_model(label).yields]
         if restless:
-            message = (
+            raise InputError(
                 f"--free-vibration settle cannot tell when the hysteretic spring of {', '.join(restless)} is at rest. "
                 "Give seconds, or leave such models out."
             )
-            raise InputError(message)
         return "settle"
     try:
         seconds = float(given)
     except ValueError:
         seconds = math.nan
     if not (seconds >= 0.0 and math.isfinite(seconds)):
-        message = f"--free-vibration must be zero or more seconds, or settle, but {shown(given)} was given."
-        raise InputError(message)
+        raise InputError(f"--free-vibration must be zero or more seconds, or settle, but {shown(given)} was given.")
     return seconds
 
 
@@ -185,8 +171,7 @@ def parse_work_limit(given: str | None) -> float | None:
     except ValueError:
         seconds = math.nan
     if not seconds > 0.0:
-        message = f"--work-limit must be a positive number of seconds, or none, but {given!r} was given."
-        raise InputError(message)
+        raise InputError(f"--work-limit must be a positive number of seconds, or none, but {given!r} was given.")
     return seconds
 
 
@@ -200,8 +185,7 @@ def parse_scales(given: Sequence[float]) -> list[float]:
     """
     for scale in given:
         if not math.isfinite(scale):
-            message = f"--scale must be a finite factor on the acceleration, but {scale} was given."
-            raise InputError(message)
+            raise InputError(f"--scale must be a finite factor on the acceleration, but {scale} was given.")
     return list(dict.fromkeys(given))
 
 
@@ -214,24 +198,20 @@ def parse_coefficient(mu: float | None) -> float | None:
         If it is not a positive number.
     """
     if mu is not None and not 0.0 < mu < math.inf:
-        message = f"--friction must be a coefficient above zero, such as 0.5, but {mu} was given."
-        raise InputError(message)
+        raise InputError(f"--friction must be a coefficient above zero, such as 0.5, but {mu} was given.")
     return mu
 
 
 def _law(impact: str | None = None, restitution: float | None = None) -> ImpactLaw | None:
     if impact is not None and impact not in LAWS:
-        message = f"--impact must be one of {', '.join(LAWS)}, but {shown(impact)} was given."
-        raise InputError(message)
+        raise InputError(f"--impact must be one of {', '.join(LAWS)}, but {shown(impact)} was given.")
     if impact == "restitution" and restitution is None:
-        message = "--impact restitution needs its coefficient. Give --restitution E, from 0 to 1."
-        raise InputError(message)
+        raise InputError("--impact restitution needs its coefficient. Give --restitution E, from 0 to 1.")
     if restitution is not None and impact != "restitution":
-        message = (
+        raise InputError(
             f"A restitution of {restitution:g} was given, but the impact law is {impact or 'the one of each model'}. "
             "Add --impact restitution, or leave --restitution out."
         )
-        raise InputError(message)
     return impact_law(impact, restitution)
 
 
@@ -240,15 +220,13 @@ def _bouc_wen(file: Path | None, in_file: dict[str, float], flags: dict[str, flo
     if not values:
         return None
     if "yield_displacement" not in values:
-        message = "The hysteresis needs its yield displacement. Give --yield-displacement DY in m."
-        raise InputError(message)
+        raise InputError("The hysteresis needs its yield displacement. Give --yield-displacement DY in m.")
     try:
         return BoucWen(**values)
     except InputError as error:
         if flags:
             raise
-        message = f"{file}, [bouc_wen]: {error}"
-        raise InputError(message) from error
+        raise InputError(f"{file}, [bouc_wen]: {error}") from error
 
 
 def _name(law: ImpactLaw) -> str:

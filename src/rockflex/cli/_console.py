@@ -12,21 +12,6 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-__all__ = [
-    "complain",
-    "duration",
-    "fits",
-    "grid",
-    "moment_unit",
-    "note",
-    "number",
-    "output",
-    "progress",
-    "remarks",
-    "show",
-    "study_progress",
-]
-
 
 def complain(message: str) -> None:
     """Print an error to stderr as one paragraph."""

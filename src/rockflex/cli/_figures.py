@@ -13,8 +13,6 @@ from rockflex.cli import _options as options
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["EPILOG", "figures"]
-
 EPILOG = """[bold]Examples[/bold]
 
 rockflex cloud study.toml --out results
@@ -45,8 +43,7 @@ def figures(
 ) -> None:
     """Draw what a study found: fragility curves, clouds, capacities, designs, or the agreement of models."""
     if kind not in FORMATS:
-        message = f"--format must be one of {', '.join(FORMATS)}, but {shown(kind)} was given."
-        raise InputError(message)
+        raise InputError(f"--format must be one of {', '.join(FORMATS)}, but {shown(kind)} was given.")
     from rockflex.cli._console import note
     from rockflex.cli._output import check_folder, staged, versions
     from rockflex.store import StudyFolder
@@ -56,8 +53,9 @@ def figures(
     study = StudyFolder.load(folder)
     name = str(study.spec.get("study"))
     if measure is not None and name not in MEASURED:
-        message = f"--measure is for cloud and incremental studies, but {folder} holds one of {name}. Leave it out."
-        raise InputError(message)
+        raise InputError(
+            f"--measure is for cloud and incremental studies, but {folder} holds one of {name}. Leave it out."
+        )
     missing = len(study.missing())
     table = study.frame(partial=True)
     if missing:
@@ -78,8 +76,7 @@ def figures(
             except (InputError, SolverError) as error:
                 undrawn.append(f"{stem}: {error}")
         if not any(stage.iterdir()):
-            message = f"{folder} gives no figure. {' '.join(undrawn)}"
-            raise InputError(message)
+            raise InputError(f"{folder} gives no figure. {' '.join(undrawn)}")
     for reason in undrawn:
         note(f"No figure {reason}")
     note(f"Written to {target}")
@@ -115,8 +112,7 @@ def _figures(
             target = spec.get("target")
             yield f"design_{'_'.join(word.split())}", lambda each=designs, target=target: plot.plot_design(each, target)
     else:
-        message = f"There are no figures of a study of the kind {shown(study)}."
-        raise InputError(message)
+        raise InputError(f"There are no figures of a study of the kind {shown(study)}.")
 
 
 def _fitted(runs: "pd.DataFrame", measure: str) -> "pd.DataFrame":

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from rockflex.cli._structures import LoadedStructure
     from rockflex.modal import Adequacy, RockingProperties
 
-__all__ = ["EPILOG", "modes"]
-
 EPILOG = """[bold]Examples[/bold]
 
 rockflex modes structure.toml
@@ -83,8 +81,7 @@ def modes(
     frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
     path, rest = split_arguments(structure, [] if file is None else [file])
     if rest:
-        message = f"{file} is no structure file: a name that ends in .toml is expected."
-        raise InputError(message)
+        raise InputError(f"{file} is no structure file: a name that ends in .toml is expected.")
     loaded = load_structure(path, options.frame_arguments((*frame, eccentricity)))
     properties = loaded.properties
     if n_modes is not None:

@@ -8,8 +8,6 @@ if TYPE_CHECKING:
     from rockflex.cli._structures import LoadedStructure
     from rockflex.modal import RockingProperties
 
-__all__ = ["print_modes"]
-
 Rows = list[dict[str, Any]]
 
 

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     from rockflex.cli._motions import FoundMotion
 
-__all__ = ["EPILOG", "motion"]
-
 EPILOG = """[bold]Examples[/bold]
 
 rockflex motion

@@ -11,8 +11,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion import GroundMotion, OnError, folder_files, load_suite, quiet_motion, read_files, suite_names
 
-__all__ = ["FoundMotion", "embedded_suites", "find_motions", "quiet_ground"]
-
 SHORTEST = 0.01  # s of a quiet ground before the free vibration is left to settle
 
 
@@ -71,11 +69,10 @@ def find_motions(
         component, two different motions have the same name, or units, dt or `on_error` are given without a file.
     """
     if not names:
-        message = (
+        raise InputError(
             f"No ground motion was given. Name a suite ({', '.join(suite_names())}), a record in one, such as "
             "fema-p695-far-field/FF-12-a, or a file."
         )
-        raise InputError(message)
     files = {name: _files(name) for name in names if name.partition("/")[0] not in suite_names()}
     read = _read([file for each in files.values() for file in each], units, dt, on_error)
     found: dict[str, FoundMotion] = {}
@@ -89,14 +86,12 @@ def find_motions(
             member = FoundMotion(motion, name if name in files else suite)
             first = found.setdefault(motion.name, member)
             if first.sha256 != member.sha256 or first.motion.dt != motion.dt:
-                message = (
+                raise InputError(
                     f"{member.origin} and {first.origin} hold different motions, both named {shown(motion.name)}. "
                     "Rename one of the files."
                 )
-                raise InputError(message)
     if not files and (units is not None or dt is not None or on_error != "raise"):
-        message = "--units, --dt and --on-error are for record files, but none was given. Leave them out."
-        raise InputError(message)
+        raise InputError("--units, --dt and --on-error are for record files, but none was given. Leave them out.")
     return list(found.values())
 
 
@@ -109,11 +104,10 @@ def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], fl
         If there is no length to it.
     """
     if free == 0.0:
-        message = (
+        raise InputError(
             "A free vibration from --initial-rotation needs a ground motion or a length. "
             "Give --free-vibration in seconds, or settle."
         )
-        raise InputError(message)
     if isinstance(free, str):
         return [FoundMotion(quiet_motion(SHORTEST), "at rest")], free
     return [FoundMotion(quiet_motion(free), "at rest")], 0.0
@@ -123,16 +117,16 @@ def _files(name: str) -> list[Path]:
     """The file of a name, or those of a directory."""
     path = Path(name)
     if path.suffix.lower() == ".toml":
-        message = f"{name} is a structure file, and one structure is simulated at a time. Give one such file, first."
-        raise InputError(message)
+        raise InputError(
+            f"{name} is a structure file, and one structure is simulated at a time. Give one such file, first."
+        )
     if not path.exists():
         near = get_close_matches(name.partition("/")[0], suite_names(), n=1)
         hint = f" Did you mean {near[0]}?" if near else ""
-        message = (
+        raise InputError(
             f"{shown(name)} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
             f"fema-p695-far-field/FF-12-a, nor a file or directory (working directory: {Path.cwd()}).{hint}"
         )
-        raise InputError(message)
     return folder_files(path) if path.is_dir() else [path]
 
 

@@ -6,37 +6,6 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-__all__ = [
-    "AspectRatio",
-    "BaseMass",
-    "BwBeta",
-    "BwExponent",
-    "BwGamma",
-    "DampingRatio",
-    "Dt",
-    "Eccentricity",
-    "Figures",
-    "Force",
-    "Friction",
-    "Impact",
-    "InitialRotation",
-    "Json",
-    "OnError",
-    "Out",
-    "Period",
-    "PostYieldRatio",
-    "Restitution",
-    "Stiffness",
-    "Stories",
-    "StoryHeight",
-    "StoryMass",
-    "StructureFile",
-    "Units",
-    "WorkLimit",
-    "YieldDisplacement",
-    "frame_arguments",
-]
-
 FRAME = "Structure by flags (all eight), in place of a file"
 ASSUMPTIONS = "Impact, hysteresis, start and sliding"
 RECORD_FILES = "Record files"

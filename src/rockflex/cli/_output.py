@@ -18,8 +18,6 @@ from rockflex import __version__
 from rockflex._errors import InputError
 from rockflex._files import check_regular
 
-__all__ = ["check_folder", "file_stems", "staged", "to_json", "versions"]
-
 SUMMARY = "summary.json"
 
 
@@ -41,15 +39,16 @@ def check_folder(folder: Path | None, *, force: bool) -> None:
     """Raise an InputError where results must not be written, or where --force has nothing to do with."""
     if folder is None:
         if force:
-            message = "--force says what --out may replace, but no --out was given. Add --out DIR, or leave it out."
-            raise InputError(message)
+            raise InputError(
+                "--force says what --out may replace, but no --out was given. Add --out DIR, or leave it out."
+            )
         return
     if folder.exists() and not folder.is_dir():
-        message = f"--out {folder} is a file. Give a folder; it is made where it does not exist."
-        raise InputError(message)
+        raise InputError(f"--out {folder} is a file. Give a folder; it is made where it does not exist.")
     if folder.is_dir() and not force and any(folder.iterdir()):
-        message = f"The folder {folder} is not empty. Give another one, or --force to replace the results in it."
-        raise InputError(message)
+        raise InputError(
+            f"The folder {folder} is not empty. Give another one, or --force to replace the results in it."
+        )
 
 
 @contextmanager
@@ -77,8 +76,9 @@ def staged(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[
             (stage / SUMMARY).write_text(text + "\n", "utf-8", newline="\n")
             _move(stage, folder, [*names, SUMMARY])
     except OSError as error:
-        message = f"Cannot write to {folder}: {error.strerror or error}. Give a folder that can be written to."
-        raise InputError(message) from error
+        raise InputError(
+            f"Cannot write to {folder}: {error.strerror or error}. Give a folder that can be written to."
+        ) from error
 
 
 def file_stems(names: Iterable[str]) -> list[str]:

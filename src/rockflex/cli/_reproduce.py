@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from rockflex.papers.silva_stojadinovic_2024 import Records, Result
 
-__all__ = ["EPILOG", "reproduce"]
-
 EPILOG = """[bold]Examples[/bold]
 
 rockflex reproduce --list

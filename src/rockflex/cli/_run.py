@@ -6,8 +6,6 @@ import typer
 
 from rockflex.cli import _options as options
 
-__all__ = ["EPILOG", "run"]
-
 EPILOG = """[bold]Examples[/bold]
 
 rockflex run structure.toml el-centro-1940

@@ -14,8 +14,6 @@ from rockflex.response import Response
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["UNITS", "write_runs"]
-
 UNITS = {
     "dt": "s",
     "duration": "s",

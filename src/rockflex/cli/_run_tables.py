@@ -11,8 +11,6 @@ from rockflex.response import IMPACT_WINDOW
 if TYPE_CHECKING:
     from rich.table import Table
 
-__all__ = ["print_failures", "print_runs", "print_warnings"]
-
 MAX_LISTED = 5
 LEGEND = (
     "u_top: relative to the base, which turns; total: relative to the ground\n"

@@ -3,8 +3,6 @@
 from rockflex.structure.file import StructureEntry
 from rockflex.study.assumed import Assumed
 
-__all__ = ["StructureFile"]
-
 
 class StructureFile(Assumed, StructureEntry):
     """A structure file: one structure, perhaps a name and tendons, and what `rockflex run` is to assume of it."""

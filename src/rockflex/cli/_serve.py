@@ -5,8 +5,6 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["EPILOG", "serve"]
-
 EPILOG = """[bold]Examples[/bold]
 
 rockflex serve

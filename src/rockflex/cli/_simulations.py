@@ -18,8 +18,6 @@ from rockflex.solve import WorkLimitError
 from rockflex.study import WORK_LIMIT, simulate, simulate_many
 from rockflex.study._runs import map_runs
 
-__all__ = ["SLIDING", "Plan", "Run", "perform", "warm_up"]
-
 FEW = 64  # runs; more are not timed one by one
 BATCH = 1024  # runs between two steps of the progress bar
 
@@ -107,8 +105,9 @@ def perform(plan: Plan) -> list[Run]:
         first = failed[0]
         if first.error is not None and all(run.refused for run in runs):
             raise WorkLimitError(first.error)
-        message = f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
-        raise SolverError(message)
+        raise SolverError(
+            f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
+        )
     return runs
 
 

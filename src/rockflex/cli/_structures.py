@@ -12,8 +12,6 @@ from rockflex.modal import RockingProperties
 from rockflex.structure import Eccentric, Frame, Restrained
 from rockflex.structure.file import KINDS, Built, build_in, checked, read_toml
 
-__all__ = ["LoadedStructure", "describe_properties", "load_structure", "split_arguments"]
-
 FLAGS = {"n_stories": "--stories"}  # the others are named after their argument
 ASSUMED = {"impact", "restitution", "bouc_wen"}
 
@@ -77,8 +75,7 @@ def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path
     if not arguments or not arguments[0].lower().endswith(".toml"):
         return option, list(arguments)
     if option is not None:
-        message = f"Two structures were given, {option} and {arguments[0]}. Give one at a time."
-        raise InputError(message)
+        raise InputError(f"Two structures were given, {option} and {arguments[0]}. Give one at a time.")
     return Path(arguments[0]), list(arguments[1:])
 
 
@@ -97,8 +94,7 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     if file is None:
         return _from_flags(given, [name for name in flags if name not in given and name != "eccentricity"])
     if given:
-        message = f"The structure was given by {file} and by {_flags(given)}. Give one or the other."
-        raise InputError(message)
+        raise InputError(f"The structure was given by {file} and by {_flags(given)}. Give one or the other.")
     document = checked(StructureFile, read_toml(file, "structure"), str(file))
     assumed = document.model_dump(include=ASSUMED, exclude_unset=True)
     built = build_in(file, document)
@@ -120,8 +116,9 @@ def _from_flags(given: dict[str, Any], missing: list[str]) -> LoadedStructure:
     if missing:
         lack = "No structure was given." if not given else f"The frame lacks {_flags(missing)}."
         needed = _flags(KINDS["frame"].model_fields)
-        message = f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {needed}."
-        raise InputError(message)
+        raise InputError(
+            f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {needed}."
+        )
     frame = Frame(**{name: value for name, value in given.items() if name != "eccentricity"})
     built = Eccentric(frame, given["eccentricity"]) if "eccentricity" in given else frame
     return LoadedStructure(f"{frame.n_stories}-story frame", "frame", given, built)

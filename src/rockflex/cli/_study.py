@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from rockflex.study.plans import Study
 
-__all__ = ["cloud", "design", "epilog", "ida", "population", "stripes"]
-
 COMMANDS = {
     "cloud": "cloud",
     "incremental": "ida",
@@ -117,8 +115,7 @@ def _study(
 
     study = load_study(file)
     if study.study != kind:
-        message = f'{file} says study = "{study.study}". Use rockflex {COMMANDS[study.study]} {file}.'
-        raise InputError(message)
+        raise InputError(f'{file} says study = "{study.study}". Use rockflex {COMMANDS[study.study]} {file}.')
     if work_limit is not None:
         from rockflex.cli._choices import parse_work_limit
 

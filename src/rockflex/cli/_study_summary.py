@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from rockflex.fragility import CloudFit, LognormalFragility
     from rockflex.study.plans import Study
 
-__all__ = ["summarise"]
-
 Rows = list[dict[str, Any]]
 PEAK_VELOCITY, PEAK_ACCELERATION = "pgv", "pga"
 ROCKING = 1e-4  # rad; up to it a run counts as one without rocking

@@ -13,8 +13,6 @@ from rockflex._errors import InputError
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._lognormal import LognormalFragility
 
-__all__ = ["AnnualRate", "annual_rate", "risk_targeted_median"]
-
 Float = NDArray[np.float64]
 Curve = Callable[[Float], Float]
 SMALLEST = 60.0  # ln of how far below the curve's lower end its tail is followed
@@ -119,44 +117,39 @@ def risk_targeted_median(
     low, high = math.log(hazard.im[0]), math.log(hazard.im[-1])
     most, least = rate(low), rate(high)
     if not least <= target <= most:
-        message = (
+        raise InputError(
             f"target_rate must lie between {least:.4g} and {most:.4g} per year, the rates of medians at the ends of "
             f"the hazard curve, but {target:g} was given. Extend the curve."
         )
-        raise InputError(message)
     median = math.exp(brentq(lambda x: rate(x) / target - 1.0, low, high, xtol=1e-12, rtol=1e-12))
     left = annual_rate(hazard, LognormalFragility(median, beta))
     if left.beyond > share * target:
-        message = (
+        raise InputError(
             f"At the median {median:.4g}, up to {left.beyond:.3g} per year lie beyond the ends of the hazard curve "
             f"({left.below:.3g} below, {left.above:.3g} above), more than {share:g} of the target. Extend the curve, "
             "or set allowed_beyond."
         )
-        raise InputError(message)
     return median
 
 
 def _probability(fragility: Fragility | Curve) -> Curve:
     function: Any = getattr(fragility, "probability", fragility)
     if not callable(function):
-        message = (
+        raise InputError(
             f"fragility must have a method probability(im), or be a function of im, but {type(fragility).__name__} was "
             "given."
         )
-        raise InputError(message)
 
     def checked(im: Float) -> Float:
         given: Any = function(im)
         p = float_array(given)
         if p is None:
-            message = "fragility must give an array of probabilities, but it gave something else."
-            raise InputError(message)
+            raise InputError("fragility must give an array of probabilities, but it gave something else.")
         if not ((p >= 0.0) & (p <= 1.0)).all():
-            message = (
+            raise InputError(
                 f"fragility must give probabilities from 0 to 1, but gave {p[~((p >= 0.0) & (p <= 1.0))].flat[0]:g}. "
                 "A part that could not be fitted gives NaN."
             )
-            raise InputError(message)
         return p
 
     return checked

@@ -7,8 +7,6 @@ from rockflex._checks import finite_vector, float_array, in_range
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = ["confidence", "flags", "fractions", "log_at", "log_column", "log_measures", "same_length"]
-
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 
@@ -18,11 +16,10 @@ def log_column(name: str, values: ArrayLike, leave_out: str) -> Float:
     column = finite_vector(name, values, "one unit")
     bad = np.flatnonzero(column <= 0.0)
     if bad.size:
-        message = (
+        raise InputError(
             f"{name} must be positive, as logarithms are fitted, but {bad.size} of {column.size} values are not, the "
             f"first ({column[bad[0]]:g}) in row {bad[0]}. {leave_out}"
         )
-        raise InputError(message)
     return np.log(column)
 
 
@@ -30,11 +27,10 @@ def log_measures(im: ArrayLike, name: str = "im") -> Float:
     """Natural logarithm of a column of intensity measures, at least two different ones."""
     column = log_column(name, im, f"Leave those runs out: keep the rows with {name} > 0.")
     if column.size < 2 or np.ptp(column) == 0.0:
-        message = (
+        raise InputError(
             f"{name} must hold at least two different values, but {np.unique(column).size} were given in "
             f"{column.size} runs. A slope needs motions of different intensity."
         )
-        raise InputError(message)
     return column
 
 
@@ -42,18 +38,15 @@ def flags(name: str, values: ArrayLike) -> Bool:
     """Boolean array of a column of true and false, or of 1 and 0."""
     numbers = float_array(values)
     if numbers is None:
-        message = f"{name} must hold True or False for every run. Leave out the runs in which it is missing."
-        raise InputError(message)
+        raise InputError(f"{name} must hold True or False for every run. Leave out the runs in which it is missing.")
     if numbers.ndim != 1:
-        message = f"{name} must be one-dimensional, but an array of shape {numbers.shape} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be one-dimensional, but an array of shape {numbers.shape} was given.")
     bad = np.flatnonzero((numbers != 0.0) & (numbers != 1.0))
     if bad.size:
-        message = (
+        raise InputError(
             f"{name} must hold True or False (or 1 or 0) for every run, but {bad.size} of {numbers.size} values are "
             f"neither, the first ({numbers[bad[0]]:g}) in row {bad[0]}. Compare with a limit first: {name} > limit."
         )
-        raise InputError(message)
     return numbers == 1.0
 
 
@@ -62,22 +55,21 @@ def same_length(**columns: NDArray[np.generic]) -> None:
     sizes = {name: len(column) for name, column in columns.items()}
     if len(set(sizes.values())) > 1:
         listed = ", ".join(f"{name} has {size}" for name, size in sizes.items())
-        message = f"The columns must have one row a run, but {listed}. Take them from the same rows of one table."
-        raise InputError(message)
+        raise InputError(
+            f"The columns must have one row a run, but {listed}. Take them from the same rows of one table."
+        )
 
 
 def log_at(im: ArrayLike, name: str = "im") -> Float:
     """Natural logarithm of the positive numbers, of any shape, at which a fit is evaluated."""
     array = float_array(im)
     if array is None:
-        message = f"{name} must be a number or an array of numbers, but {type(im).__name__} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a number or an array of numbers, but {type(im).__name__} was given.")
     if not (np.isfinite(array) & (array > 0.0)).all():
-        message = (
+        raise InputError(
             f"{name} must be positive and finite, but {array[~(np.isfinite(array) & (array > 0.0))].flat[0]:g} is "
             "among the values. Start a grid above zero."
         )
-        raise InputError(message)
     return np.log(array)
 
 
@@ -85,8 +77,9 @@ def fractions(name: str, values: ArrayLike) -> Float:
     """Numbers strictly between 0 and 1, of any shape."""
     array = float_array(values)
     if array is None or not ((array > 0.0) & (array < 1.0)).all():
-        message = f"{name} must lie between 0 and 1, but {shown(values)} was given. The 84 % quantile is {name}=0.84."
-        raise InputError(message)
+        raise InputError(
+            f"{name} must lie between 0 and 1, but {shown(values)} was given. The 84 % quantile is {name}=0.84."
+        )
     return array
 
 

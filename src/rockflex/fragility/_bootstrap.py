@@ -13,8 +13,6 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, same_length
 
-__all__ = ["BootstrapBand", "bootstrap_band"]
-
 Float = NDArray[np.float64]
 MOST = 1_000_000  # resamples
 NEEDED = 20  # resamples that can be fitted, for quantiles of any meaning
@@ -107,12 +105,10 @@ def bootstrap_band(
     evaluate = _curve if curve is None else curve
     for name, function in (("fit_function", fit_function), ("curve", evaluate)):
         if not callable(function):
-            message = f"{name} must be a function, but {type(function).__name__} was given."
-            raise InputError(message)
+            raise InputError(f"{name} must be a function, but {type(function).__name__} was given.")
     estimate = float_array(evaluate(fit_function(measures, values), grid))
     if estimate is None:
-        message = "curve must return numbers, one for each of `at`, but it returned something else."
-        raise InputError(message)
+        raise InputError("curve must return numbers, one for each of `at`, but it returned something else.")
 
     blocks = _blocks(labels)
     generator = np.random.default_rng(whole_number("seed", seed, 0))
@@ -133,11 +129,10 @@ def bootstrap_band(
         curves.append(drawn)
         separated += bool(getattr(fit, "separated", False))
     if len(curves) < NEEDED:
-        message = (
+        raise InputError(
             f"Only {len(curves)} of {times} resamples could be fitted, {NEEDED} are needed. The first failure: "
             f"{failures[0]}"
         )
-        raise InputError(message)
     low, high = np.quantile(curves, [0.5 - 0.5 * wanted, 0.5 + 0.5 * wanted], axis=0)
     note = _note(times, failures, separated, len(blocks))
     return BootstrapBand(grid, estimate, low, high, wanted, times, len(failures), separated, len(blocks), note)
@@ -153,8 +148,7 @@ def _column(name: str, values: ArrayLike) -> NDArray[Any]:
     except ValueError:
         column = np.zeros(())
     if column.ndim == 0 or (name == "groups" and column.ndim != 1):
-        message = f"{name} must hold a value for every run, but {shown(values)} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must hold a value for every run, but {shown(values)} was given.")
     return column
 
 
@@ -165,14 +159,11 @@ def _blocks(labels: NDArray[Any]) -> list[NDArray[np.int64]]:
     try:
         codes, names = pd.factorize(labels, use_na_sentinel=True)
     except TypeError as error:
-        message = f"groups must hold names or numbers, but {shown(labels)} was given."
-        raise InputError(message) from error
+        raise InputError(f"groups must hold names or numbers, but {shown(labels)} was given.") from error
     if (codes < 0).any():
-        message = f"groups must name the record of every run, but {int((codes < 0).sum())} names are missing."
-        raise InputError(message)
+        raise InputError(f"groups must name the record of every run, but {int((codes < 0).sum())} names are missing.")
     if len(names) < 2:
-        message = f"groups must hold at least two groups, but all {labels.size} runs belong to {len(names)}."
-        raise InputError(message)
+        raise InputError(f"groups must hold at least two groups, but all {labels.size} runs belong to {len(names)}.")
     return np.split(np.argsort(codes, kind="stable"), np.cumsum(np.bincount(codes))[:-1])
 
 

@@ -10,8 +10,6 @@ from rockflex._errors import InputError
 from rockflex.fragility._arguments import flags, log_column, same_length
 from rockflex.fragility._lognormal import LognormalFragility
 
-__all__ = ["fit_capacities"]
-
 Float = NDArray[np.float64]
 
 
@@ -40,11 +38,10 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
     same_length(im=x, censored=above)
     known = x[~above]
     if known.size < 2 or np.ptp(known) == 0.0:
-        message = (
+        raise InputError(
             f"im must hold at least two different capacities that were reached, but {np.unique(known).size} were given "
             f"beside {int(above.sum())} censored records. Scale the records further up."
         )
-        raise InputError(message)
     if above.any():
         mean, beta = _maximum_likelihood(known, x[above])
         method, covariance = "censored capacities, maximum likelihood", _covariance(known, x[above], mean, beta)

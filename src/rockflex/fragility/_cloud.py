@@ -10,8 +10,6 @@ from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
 
-__all__ = ["CloudFit", "fit_cloud", "fit_line"]
-
 Float = NDArray[np.float64]
 
 
@@ -106,11 +104,10 @@ def fit_line(x: Float, y: Float) -> tuple[CloudFit, Float]:
     from statsmodels.api import OLS
 
     if x.size < 3 or np.ptp(y) == 0.0:
-        message = (
+        raise InputError(
             f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
             "different responses were given."
         )
-        raise InputError(message)
     result = OLS(y, np.column_stack((np.ones(x.size), x))).fit()
     c1, c2 = (float(value) for value in result.params)
     dispersion = float(np.sqrt(result.mse_resid))

@@ -16,8 +16,6 @@ from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["CloudFits", "fit_clouds", "fit_each_cloud"]
-
 DISPLACEMENTS = ("max_top_displacement", "max_total_top_displacement")
 
 
@@ -111,8 +109,7 @@ def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.
     needed = ["structure", "model", "status", "max_rotation", *DISPLACEMENTS, "nominal_overturning", measure]
     lacking = [name for name in needed if name not in runs]
     if lacking:
-        message = f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}."
-        raise InputError(message)
+        raise InputError(f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}.")
     for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
         yield str(structure), str(model), group
 
@@ -122,8 +119,7 @@ def _fits(
 ) -> CloudFits:
     solved = group[group["status"].notna()]
     if not len(solved):
-        message = f"No run of {shown(structure)} with {model} was solved. See the column error of the table."
-        raise InputError(message)
+        raise InputError(f"No run of {shown(structure)} with {model} was solved. See the column error of the table.")
     fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
     im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
     rocked = ~fallen & (rotation > threshold)

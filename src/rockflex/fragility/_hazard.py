@@ -10,8 +10,6 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
 
-__all__ = ["HazardCurve"]
-
 Float = NDArray[np.float64]
 
 
@@ -38,21 +36,20 @@ class HazardCurve(Value):
     def __init__(self, im: ArrayLike, rate: ArrayLike) -> None:
         measures, rates = finite_vector("im", im, "one unit"), finite_vector("rate", rate, "1/year")
         if measures.size != rates.size or measures.size < 2:
-            message = (
+            raise InputError(
                 f"A hazard curve needs two points or more, a rate for each measure, but {measures.size} measures and "
                 f"{rates.size} rates were given."
             )
-            raise InputError(message)
         if measures[0] <= 0.0 or (np.diff(measures) <= 0.0).any():
-            message = "im must be positive and rise from point to point. Sort the curve by im and drop repeated points."
-            raise InputError(message)
+            raise InputError(
+                "im must be positive and rise from point to point. Sort the curve by im and drop repeated points."
+            )
         bad = np.flatnonzero((rates <= 0.0) | (np.diff(rates, prepend=np.inf) >= 0.0))
         if bad.size:
-            message = (
+            raise InputError(
                 f"rate must be positive and fall from point to point, but rate[{bad[0]}] = {rates[bad[0]]:g} does not. "
                 "Give annual rates of exceedance; drop the points at which the rate is zero."
             )
-            raise InputError(message)
         object.__setattr__(self, "im", measures)
         object.__setattr__(self, "rate", rates)
 
@@ -73,9 +70,8 @@ class HazardCurve(Value):
 def _between(name: str, x: Float, points: Float, values: Float) -> Float:
     margin = 1e-12 * (points[-1] - points[0])
     if (x < points[0] - margin).any() or (x > points[-1] + margin).any():
-        message = (
+        raise InputError(
             f"{name} must lie between {np.exp(points[0]):.4g} and {np.exp(points[-1]):.4g}, the ends of the hazard "
             "curve, which is not extrapolated."
         )
-        raise InputError(message)
     return np.interp(x, points, values)

@@ -14,8 +14,6 @@ from rockflex.fragility._arguments import confidence, flags, log_at, log_measure
 from rockflex.fragility._predictor import Standardised, standard_error
 from rockflex.fragility._unanimous import UnanimousOutcome
 
-__all__ = ["LogisticFit", "fit_logistic", "is_separated"]
-
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 Method = Literal["maximum likelihood", "Firth"]
@@ -105,11 +103,10 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     same_length(im=x, outcome=y)
     if y.all() or not y.any():
         alike = UnanimousOutcome(bool(y[0]), y.size)
-        message = (
+        raise InputError(
             f"outcome is {alike.outcome} in all {alike.n} runs, so there is no curve to fit. {alike.note} "
             "Add runs at other measures, or use fit_outcomes, which goes on with such a group."
         )
-        raise InputError(message)
     scaled = Standardised(x)
     separated = is_separated(x, y)
     found = None if separated else _maximum_likelihood(scaled, y)
@@ -165,11 +162,10 @@ def _firth(scaled: Standardised, y: Bool) -> tuple[Float, Float]:
         warnings.simplefilter("ignore")  # `converged_` says the same
         model.fit(scaled.x[:, None], y)
     if not model.converged_:
-        message = (
+        raise SolverError(
             f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
             "Look for a single run far from all others."
         )
-        raise SolverError(message)
     parameters = np.array([model.intercept_, model.coef_[0]])
     p = expit(scaled.design @ parameters)
     information = (scaled.design.T * (p * (1.0 - p))) @ scaled.design

@@ -11,8 +11,6 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, fractions, log_at
 
-__all__ = ["LognormalFragility"]
-
 Float = NDArray[np.float64]
 
 
@@ -76,8 +74,7 @@ class LognormalFragility(Value):
         from scipy.special import ndtr, ndtri
 
         if self.covariance is None:
-            message = "A band needs the covariance of (ln median, beta), which this curve was given without."
-            raise InputError(message)
+            raise InputError("A band needs the covariance of (ln median, beta), which this curve was given without.")
         z = self._score(im)
         gradient = np.stack((np.full_like(z, -1.0), -z)) / self.beta
         error = np.sqrt(np.einsum("i...,ij,j...->...", gradient, self.covariance, gradient))

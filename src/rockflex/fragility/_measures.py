@@ -13,8 +13,6 @@ from rockflex.fragility._cloud import fit_line
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["compare_measures"]
-
 Float = NDArray[np.float64]
 
 
@@ -88,25 +86,26 @@ def _check_table(name: str, table: object) -> None:
     import pandas as pd
 
     if not isinstance(table, pd.DataFrame) or table.shape[1] == 0:
-        message = f"{name} must be a pandas DataFrame with one column or more, but {type(table).__name__} was given."
-        raise InputError(message)
+        raise InputError(
+            f"{name} must be a pandas DataFrame with one column or more, but {type(table).__name__} was given."
+        )
 
 
 def _check_rows(name: str, index: "pd.Index[Any]", expected: "pd.Index[Any]") -> None:
     if not index.equals(expected):
-        message = (
+        raise InputError(
             f"{name} must have the same row labels as measures, in the same order. Take all from one table, or drop "
             "the labels of each with reset_index(drop=True)."
         )
-        raise InputError(message)
 
 
 def _numbers(name: str, column: "pd.Series[Any]") -> Float:
     try:
         return column.to_numpy(dtype=np.float64, na_value=np.nan)
     except (TypeError, ValueError) as error:
-        message = f"covariates[{shown(name)}] must hold numbers, but {column.dtype} was given. Leave the column out."
-        raise InputError(message) from error
+        raise InputError(
+            f"covariates[{shown(name)}] must hold numbers, but {column.dtype} was given. Leave the column out."
+        ) from error
 
 
 def _p_value(covariate: Float, residuals: Float) -> float:

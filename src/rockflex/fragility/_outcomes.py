@@ -17,8 +17,6 @@ from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._unanimous import UnanimousOutcome
 
-__all__ = ["OutcomeFragility", "OutcomeProbabilities", "fit_outcomes"]
-
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 FEW = 10  # runs below which a note is left
@@ -100,11 +98,10 @@ class OutcomeFragility(Value):
         """
         limits = np.exp(log_at(limit, "limit"))
         if (limits < self.threshold * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
-            message = (
+            raise InputError(
                 f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was given. "
                 "Below, a run counts as one without rocking; above, overturned runs need not exceed it."
             )
-            raise InputError(message)
         _, rocks, falls = self.probabilities(im)
         beyond = np.full_like(limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
         return falls + _weighted(rocks, beyond)
@@ -167,18 +164,16 @@ def fit_outcomes(
 def _check(rotations: Float, falls: Bool, threshold: float) -> None:
     negative = np.flatnonzero(rotations < 0.0)
     if negative.size:
-        message = (
+        raise InputError(
             f"rotation must be zero or positive, but {negative.size} of {rotations.size} values are not, the first "
             f"({rotations[negative[0]]:g}) in row {negative[0]}. Give the largest magnitude of every run."
         )
-        raise InputError(message)
     small = np.flatnonzero(falls & (rotations <= threshold))
     if small.size:
-        message = (
+        raise InputError(
             f"{small.size} overturned runs have a rotation of at most the threshold {threshold:g} rad, the first in "
             f"row {small[0]} ({rotations[small[0]]:g} rad). Check that the columns belong together, and the unit."
         )
-        raise InputError(message)
 
 
 def _curve(name: str, im: Float, outcome: Bool, notes: list[str]) -> LogisticFit | UnanimousOutcome | None:

@@ -3,8 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Standardised", "standard_error"]
-
 Float = NDArray[np.float64]
 
 

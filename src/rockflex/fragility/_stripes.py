@@ -12,8 +12,6 @@ from rockflex.fragility._arguments import log_measures, same_length
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._predictor import Standardised
 
-__all__ = ["fit_stripes"]
-
 Float = NDArray[np.float64]
 
 
@@ -43,11 +41,10 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
     same_length(im_levels=x, n_exceeding=events, n_total=total)
     if (events > total).any():
         row = int(np.flatnonzero(events > total)[0])
-        message = (
+        raise InputError(
             f"n_exceeding must be at most n_total, but stripe {row} has {events[row]:g} of {total[row]:g}. "
             "Give counts, not fractions, and check their order."
         )
-        raise InputError(message)
     _check_overlap(x, events, total)
 
     from statsmodels.api import GLM, families
@@ -59,15 +56,15 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
         family = families.Binomial(link=families.links.Probit())
         result = GLM(np.column_stack((events, total - events)), scaled.design, family=family).fit()
     if not (result.converged and np.isfinite(result.params).all()):
-        message = "The fit of the stripes did not converge. Add stripes at which some runs exceed and others do not."
-        raise SolverError(message)
+        raise SolverError(
+            "The fit of the stripes did not converge. Add stripes at which some runs exceed and others do not."
+        )
     a, b, covariance = scaled.unscaled(np.asarray(result.params), np.asarray(result.cov_params()))
     if b <= 0.0:
-        message = (
+        raise InputError(
             f"The fraction of runs that exceed does not rise with im_levels (slope {b:.3g}), so no lognormal capacity "
             "fits. Check the order of the columns."
         )
-        raise InputError(message)
     back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
     return LognormalFragility(
         math.exp(-a / b), 1.0 / b, back @ covariance @ back.T, int(total.sum()), "binomial counts, maximum likelihood"
@@ -78,8 +75,9 @@ def _counts(name: str, values: ArrayLike, least: int) -> Float:
     numbers = finite_vector(name, values, "runs")
     bad = np.flatnonzero((numbers != np.rint(numbers)) | (numbers < least))
     if bad.size:
-        message = f"{name} must hold whole numbers of at least {least}, but row {bad[0]} holds {numbers[bad[0]]:g}."
-        raise InputError(message)
+        raise InputError(
+            f"{name} must hold whole numbers of at least {least}, but row {bad[0]} holds {numbers[bad[0]]:g}."
+        )
     return numbers
 
 
@@ -87,14 +85,12 @@ def _check_overlap(x: Float, events: Float, total: Float) -> None:
     with_events, without = x[events > 0], x[events < total]
     if with_events.size == 0 or without.size == 0:
         word, side = ("No run exceeds", "larger") if with_events.size == 0 else ("All runs exceed", "smaller")
-        message = f"{word} the limit at any level, so no curve can be fitted. Add stripes at {side} levels."
-        raise InputError(message)
+        raise InputError(f"{word} the limit at any level, so no curve can be fitted. Add stripes at {side} levels.")
     low, high = math.exp(without.max()), math.exp(with_events.min())
     if low <= high:
         between = f"at {low:.4g}" if low == high else f"between {low:.4g} and {high:.4g}"
-        message = (
+        raise InputError(
             f"The stripes are separated {between}: no run exceeds the limit below, all do above, and the likeliest "
             "dispersion is zero. Add stripes near that level, or give the single runs to fit_logistic, which has a "
             "penalty for this."
         )
-        raise InputError(message)

@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex.fragility._arguments import confidence, log_at
 
-__all__ = ["UnanimousOutcome"]
-
 Float = NDArray[np.float64]
 
 

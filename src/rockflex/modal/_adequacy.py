@@ -12,8 +12,6 @@ from rockflex._values import Value
 from rockflex.modal._adequacy_frequencies import frequency_errors
 from rockflex.modal._rocking import RockingProperties
 
-__all__ = ["Adequacy", "AdequacyTolerance", "adequacy"]
-
 Float = NDArray[np.float64]
 
 _SLACK = 1e-9  # rounding of sums that are equal when all modes are kept
@@ -176,8 +174,7 @@ def adequacy(
     """
     p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
-        message = "properties must have at least one mode, but a rigid structure was given: it needs none."
-        raise InputError(message)
+        raise InputError("properties must have at least one mode, but a rigid structure was given: it needs none.")
     limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= _SLACK * p.translational_inertia
@@ -211,11 +208,10 @@ def _mass_above(p: RockingProperties, base_mass: float) -> float:
     modal = float(p.effective_mass.sum())
     mass = p.m_tot - positive("base_mass", base_mass, "kg", zero=True)
     if mass < modal * (1.0 - _SLACK):
-        message = (
+        raise InputError(
             f"base_mass must leave the {modal:.6g} kg that the modes move, but {base_mass:g} kg of m_tot = "
             f"{p.m_tot:.6g} kg was given."
         )
-        raise InputError(message)
     return mass
 
 

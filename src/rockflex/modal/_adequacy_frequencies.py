@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted import lowest_uplifted
 
-__all__ = ["frequency_errors"]
-
 Float = NDArray[np.float64]
 
 

@@ -12,8 +12,6 @@ from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
 from rockflex._values import Value
 
-__all__ = ["NO_PARTICIPATION", "ModalProperties", "modal_properties", "normalising_ordinates"]
-
 Float = NDArray[np.float64]
 
 # A participation below this share of the largest one possible is rounding of the eigenvectors.
@@ -153,11 +151,10 @@ def _mass_normalised_modes(mass: Float, stiffness: Float) -> tuple[Float, Float]
         _, omega, vectors = np.linalg.svd(np.linalg.solve(root, factor.T).T)
         shapes = np.asarray(np.linalg.solve(root.T, vectors.T), dtype=np.float64)
     if not omega[-1] > omega.size * np.finfo(float).eps * omega[0]:
-        message = (
+        raise InputError(
             f"The frequencies span too wide a range for a modal analysis: {omega[-1]:.3g} to {omega[0]:.3g} "
             "rad/s. Condense floors of nearly no mass out of the matrices first."
         )
-        raise InputError(message)
     return omega[::-1].copy(), shapes[:, ::-1]
 
 

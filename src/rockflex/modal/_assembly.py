@@ -14,8 +14,6 @@ from rockflex.modal._floors import FloorModes
 from rockflex.modal._participation import modes_that_take_part
 from rockflex.modal._rocking import RockingProperties
 
-__all__ = ["rocking_properties"]
-
 
 @computable("The inertia of the structure with this base")
 def rocking_properties(
@@ -69,11 +67,10 @@ def rocking_properties(
     """
     h = checked_heights(heights)
     if not np.array_equal(h, instance("modal", modal, ModalProperties).heights):
-        message = (
+        raise InputError(
             f"heights must be those of the modal analysis, {modal.heights}, but {h} was given. "
             "Run modal_properties anew for other heights."
         )
-        raise InputError(message)
     m = checked_mass(mass, h.size)
     base = positive("base_mass", base_mass, "kg", zero=True)
     b = positive("half_width", half_width, "m")

@@ -9,8 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._checks import dimensions, finite_matrix, finite_vector, mode_count
 from rockflex._values import Value
 
-__all__ = ["FloorModes"]
-
 Float = NDArray[np.float64]
 
 

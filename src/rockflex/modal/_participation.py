@@ -14,8 +14,6 @@ from rockflex.modal._analysis import NO_PARTICIPATION, ModalProperties, normalis
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._rocking import RockingProperties
 
-__all__ = ["MassNormalisedModes", "modes_that_take_part"]
-
 Float = NDArray[np.float64]
 
 
@@ -134,10 +132,9 @@ def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) 
         mode = int(rotation_only[0])
         below = int(np.sum(kept < mode))
         remedy = f", or keep only the modes below it (n_modes={below})." if below else "."
-        message = (
+        raise InputError(
             f"Mode {mode + 1} ({modal.omega[mode]:.6g} rad/s) takes part in the base moment but not in the "
             "base shear, so it has no modal coordinate D_n. Change a mass or a stiffness slightly"
             f"{remedy}"
         )
-        raise InputError(message)
     return kept

@@ -10,8 +10,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal._tendons import Tendon, balanced
 
-__all__ = ["PIVOT_VALUES", "Pivot", "checked_side", "pivot_inertia", "pivot_of"]
-
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
 """What `pivot_of` takes of `RockingProperties`, by name."""
 
@@ -77,8 +75,9 @@ def checked_side(side: int) -> int:
         If `side` is neither.
     """
     if real_or_nan(side) not in (1.0, -1.0):
-        message = f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given."
-        raise InputError(message)
+        raise InputError(
+            f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given."
+        )
     return int(side)
 
 

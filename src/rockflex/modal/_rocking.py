@@ -27,8 +27,6 @@ from rockflex.modal._rocking_checks import (
 )
 from rockflex.modal._tendons import Tendon, balanced, tendon_set
 
-__all__ = ["RockingProperties"]
-
 Float = NDArray[np.float64]
 
 
@@ -135,8 +133,7 @@ class RockingProperties(Value):
         n_modes = modes["omega"].size
         inertia = checked_inertia(modes, scalars, translational_inertia)
         if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
-            message = f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}."
-            raise InputError(message)
+            raise InputError(f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.")
         damping = damping_ratios("zeta", zeta, n_modes)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
         held = tendons_within(tendon_set(tendons), scalars["half_width"], e)

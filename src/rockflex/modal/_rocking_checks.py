@@ -10,16 +10,6 @@ from rockflex.modal._floors import FloorModes
 from rockflex.modal._pivot import pivot_inertia
 from rockflex.modal._tendons import Tendon
 
-__all__ = [
-    "SLACK",
-    "check_modes",
-    "checked_base_mass",
-    "checked_eccentricity",
-    "checked_inertia",
-    "checked_top_height",
-    "tendons_within",
-]
-
 Float = NDArray[np.float64]
 
 SLACK = 1e-9  # of sums that are equal when all modes are kept: room for their rounding
@@ -30,44 +20,41 @@ def check_modes(modes: dict[str, Float]) -> None:
     omega, effective_mass = modes["omega"], modes["effective_mass"]
     for name, values in modes.items():
         if values.size != omega.size:
-            message = f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given."
-            raise InputError(message)
+            raise InputError(
+                f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given."
+            )
     for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
         if values.min(initial=np.inf) <= 0.0:
             i = int(np.argmin(values))
-            message = (
+            raise InputError(
                 f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. "
                 "Leave out modes that do not take part."
             )
-            raise InputError(message)
     falls = np.flatnonzero(omega[1:] < omega[:-1])
     if falls.size:
         i = int(falls[0])
-        message = (
+        raise InputError(
             f"omega must rise from mode to mode, but omega[{i + 1}] = {omega[i + 1]:g} rad/s is below "
             f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency."
         )
-        raise InputError(message)
 
 
 @computable("The inertia of the structure on this eccentric base")
 def checked_eccentricity(modes: dict[str, Float], scalars: dict[str, float], inertia: float, given: float) -> float:
     e, b = finite("eccentricity", given, "m") + 0.0, scalars["half_width"]  # + 0.0 takes the sign from -0.0
     if not abs(e) < b:
-        message = (
+        raise InputError(
             f"eccentricity must be smaller than half_width, {b:g} m, to either side, but {e:g} m was given. It is how "
             "far the axis of the masses stands to the right of the middle of the base; check the units too."
         )
-        raise InputError(message)
     modal_inertia = float(modes["effective_mass"] @ modes["effective_height"] ** 2)
     nearer = pivot_inertia(abs(e), b, scalars["i_theta"], inertia, scalars["m_tot"])
     if nearer <= modal_inertia:
-        message = (
+        raise InputError(
             f"eccentricity must leave inertia to rotate about the nearer pivot, but with {e:.9g} m of half_width = "
             f"{b:.9g} m only the {modal_inertia:.9g} kg m² of the modes are left. Move the axis of the masses further "
             "from the edge of the base."
         )
-        raise InputError(message)
     return e
 
 
@@ -79,11 +66,10 @@ def tendons_within(tendons: tuple[Tendon, ...], half_width: float, eccentricity:
             base, origin = f"{half_width:g} m to each side of its centre", "the centre"
             if eccentricity:
                 base, origin = f"from {left:g} to {right:g} m", "the axis of the masses, as the base's edges are"
-            message = (
+            raise InputError(
                 f"Tendons must pass through the base, {base}, but one stands at {tendon.position:g} m. Positions are "
                 f"measured from {origin}."
             )
-            raise InputError(message)
     return tendons
 
 
@@ -99,11 +85,10 @@ def checked_base_mass(modes: dict[str, Float], m_tot: float, inertia: float, giv
     if given is not None:
         base = positive("base_mass", given, "kg", zero=True)
         if m_tot - base < modal_mass - SLACK * m_tot:
-            message = (
+            raise InputError(
                 f"base_mass must leave the {modal_mass:.9g} kg that the modes move, but {base:.9g} kg of m_tot = "
                 f"{m_tot:.9g} kg was given."
             )
-            raise InputError(message)
         return base
     complete = mass.size > 0 and float(mass @ modes["effective_height"] ** 2) >= (1.0 - SLACK) * inertia
     return max(m_tot - modal_mass, 0.0) if complete else None
@@ -116,36 +101,32 @@ def checked_inertia(modes: dict[str, Float], scalars: dict[str, float], given: f
     modal_inertia = float(mass @ modes["effective_height"] ** 2)
     i_theta, m_tot = scalars["i_theta"], scalars["m_tot"]
     if m_tot < modal_mass * (1.0 - SLACK):
-        message = (
+        raise InputError(
             f"m_tot must be at least the sum of effective_mass, {modal_mass:.9g} kg, but {m_tot:.9g} kg was "
             "given. It is the mass of the whole structure with its base; check the units too."
         )
-        raise InputError(message)
     if i_theta <= modal_inertia:
-        message = (
+        raise InputError(
             "i_theta must exceed the sum of effective_mass * effective_height**2, "
             f"{modal_inertia:.9g} kg m², but {i_theta:.9g} kg m² was given: no inertia is left to rotate. "
             "It is taken about a pivot, with the base; check the units too."
         )
-        raise InputError(message)
     source = "i_theta - m_tot * half_width**2, its default," if given is None else "what was given"
     if given is None:
         inertia = i_theta - m_tot * scalars["half_width"] ** 2
     else:
         inertia = positive("translational_inertia", given, "kg m²")
     if not modal_inertia * (1.0 - SLACK) <= inertia < i_theta:
-        message = (
+        raise InputError(
             "translational_inertia must be at least the sum of effective_mass * effective_height**2, "
             f"{modal_inertia:.9g} kg m², and below i_theta, {i_theta:.9g} kg m², but {source} is "
             f"{inertia:.9g} kg m². Give the sum of m_i h_i² over the masses above the base."
         )
-        raise InputError(message)
     least = inertia + m_tot * scalars["half_width"] ** 2
     if i_theta < least * (1.0 - PRINTED):
-        message = (
+        raise InputError(
             "i_theta must be at least translational_inertia + m_tot * half_width**2, "
             f"{least:.9g} kg m², but {i_theta:.9g} kg m² was given. It is taken about a pivot, so it changes with the "
             "base: properties.with_half_width(B) is the same structure on another one."
         )
-        raise InputError(message)
     return max(inertia, modal_inertia)

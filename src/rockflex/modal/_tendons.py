@@ -9,8 +9,6 @@ from rockflex._checks import finite, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = ["Tendon", "balanced", "tendon_set"]
-
 
 @dataclass(frozen=True)
 class Tendon:
@@ -53,11 +51,10 @@ class Tendon:
             limit = positive("yield_force", self.yield_force, "N")
             vars(self).update(yield_force=limit)
             if self.initial_force > limit:
-                message = (
+                raise InputError(
                     f"initial_force must not exceed yield_force, {limit:g} N, but {self.initial_force:g} N was given. "
                     "A tendon that has yielded is not elastic; check the units too."
                 )
-                raise InputError(message)
 
 
 def tendon_set(given: Any) -> tuple[Tendon, ...]:
@@ -71,10 +68,9 @@ def tendon_set(given: Any) -> tuple[Tendon, ...]:
     items = (given,) if isinstance(given, Tendon) else tuple(given) if isinstance(given, Iterable) else (given,)
     for item in items:
         if not isinstance(item, Tendon):
-            message = (
+            raise InputError(
                 f"tendons must be Tendon objects, but {shown(item)} was given. Write Tendon(initial_force, stiffness)."
             )
-            raise InputError(message)
     return items
 
 

@@ -16,8 +16,6 @@ from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted_damping import uplifted_damping
 
-__all__ = ["UpliftedModes", "frequency_equation", "lowest_uplifted", "uplifted_modes"]
-
 Float = NDArray[np.float64]
 HIGHEST = 1e60  # rad/s, whose fourth power is still a number
 
@@ -199,8 +197,7 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     pivot = _pivot(instance("properties", properties, RockingProperties), side)
     frequencies = float_array(omega)
     if frequencies is None or not (np.abs(frequencies) < HIGHEST).all():
-        message = f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given."
-        raise InputError(message)
+        raise InputError(f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given.")
     square = frequencies[..., None] ** 2
     inertia = properties.effective_mass * properties.effective_height**2
     gap = properties.omega**2 - square

@@ -6,8 +6,6 @@ from rockflex._checks import finite, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = ["BoucWen"]
-
 
 @dataclass(frozen=True)
 class BoucWen:
@@ -49,20 +47,17 @@ class BoucWen:
         for name, value in values.items():
             object.__setattr__(self, name, value)
         if not 0.0 <= self.post_yield_ratio < 1.0:
-            message = (
+            raise InputError(
                 f"post_yield_ratio must lie in [0, 1), but {shown(self.post_yield_ratio)} was given. "
                 "Give the stiffness after yielding over the elastic one; for an elastic structure leave bouc_wen out."
             )
-            raise InputError(message)
         if self.exponent < 1.0:
-            message = (
+            raise InputError(
                 f"exponent must be at least 1, but {shown(self.exponent)} was given. 8 is a sharp yield, 1 a round one."
             )
-            raise InputError(message)
         if not (self.gamma > 0.0 and abs(self.beta) <= self.gamma and self.gamma + self.beta > 0.0):
-            message = (
+            raise InputError(
                 f"gamma must be positive and -gamma < beta <= gamma, but gamma={shown(self.gamma)} and "
                 f"beta={shown(self.beta)} were given: the spring would give back more energy than it takes. The paper "
                 "has 0.5 for both."
             )
-            raise InputError(message)

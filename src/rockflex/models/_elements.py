@@ -10,8 +10,6 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.models._phase import Border, Key
 
-__all__ = ["CLOSED", "LEFT", "RIGHT", "Base", "ElasticTendon", "Element", "border_of", "elements_of", "first_key"]
-
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or turning about one pivot; the sign of θ
 
 

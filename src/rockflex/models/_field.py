@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from rockflex._kernel import kernel
 
-__all__ = ["EXTRA", "Field", "field_rates", "inertia_left", "pivot_at"]
-
 Array = NDArray[np.float64]
 
 EXTRA = 4  # components after those of the simplified models

@@ -16,16 +16,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 
-__all__ = [
-    "ForgottenLaw",
-    "ImpactLaw",
-    "Restitution",
-    "SidedRestitution",
-    "VVELComplete",
-    "VVELSimplified",
-    "housner",
-]
-
 Array = NDArray[np.float64]
 
 
@@ -119,11 +109,10 @@ class Restitution:
     def __post_init__(self) -> None:
         e = finite("e", self.e, "")
         if not 0.0 <= e <= 1.0:
-            message = (
+            raise InputError(
                 f"The restitution e must lie from 0 to 1, but {shown(self.e)} was given. It is the rotation velocity "
                 "after an impact over that before it; more than 1 would gain energy."
             )
-            raise InputError(message)
         object.__setattr__(self, "e", e)
         object.__setattr__(self, "shortest_excursion", positive("shortest_excursion", self.shortest_excursion, "s"))
 
@@ -178,8 +167,7 @@ class ForgottenLaw:
             Always.
         """
         del properties, modal_velocity, rotation_velocity
-        message = f"The impact law {self.description} was not saved with the response. Give the law itself."
-        raise InputError(message)
+        raise InputError(f"The impact law {self.description} was not saved with the response. Give the law itself.")
 
 
 def housner(properties: RockingProperties) -> Restitution | SidedRestitution:
@@ -206,9 +194,8 @@ def housner(properties: RockingProperties) -> Restitution | SidedRestitution:
 
 def _not_negative(eta: float, formula: str, kind: str) -> float:
     if eta < 0.0:
-        message = (
+        raise InputError(
             f"Housner's coefficient {formula} {eta:.4g}: {kind} this squat stops at its first impact. "
             "Give impact=VVELSimplified()."
         )
-        raise InputError(message)
     return eta

@@ -11,8 +11,6 @@ from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import LINEAR, observe_all
 from rockflex.models._quantities import Quantities, rows_of
 
-__all__ = ["accelerations", "acting_side", "rates_of", "values_of"]
-
 Array = NDArray[np.float64]
 
 

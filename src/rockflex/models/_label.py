@@ -15,8 +15,6 @@ from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, hou
 from rockflex.models._linear import LinearModel
 from rockflex.models._nonlinear import NonlinearModel
 
-__all__ = ["Model", "RockingModel", "parse_model"]
-
 RockingModel = LinearModel | NonlinearModel
 
 _PATTERN = re.compile(
@@ -76,12 +74,10 @@ class Model:
         for name, meaning in meanings.items():
             value = getattr(self, name)
             if not isinstance(value, bool | np.bool_):
-                message = f"{name} must be {meaning}, but {shown(value)} was given."
-                raise InputError(message)
+                raise InputError(f"{name} must be {meaning}, but {shown(value)} was given.")
             object.__setattr__(self, name, bool(value))
         if self.closure is not None and not one_of(self.closure, ("SI", "E")):
-            message = f'closure must be "SI", "E" or None, but {shown(self.closure)} was given.'
-            raise InputError(message)
+            raise InputError(f'closure must be "SI", "E" or None, but {shown(self.closure)} was given.')
         self._check_combination()
 
     def _check_combination(self) -> None:
@@ -128,15 +124,15 @@ class Model:
             If the structure has fewer modes than the model keeps, or the model cannot have what is given.
         """
         if self.n_modes != 0 and properties.n_modes == 0:
-            message = f'Model {self.label} needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".'
-            raise InputError(message)
+            raise InputError(
+                f'Model {self.label} needs modes, but the structure is a rigid block. Use "rigid" or "rigid-C".'
+            )
         if self.n_modes is not None and self.n_modes > properties.n_modes:
             whole = replace(self, n_modes=None).label
-            message = (
+            raise InputError(
                 f"Model {self.label} needs {_modes(self.n_modes)}, but the structure has {properties.n_modes}. "
                 f"Give more modes, or use {whole} for all there are."
             )
-            raise InputError(message)
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         self._check_missing_mass(kept)
         label = self._check_yielding(kept, bouc_wen)
@@ -148,26 +144,23 @@ class Model:
 
     def _check_missing_mass(self, kept: RockingProperties) -> None:
         if self.missing_mass and kept.base_mass is None:
-            message = (
+            raise InputError(
                 f"{self.label} needs the mass above the base, but these properties tell the total mass alone. Give "
                 "RockingProperties their base_mass, in kg."
             )
-            raise InputError(message)
 
     def _check_yielding(self, kept: RockingProperties, bouc_wen: BoucWen | None) -> str:
         """The label with its -BW."""
         if bouc_wen is None:
             if self.yields:
-                message = f"{self.label} needs its hysteresis. Give bouc_wen=BoucWen(yield_displacement=...)."
-                raise InputError(message)
+                raise InputError(f"{self.label} needs its hysteresis. Give bouc_wen=BoucWen(yield_displacement=...).")
             return self.label
         if kept.n_modes != 1:
             one = "2DOF-S" if self.lifts else "1DOF-fixed"
-            message = (
+            raise InputError(
                 f"bouc_wen goes with models of one mode, but {self.label} has {kept.n_modes}. Use {one}, or leave "
                 "it out."
             )
-            raise InputError(message)
         return self.label if self.yields else replace(self, yields=True).label
 
     def _law(self, kept: RockingProperties) -> ImpactLaw:
@@ -178,11 +171,10 @@ class Model:
             return VVELSimplified()
         modal_inertia = float(kept.effective_mass @ kept.effective_height**2)
         if self.closure is None and kept.n_modes > 1 and modal_inertia < (1.0 - _SAME) * kept.translational_inertia:
-            message = (
+            raise InputError(
                 f"{self.label} needs all modes, but those given carry {modal_inertia / kept.translational_inertia:.2%} "
                 "of Σ m_i h_i²: Eq. 19 is one equation for many velocities. Use MDOF-C-SI or MDOF-C-E."
             )
-            raise InputError(message)
         return VVELComplete()
 
 
@@ -212,16 +204,14 @@ def parse_model(model: str | Model) -> Model:
     if found is None:
         if isinstance(model, str) and model in named:  # pyright: ignore[reportUnnecessaryIsInstance]
             return named[model]
-        message = f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model."
-        raise InputError(message)
+        raise InputError(f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model.")
     lifts, complete = found["kind"] != "fixed", found["kind"] == "C"
     closures: dict[str | None, Literal["SI", "E"] | None] = {"SI": "SI", "E": "E"}
     closure = closures.get(found["closure"])
     n_modes = None if found["all"] else int(found["count"]) - lifts
     odd = (found["all"] and not lifts) or n_modes == 0 or (closure is not None and not complete)
     if odd:
-        message = f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model."
-        raise InputError(message)
+        raise InputError(f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model.")
     return Model(
         n_modes, lifts, complete, closure, yields=found["yields"] is not None, missing_mass=found["missing"] is not None
     )

@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GROUND", "HEADER", "SIDE", "TIME", "StateLayout", "layout_of"]
-
 Array = NDArray[np.float64]
 
 TIME, SIDE, GROUND, HEADER = 0, 1, 2, 3  # columns of a kept state before the state vector, and how many

@@ -8,8 +8,6 @@ from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
 
-__all__ = ["LinearModel"]
-
 NEUTRAL = 0.01  # of L_0^r g: nearer to balance the steady rotation, ∝ 1/`rocking_stiffness`, drowns the motion
 
 

@@ -14,8 +14,6 @@ from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
 from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key
 
-__all__ = ["ModalModel"]
-
 Array = NDArray[np.float64]
 
 QUARTER_TURN = 0.5 * np.pi

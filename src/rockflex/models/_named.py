@@ -10,8 +10,6 @@ from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
 from rockflex.models._quantities import Quantities, Share, collected, joined
 
-__all__ = ["floor_quantities", "modal_displacement", "quantities", "rotation_by_side"]
-
 Array = NDArray[np.float64]
 
 

@@ -14,8 +14,6 @@ from rockflex.models._linear import LinearModel
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
 
-__all__ = ["NonlinearModel"]
-
 
 @dataclass(frozen=True, eq=False)
 class NonlinearModel(ModalModel):

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from rockflex._kernel import kernel, python_kernel
 from rockflex.models._field import ARM, MASS, PULL, Field, pivot_at
 
-__all__ = ["HORIZONTAL", "LEFT_OUT", "LINEAR", "SWAY", "VERTICAL", "Posture", "observe", "observe_all", "posture_of"]
-
 Array = NDArray[np.float64]
 
 LINEAR = 0  # the row itself

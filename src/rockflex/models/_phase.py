@@ -5,8 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FREEDOMS", "LANDS", "LIFTS", "OVERTURNS", "Arrow", "Border", "Exit", "Guard", "Key", "Phase"]
-
 Array = NDArray[np.float64]
 
 FREEDOMS = ("rotation",)  # of the base, in the order in which the borders name them

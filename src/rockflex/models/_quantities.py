@@ -12,8 +12,6 @@ from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
 
-__all__ = ["Quantities", "Share", "collected", "joined", "lost_support_row", "rows_of"]
-
 Array = NDArray[np.float64]
 
 Share = tuple[int, dict[str, Any]]  # the kind of one quantity, and its shares by name

@@ -15,8 +15,6 @@ from rockflex.models._layout import GROUND, HEADER
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
 
-__all__ = ["Reactions", "printed_reactions", "reactions"]
-
 Array = NDArray[np.float64]
 
 

@@ -9,8 +9,6 @@ from rockflex.models._kept import accelerations, acting_side
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, SIDE
 
-__all__ = ["floor_accelerations", "stored_energies", "stretch_per_arm", "tendon_energy"]
-
 Array = NDArray[np.float64]
 
 

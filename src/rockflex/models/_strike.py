@@ -12,8 +12,6 @@ from rockflex._kernel import Callback, kernel
 from rockflex.modal import RockingProperties
 from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution, VVELComplete, VVELSimplified
 
-__all__ = ["Impact", "OwnLaw", "impact_of", "kinetic_energy", "may_pass", "stick", "strike"]
-
 Array = NDArray[np.float64]
 
 SHARED, SCALED, CALLED = 0, 1, 2  # kinds of law: Eq. 25 or a restitution; scaled to Eq. 19; the user's own
@@ -124,8 +122,9 @@ class OwnLaw:
             velocity, spin = self._law.after(self._properties, state[n : 2 * n].copy(), float(state[-1]))
             checked = finite_vector("the modal velocity after an impact", velocity, "m/s")
             if checked.size != n:
-                message = f"The modal velocity after an impact must have {n} values, but {checked.size} were returned."
-                raise InputError(message)
+                raise InputError(
+                    f"The modal velocity after an impact must have {n} values, but {checked.size} were returned."
+                )
             state[n : 2 * n] = checked
             state[-1] = finite("the rotation velocity after an impact", spin, "rad/s")
         except Exception as error:

@@ -12,8 +12,6 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number, read_lines
 
-__all__ = ["find_header", "parse_at2", "read_at2"]
-
 HEADER_LINES = 12
 _DIGITS = 18  # of NPTS that are read: any file holds less
 _COUNT, _NUMBER, _APART = r"(\d++)", rf"({DECIMAL.pattern})", r"(?:\s*+,\s++|\s++)"
@@ -75,31 +73,27 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
     """Build the motion from the lines of an AT2 file."""
     header = find_header(lines)
     if header is None:
-        message = (
+        raise InputError(
             f"{file}: no header line with NPTS and DT among the first {HEADER_LINES} lines, such as "
             '"NPTS= 4000, DT= .00500 SEC". Read columns of numbers with read_motion instead.'
         )
-        raise InputError(message)
     start, npts, step = header
     unit = re.search(r"units\s++of\s++\(?([\w/]++)", "\n".join(lines[:start]), re.IGNORECASE)
     if unit and unit[1].upper() != "G":
-        message = (
+        raise InputError(
             f"{file}: the header speaks of units of {unit[1]}, but an AT2 file holds an acceleration in g. "
             "Use the AT2 file of the record, not VT2 or DT2; values in m/s² belong into a plain text file."
         )
-        raise InputError(message)
     dt = number(step, file, start)
     if dt <= 0:
-        message = f"{file}, line {start}: DT must be positive, but it is {step}."
-        raise InputError(message)
+        raise InputError(f"{file}, line {start}: DT must be positive, but it is {step}.")
     values = _values(file, lines, start)
     if values.size != npts:
         what = "is truncated" if values.size < npts else "holds more than it announces"
-        message = (
+        raise InputError(
             f"{file} {what}: its header says NPTS = {npts}, but {values.size} values follow. "
             "Download the record again, or correct NPTS."
         )
-        raise InputError(message)
     remedy = (
         "AT2 files are in g by definition: save the values alone as a text file and declare their unit, "
         f'read_motion(path, units="m/s2", dt={dt:g}).'

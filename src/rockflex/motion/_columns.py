@@ -13,8 +13,6 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number
 
-__all__ = ["parse_columns"]
-
 Float = NDArray[np.float64]
 
 SPELLINGS = {
@@ -45,8 +43,7 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
     values = np.array([number(cells[column], file, line) for line, cells in rows])
     if time_column is None:
         if dt is None:
-            message = f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01)."
-            raise InputError(message)
+            raise InputError(f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01).")
         step = dt
     else:
         if labels:
@@ -78,14 +75,12 @@ def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, lis
         if separator and cells[-1] == "":
             cells.pop()
         if rows and len(cells) != len(rows[0][1]):
-            message = (
+            raise InputError(
                 f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, but found {len(cells)}."
             )
-            raise InputError(message)
         rows.append((i, cells))
     if not rows:
-        message = f"{file} holds no numbers: a record is expected as AT2, CSV or columns of text."
-        raise InputError(message)
+        raise InputError(f"{file} holds no numbers: a record is expected as AT2, CSV or columns of text.")
     for i, content in plain:
         cells = _labels(content, separator)
         # A row of numbers with a slip in it is no header, and must not be lost.
@@ -124,14 +119,12 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, 
         time = None if n_columns == 1 else 1 if times == [1] else 0
         column = 1 if time == 0 else 0
         if labels and re.match("vel|dis", labels[column], re.IGNORECASE):
-            message = f"{file}: an acceleration is expected, but the column is headed {shown(labels[column])}."
-            raise InputError(message)
+            raise InputError(f"{file}: an acceleration is expected, but the column is headed {shown(labels[column])}.")
         return time, column
-    message = (
+    raise InputError(
         f"{file} has {n_columns} columns, and its header does not name one as time and exactly one as "
         'acceleration ("time (s), acc (g), ..."). Keep the columns time and acceleration.'
     )
-    raise InputError(message)
 
 
 def _stated_unit(file: Path, label: str, units: str | None) -> str:
@@ -141,62 +134,58 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
     plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-"))
     stated = SPELLINGS.get(plain)
     if written and stated is None:
-        message = (
+        raise InputError(
             f"{file}: the column header gives the unit {shown(written)}, which is not known. "
             "Rewrite it as g, m/s2 or cm/s2, converting the values where needed."
         )
-        raise InputError(message)
     if stated and units and stated != units:
-        message = f"{file}: the column header says {stated}, but units={shown(units)} was given. Leave units out."
-        raise InputError(message)
+        raise InputError(
+            f"{file}: the column header says {stated}, but units={shown(units)} was given. Leave units out."
+        )
     if stated or units:
         return stated or str(units)
-    message = (
+    raise InputError(
         f"{file} does not say the unit of its acceleration. Declare it: "
         'read_motion(path, units="g"), "m/s2" or "cm/s2"; or head the column "acc (g)".'
     )
-    raise InputError(message)
 
 
 def _check_seconds(file: Path, label: str) -> None:
     bracket = BRACKET.search(label, 0, _after_brackets(label))
     if bracket and bracket[1].strip().lower() not in SECONDS:
-        message = f"{file}: the times are in {shown(bracket[1])}, but seconds are expected. Convert the column to s."
-        raise InputError(message)
+        raise InputError(
+            f"{file}: the times are in {shown(bracket[1])}, but seconds are expected. Convert the column to s."
+        )
 
 
 def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float:
     """Return the common time step."""
     if times.size < 3:
-        message = f"{file} has {times.size} samples, but a record needs at least 3."
-        raise InputError(message)
+        raise InputError(f"{file} has {times.size} samples, but a record needs at least 3.")
     steps = np.diff(times)
     if np.any(steps <= 0):
         k = int(np.argmax(steps <= 0))
-        message = (
+        raise InputError(
             f"{file}, line {lines[k + 1]}: time must increase, but it goes from {times[k]:g} s to "
             f"{times[k + 1]:g} s. The first of two columns is taken as the time."
         )
-        raise InputError(message)
     if dt is not None:
         away = np.abs(times - times[0] - dt * np.arange(times.size)) >= 0.5 * dt
         if np.any(away):
             k = int(np.argmax(away))
-            message = (
+            raise InputError(
                 f"{file}, line {lines[k]}: the time {times[k]:g} s does not fit dt={shown(dt)} s. "
                 "Leave dt out, or remove the column of times."
             )
-            raise InputError(message)
         return dt
     uneven = np.abs(steps - steps[0]) > 1e-3 * steps[0]
     if np.any(uneven):
         k = int(np.argmax(uneven))
-        message = (
+        raise InputError(
             f"{file}, line {lines[k + 1]}: the time step is {steps[k]:.6g} s, but {steps[0]:.6g} s before. "
             "Equal steps are expected: resample the record, for example with numpy.interp, or, where the "
             "times are only rounded in print, give the step: read_motion(path, dt=...)."
         )
-        raise InputError(message)
     # The mean is better than one printed difference; twelve digits drop the rounding of the subtraction.
     return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
 

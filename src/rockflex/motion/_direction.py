@@ -7,8 +7,6 @@ from typing import Literal
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
 
-__all__ = ["Direction", "check_horizontal", "direction_of", "is_vertical"]
-
 Direction = Literal["horizontal", "vertical"]
 
 CHANNEL = "[A-Z][HLNG]"  # band and instrument of a seismological channel, whose third letter is the direction
@@ -55,10 +53,9 @@ def check_horizontal(*motions: GroundMotion) -> None:
     vertical = [motion.name for motion in motions if is_vertical(motion)]
     if vertical:
         more = f" and {len(vertical) - 3} more" if len(vertical) > 3 else ""
-        message = (
+        raise InputError(
             f"The ground moves horizontally here, but {', '.join(map(repr, vertical[:3]))}{more} "
             f"{'is a vertical component' if len(vertical) == 1 else 'are vertical components'} by the file's header "
             "or name. Give a horizontal component. If it is one, say so: dataclasses.replace(motion, "
             'metadata=RecordInfo(direction="horizontal")), or rename the file.'
         )
-        raise InputError(message)

@@ -22,8 +22,6 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._suite import Suite
 
-__all__ = ["decode", "encode", "load_suite", "read_embedded", "suite_names"]
-
 DATA = Path(__file__).parent / "data"
 POWERS = np.array([float(f"1e{k}") for k in range(23)])  # all exact in double precision
 NAMES = (
@@ -77,8 +75,7 @@ def load_suite(name: str) -> Suite:
     if not one_of(name, NAMES):
         near = get_close_matches(shown(name), NAMES, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
-        message = f"No embedded suite is named {shown(name)}; there are {', '.join(map(repr, NAMES))}.{hint}"
-        raise InputError(message)
+        raise InputError(f"No embedded suite is named {shown(name)}; there are {', '.join(map(repr, NAMES))}.{hint}")
     return _loaded(name)
 
 
@@ -109,8 +106,7 @@ def encode(samples: NDArray[np.float64], digits: int) -> NDArray[np.uint8]:
     integers = np.rint(samples * POWERS[exponents]).astype("<i4")
     rows = np.concatenate((integers[:, None].view(np.uint8), exponents[:, None]), axis=1).T.copy()
     if decode(rows).tobytes() != samples.astype(np.float64).tobytes():
-        message = f"The samples are not decimals of {digits} significant digits."
-        raise ValueError(message)
+        raise ValueError(f"The samples are not decimals of {digits} significant digits.")
     return rows
 
 

@@ -17,8 +17,6 @@ from rockflex.motion._record_info import RecordInfo
 if TYPE_CHECKING:
     from rockflex.motion._spectrum import ResponseSpectrum
 
-__all__ = ["GroundMotion"]
-
 Float = NDArray[np.float64]
 
 
@@ -55,20 +53,17 @@ class GroundMotion(Value):
     def __init__(self, acceleration: ArrayLike, dt: float, name: str = "", metadata: RecordInfo | None = None) -> None:
         samples = finite_vector("acceleration", acceleration, "m/s²")
         if samples.size < 3:
-            message = (
+            raise InputError(
                 f"acceleration must have at least 3 samples, but {samples.size} were given. For a record "
                 "without motion use quiet_motion(duration)."
             )
-            raise InputError(message)
         if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"name must be a string, but {shown(name)} was given."
-            raise InputError(message)
+            raise InputError(f"name must be a string, but {shown(name)} was given.")
         if not isinstance(metadata, RecordInfo | None):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = (
+            raise InputError(
                 f"metadata must be a RecordInfo or None, but {type(metadata).__name__} was given. "
                 "Write metadata=RecordInfo(event=..., year=...)."
             )
-            raise InputError(message)
         object.__setattr__(self, "acceleration", samples)
         object.__setattr__(self, "dt", positive("dt", dt, "s"))
         object.__setattr__(self, "name", name)

@@ -10,16 +10,6 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-__all__ = [
-    "arias_intensity",
-    "cumulative_absolute_velocity",
-    "displacement",
-    "peak_displacement",
-    "peak_velocity",
-    "significant_duration",
-    "velocity",
-]
-
 Float = NDArray[np.float64]
 
 
@@ -74,11 +64,10 @@ def cumulative_absolute_velocity(a: Float, dt: float) -> float:
 def significant_duration(a: Float, dt: float, low: float, high: float) -> float:
     """Time between the first instants at which the fractions `low` and `high` of ∫a² dt are reached."""
     if not 0 <= real_or_nan(low) < real_or_nan(high) <= 1:
-        message = (
+        raise InputError(
             f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and high={shown(high)} "
             "were given. Significant duration D5-95 is low=0.05, high=0.95."
         )
-        raise InputError(message)
     energy = _cumulative(_energies(a, dt))
     if energy[-1] == 0:
         return 0.0

@@ -9,8 +9,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._measures import velocity
 
-__all__ = ["band_pass", "baseline_correct", "refine", "refinement_of"]
-
 Float = NDArray[np.float64]
 FINEST = 10_000  # new steps in an old one
 
@@ -31,22 +29,20 @@ def refinement_of(old: float, new: float) -> int:
         return k
     nearest = sorted({max(int(ratio), 1), max(int(ratio), 1) + (ratio > 1)})
     steps = " or ".join(f"{old / n:.12g} s" for n in nearest)
-    message = (
+    raise InputError(
         f"A record with dt = {old:g} s cannot be resampled exactly to dt = {shown(new)} s: only a whole fraction "
         f"of its own step leaves it unchanged between samples. Ask for {steps}."
     )
-    raise InputError(message)
 
 
 def baseline_correct(a: Float, dt: float, degree: int) -> Float:
     """Remove the polynomial whose exact integral fits the velocity best (least squares at the samples)."""
     degree = whole_number("degree", degree, 0)
     if degree > a.size - 2:
-        message = (
+        raise InputError(
             f"degree must be at most {a.size - 2} for {a.size} samples, but {degree} was given: "
             "a fit needs more values than coefficients."
         )
-        raise InputError(message)
     # Legendre polynomials keep the fit well conditioned; they span the same space as powers of t.
     basis = legendre.legvander(np.linspace(-1, 1, a.size), degree)
     drift = np.stack([velocity(column, dt) for column in basis.T], axis=1)
@@ -60,22 +56,21 @@ def band_pass(a: Float, dt: float, low: float, high: float, order: int) -> Float
 
     nyquist = 0.5 / dt
     if not 0 < real_or_nan(low) < real_or_nan(high) < nyquist:
-        message = (
+        raise InputError(
             f"The corner frequencies must satisfy 0 < low < high < {nyquist:g} Hz, the Nyquist frequency "
             f"of dt = {dt:g} s, but low={shown(low)} and high={shown(high)} were given."
         )
-        raise InputError(message)
     order = whole_number("order", order, 1, 100)
     try:
         sections = butter(order, (low, high), btype="bandpass", output="sos", fs=1 / dt)
     except ValueError as error:
-        message = f"No filter of order {order} has the corners low={low:g} Hz and high={high:g} Hz: {error}."
-        raise InputError(message) from error
+        raise InputError(
+            f"No filter of order {order} has the corners low={low:g} Hz and high={high:g} Hz: {error}."
+        ) from error
     padding = 3 * (2 * len(sections) + 1)
     if a.size <= padding:
-        message = (
+        raise InputError(
             f"A band-pass filter of order {order} needs more than {padding} samples, but the record has "
             f"{a.size}. Use a lower order or a longer record."
         )
-        raise InputError(message)
     return np.asarray(sosfiltfilt(sections, a, padlen=padding), dtype=np.float64)

@@ -16,16 +16,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 
-__all__ = [
-    "half_sine_pulse",
-    "mavroeidis_papageorgiou_pulse",
-    "one_cosine_pulse",
-    "one_sine_pulse",
-    "quiet_motion",
-    "rectangular_pulse",
-    "ricker_pulse",
-]
-
 Float = NDArray[np.floating[Any]]
 
 # Peak of |x (x² - 3)| exp(-x²/2), at x² = 3 - √6: the published β = 1.3801, to all digits.
@@ -77,8 +67,7 @@ def ricker_pulse(
     Ricker (1943), Geophysics 8(4); Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618.
     """
     if not one_of(kind, ("antisymmetric", "symmetric")):
-        message = f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.'
-        raise InputError(message)
+        raise InputError(f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.')
     positive("period", period, "s")
     periods = 2.0 if kind == "antisymmetric" else 1.5
     n, step = _intervals("period", periods * period, dt)
@@ -240,8 +229,7 @@ def mavroeidis_papageorgiou_pulse(
     """
     positive("period", period, "s")
     if not 1 < real_or_nan(gamma) < math.inf:
-        message = f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3."
-        raise InputError(message)
+        raise InputError(f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3.")
     finite("nu", nu, "rad")
     n, step = _intervals("period", gamma * period, dt)
     envelope = np.pi * np.linspace(-1, 1, n + 1)
@@ -281,8 +269,9 @@ def _intervals(name: str, length: float, dt: float) -> tuple[int, float]:
     length, dt = positive(name, length, "s"), positive("dt", dt, "s")
     # Two intervals at least: a motion has three samples or more.
     if length / dt > LONGEST:
-        message = f"{name} = {length:g} s with dt = {dt:g} s asks for {length / dt:.3g} samples; use a larger dt."
-        raise InputError(message)
+        raise InputError(
+            f"{name} = {length:g} s with dt = {dt:g} s asks for {length / dt:.3g} samples; use a larger dt."
+        )
     n = max(2, math.ceil(length / dt - 1e-9))
     return n, dt if math.isclose(n * dt, length, rel_tol=1e-9) else length / n
 

@@ -13,8 +13,6 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._readers import read_motion
 from rockflex.motion._suite import Suite
 
-__all__ = ["OnError", "folder_files", "read_files", "read_suite"]
-
 OnError = Literal["raise", "skip"]
 
 SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
@@ -65,8 +63,7 @@ def read_suite(
     elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
         name, files = "", [path_of("paths", path) for path in paths]
     else:
-        message = f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given."
-        raise InputError(message)
+        raise InputError(f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given.")
     files.sort(key=lambda file: (file.name, str(file)))
     return Suite(read_files(files, units, dt, on_error).values(), name)
 
@@ -76,8 +73,7 @@ def read_files(
 ) -> dict[Path, GroundMotion]:
     """Read the horizontal components among record files, by their file; see `read_suite`."""
     if on_error not in get_args(OnError):
-        message = f'on_error must be "raise" or "skip", but {shown(on_error)} was given.'
-        raise InputError(message)
+        raise InputError(f'on_error must be "raise" or "skip", but {shown(on_error)} was given.')
     motions: dict[Path, GroundMotion] = {}
     faults: dict[Path, str] = {}
     for file in files:
@@ -97,11 +93,10 @@ def read_files(
         names = ", ".join(file.name for file in vertical)
         components = f"{len(vertical)} vertical component{'s' * (len(vertical) > 1)}"
         if not horizontal:
-            message = (
+            raise InputError(
                 f"No horizontal component was given, only {components}: {names}. Give horizontal ones; where a "
                 "header or a file's name is wrong, correct it."
             )
-            raise InputError(message)
         warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=3)
     return horizontal
 
@@ -116,17 +111,15 @@ def folder_files(folder: Path) -> list[Path]:
     """
     files = [file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES and file.is_file()]
     if not files:
-        message = f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}."
-        raise InputError(message)
+        raise InputError(f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}.")
     return sorted(files)
 
 
 def _folder(folder: Path) -> tuple[str, list[Path]]:
     if not folder.is_dir():
-        message = (
+        raise InputError(
             f"{folder} is not a directory. Give a directory, or a list of files; one file alone is read by read_motion."
         )
-        raise InputError(message)
     return folder.resolve().name, folder_files(folder)
 
 

@@ -11,8 +11,6 @@ from rockflex.motion._columns import parse_columns
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._text import UNITS, read_lines
 
-__all__ = ["read_motion"]
-
 
 def read_motion(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
     """Read a record from an AT2 file, a CSV file, or text in columns, told apart by content.
@@ -45,8 +43,7 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
         or the peak exceeds 5 g, which only a wrong unit explains. Nothing is read in part.
     """
     if units is not None and not one_of(units, UNITS):
-        message = f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given."
-        raise InputError(message)
+        raise InputError(f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.")
     if dt is not None:
         dt = positive("dt", dt, "s")
     file = path_of("path", path)
@@ -55,9 +52,9 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
         return parse_columns(file, lines, units, dt)
     motion = parse_at2(file, lines)
     if units not in (None, "g"):
-        message = f"{file} is an AT2 file, in g by definition, but units={shown(units)} was given. Leave units out."
-        raise InputError(message)
+        raise InputError(
+            f"{file} is an AT2 file, in g by definition, but units={shown(units)} was given. Leave units out."
+        )
     if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
-        message = f"{file} says DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out."
-        raise InputError(message)
+        raise InputError(f"{file} says DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.")
     return motion

@@ -10,8 +10,6 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.motion._spectrum_kernel import oscillator_peaks
 
-__all__ = ["ResponseSpectrum", "response_spectrum"]
-
 Float = NDArray[np.float64]
 
 
@@ -54,11 +52,10 @@ def response_spectrum(acceleration: Float, dt: float, periods: ArrayLike, dampin
     period = finite_vector("periods", periods, "s")
     bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))
     if bad.size:
-        message = (
+        raise InputError(
             f"periods must be zero or at least 1e-6 s, but {period[bad[0]]:g} was given at index {bad[0]}. "
             "A period of zero gives the peak ground acceleration."
         )
-        raise InputError(message)
     zeta = in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
     peaks = np.zeros((period.size, 2))
     for i in np.flatnonzero(period):

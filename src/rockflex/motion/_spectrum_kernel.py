@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from rockflex._kernel import kernel
 
-__all__ = ["oscillator_peaks", "unit_responses"]
-
 
 @kernel
 def unit_responses(omega: float, zeta: float, t: float) -> tuple[float, float, float, float]:

@@ -12,8 +12,6 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 
-__all__ = ["Suite"]
-
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class Suite(Value, Sequence[GroundMotion]):
@@ -40,25 +38,23 @@ class Suite(Value, Sequence[GroundMotion]):
 
     def __init__(self, motions: Iterable[GroundMotion], name: str = "") -> None:
         if not isinstance(motions, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
-            raise InputError(message)
+            raise InputError(
+                f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
+            )
         members = tuple(motions)
         instance("name", name, str)
         if not members:
-            message = "A suite needs at least one motion, but none was given."
-            raise InputError(message)
+            raise InputError("A suite needs at least one motion, but none was given.")
         for motion in members:
             if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-                message = f"A suite holds GroundMotion objects, but {type(motion).__name__} was given."
-                raise InputError(message)
+                raise InputError(f"A suite holds GroundMotion objects, but {type(motion).__name__} was given.")
         repeated = [key for key, count in Counter(motion.name for motion in members).items() if count > 1]
         if repeated:
             names = ", ".join(map(repr, repeated[:5]))
-            message = (
+            raise InputError(
                 f"The motions of a suite need different names, but {names} occurs more than once. "
                 "Rename: dataclasses.replace(motion, name=...), or rename the files."
             )
-            raise InputError(message)
         object.__setattr__(self, "motions", members)
         object.__setattr__(self, "name", name)
 
@@ -93,8 +89,7 @@ class Suite(Value, Sequence[GroundMotion]):
             if motion.name == index:
                 return motion
         near = get_close_matches(index, self.names, n=3, cutoff=0.4) or self.names[:3]
-        message = (
+        raise InputError(
             f"No motion of the suite {shown(self.name)} is named {shown(index)}. "
             f"The nearest names are {', '.join(map(repr, near))}; .names lists all {len(self)}."
         )
-        raise InputError(message)

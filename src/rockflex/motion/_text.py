@@ -13,8 +13,6 @@ from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 
-__all__ = ["UNITS", "build_motion", "number", "read_lines"]
-
 UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01}
 LIMIT = 5.0  # in g; no recorded ground acceleration comes near it
 # Possessive, as all of these patterns: what has matched is not tried in parts, so that no text takes long.
@@ -25,24 +23,19 @@ def read_lines(path: str | Path) -> list[str]:
     """Return the lines of a text file, or raise an error that says why there are none."""
     file = Path(path)
     if file.is_dir():
-        message = f"{file} is a directory. Read all its records with read_suite({shown(str(file))})."
-        raise InputError(message)
+        raise InputError(f"{file} is a directory. Read all its records with read_suite({shown(str(file))}).")
     check_regular(file)
     try:
         data = file.read_bytes()
     except FileNotFoundError as error:
-        message = f"{file} does not exist (working directory: {Path.cwd()})."
-        raise InputError(message) from error
+        raise InputError(f"{file} does not exist (working directory: {Path.cwd()}).") from error
     except OSError as error:
-        message = f"{file} cannot be read: {error.strerror}."
-        raise InputError(message) from error
+        raise InputError(f"{file} cannot be read: {error.strerror}.") from error
     text = _decode(data)
     if text is None:
-        message = f"{file} is a binary file; a record is expected as text (AT2, CSV or columns)."
-        raise InputError(message)
+        raise InputError(f"{file} is a binary file; a record is expected as text (AT2, CSV or columns).")
     if not text.strip():
-        message = f"{file} is empty."
-        raise InputError(message)
+        raise InputError(f"{file} is empty.")
     return re.split("\r\n|\r|\n", text)
 
 
@@ -66,8 +59,7 @@ def number(token: str, file: str | Path, line: int) -> float:
         if np.isfinite(value):
             return value
     hint = " Write decimals with a point." if re.fullmatch(r"[+-]?+\d++,\d++", token) else ""
-    message = f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}"
-    raise InputError(message)
+    raise InputError(f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}")
 
 
 def build_motion(
@@ -79,12 +71,11 @@ def build_motion(
     if motion.pga > LIMIT * GRAVITY:
         peak = motion.pga / UNITS[units]
         smaller = {"g": "m/s² or cm/s²", "m/s2": "cm/s²", "cm/s2": "a smaller unit"}[units]
-        message = (
+        raise InputError(
             f"{file}: the peak acceleration is {peak:g} {units}, above {LIMIT:g} g. "
             f"It looks like {smaller} where {units} was declared. {remedy} If the values are meant, "
             "build GroundMotion(acceleration, dt) from the array; scaling a motion is free."
         )
-        raise InputError(message)
     return motion
 
 
@@ -92,5 +83,4 @@ def _named(file: Path, acceleration: NDArray[np.float64], dt: float, info: Recor
     try:
         return GroundMotion(acceleration, dt, name=file.stem, metadata=info)
     except InputError as error:
-        message = f"{file}: {error}"
-        raise InputError(message) from error
+        raise InputError(f"{file}: {error}") from error

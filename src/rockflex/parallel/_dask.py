@@ -19,8 +19,6 @@ from rockflex._shown import shown
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["ClusterError", "map_dask"]
-
 CONNECT = 10.0  # s
 LOOK = 5.0  # s between looks at the cluster while nothing comes
 AHEAD = 2  # chunks in flight for each thread of the cluster
@@ -75,10 +73,9 @@ def map_dask(
     """
     again, limit = whole_number("retries", retries, 0), positive("patience", patience, "s", infinite=True)
     if not isinstance(address, str) or not address:  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = (
+        raise InputError(
             f'address must be that of a Dask scheduler, such as "tcp://10.0.0.1:8786", but {shown(address)} was given.'
         )
-        raise InputError(message)
     asked = list(numbers)
     if not asked:
         return
@@ -102,11 +99,10 @@ def map_dask(
             now = time.monotonic()
             alive = now if threads else alive
             if now - alive > limit:
-                message = (
+                raise ClusterError(
                     f"The Dask scheduler at {address} has had no worker for {limit:g} s; {_count(done, len(asked))}. "
                     "Start workers and run it again."
                 )
-                raise ClusterError(message)
             for number, table, error in finished:
                 if error is not None:
                     raise _named(error, number, _count(done, len(asked)))
@@ -124,10 +120,9 @@ def _refuse_workers(client: Any, versions: dict[str, str]) -> None:
         if isinstance(found, dict):
             refuse_other_versions(worker, found, versions)
         elif not isinstance(found, OSError):  # which is that of a worker that has died in the meantime
-            message = (
+            raise InputError(
                 f"The worker {worker} cannot use rockflex: {found}. Start the workers in an environment that has it."
             )
-            raise InputError(message)
 
 
 def _leave(client: Any, name: str) -> None:
@@ -143,18 +138,18 @@ def _pickled(plan: Plan) -> bytes:
     try:
         return pickle.dumps(plan, protocol=5)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
-        message = (
+        raise InputError(
             f"The plan cannot be sent to workers: {error}. Define its class at the top of a module, without lambdas."
-        )
-        raise InputError(message) from error
+        ) from error
 
 
 def _connected(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError as error:
-        message = f"A Dask cluster needs the package {error.name!r}. Install it by pip install 'rockflex[cluster]'."
-        raise InputError(message) from error
+        raise InputError(
+            f"A Dask cluster needs the package {error.name!r}. Install it by pip install 'rockflex[cluster]'."
+        ) from error
     # A client that could not connect closes when it is collected. Collected while another one starts, it would wait for
     # a lock that this very thread holds, for ever: so it is collected before, and none while a client starts.
     gc.collect()
@@ -163,11 +158,10 @@ def _connected(address: str) -> Any:
     try:
         return Client(address, timeout=CONNECT, set_as_default=False, name="rockflex")
     except (OSError, ValueError, TypeError) as error:
-        message = (
+        raise InputError(
             f"No Dask scheduler answers at {shown(address)} ({type(error).__name__}). Start one by `dask scheduler`, "
             'workers by `dask worker ADDRESS`, and give the address that it prints, such as "tcp://10.0.0.1:8786".'
-        )
-        raise InputError(message) from error
+        ) from error
     finally:
         if collects:
             gc.enable()
@@ -214,11 +208,10 @@ def _scheduler_lost(address: str, done: int, total: int) -> Generator[None]:
     try:
         yield
     except (CancelledError, ClosedClientError, OSError) as error:
-        message = (
+        raise ClusterError(
             f"The Dask scheduler at {address} was lost ({type(error).__name__}); {_count(done, total)}. What was "
             "stored is kept. Start the cluster anew and run it again."
-        )
-        raise ClusterError(message) from error
+        ) from error
 
 
 def _count(done: int, total: int) -> str:

@@ -7,8 +7,6 @@ from typing import SupportsIndex, TypeVar
 
 from rockflex._checks import whole_number
 
-__all__ = ["core_count", "map_threads"]
-
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 

@@ -10,8 +10,6 @@ from distributed import WorkerPlugin, get_worker
 
 from rockflex._errors import InputError
 
-__all__ = ["PlanCarrier", "compute", "installed_versions", "refuse_other_versions"]
-
 PACKAGES = ("rockflex", "numpy", "scipy", "numba", "pyarrow", "distributed")  # the numbers or the transport need them
 
 
@@ -41,11 +39,10 @@ class PlanCarrier(WorkerPlugin):
                 try:
                     self.plan = pickle.loads(self.content)
                 except Exception as error:  # unpickling runs the modules' own code
-                    message = (
+                    raise InputError(
                         f"The worker {_here()} cannot load the plan ({type(error).__name__}: {error}). Start the "
                         "workers in the same environment, from which its modules can be imported."
-                    )
-                    raise InputError(message) from error
+                    ) from error
             return self.plan
 
 
@@ -71,10 +68,9 @@ def refuse_other_versions(worker: str, there: dict[str, str], here: dict[str, st
     """Raise an `InputError` that names every package whose version differs between a worker and the client."""
     wrong = [f"{name} {there.get(name, 'none')} and not {here[name]}" for name in here if there.get(name) != here[name]]
     if wrong:
-        message = (
+        raise InputError(
             f"The worker {worker} has {', '.join(wrong)}. Start the workers in the same environment as this process."
         )
-        raise InputError(message)
 
 
 def _here() -> str:

@@ -18,8 +18,6 @@ from rockflex.plot._style import SMALL, letter, new_figure, styled
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_agreement"]
-
 _NEEDED = (
     *("n_stories", "aspect_ratio", "period", "max_top_displacement_mdof", "max_top_displacement_2dof"),
     *("max_rotation_mdof", "max_rotation_2dof"),
@@ -80,8 +78,9 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
 def _markers(pairs: "pd.DataFrame") -> dict[float, str]:
     ratios = [float(ratio) for ratio in np.unique(pairs["aspect_ratio"].to_numpy(dtype=float))]
     if len(ratios) > len(MARKERS):
-        message = f"{len(ratios)} aspect ratios were given, but there are {len(MARKERS)} symbols. Plot some of them."
-        raise InputError(message)
+        raise InputError(
+            f"{len(ratios)} aspect ratios were given, but there are {len(MARKERS)} symbols. Plot some of them."
+        )
     return dict(zip(ratios, MARKERS, strict=False))
 
 

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     from rockflex.fragility import CloudFit
 
-__all__ = ["plot_clouds"]
-
 _QUANTITIES = {
     "max_rotation": r"$θ_{\mathrm{max}}$ [rad]",
     "max_top_displacement": r"$u_{\mathrm{top,max}}$, relative to the base [m]",
@@ -98,8 +96,7 @@ def plot_clouds(
         are too many structures or models.
     """
     if quantity not in _QUANTITIES:
-        message = f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given."
-        raise InputError(message)
+        raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")
     import pandas as pd
 
     check_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
@@ -149,15 +146,13 @@ def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float,
 
 def _check_solved(solved: "pd.DataFrame", measure: str) -> None:
     if not len(solved):
-        message = "No run was solved. See the column error of the table."
-        raise InputError(message)
+        raise InputError("No run was solved. See the column error of the table.")
     bad = ~(solved[measure].to_numpy(dtype=float) > 0.0)
     if bad.any():
-        message = (
+        raise InputError(
             f"{measure} must be positive, as its axis is logarithmic, but {int(bad.sum())} of {bad.size} values are "
             f"not. Leave those runs out: keep the rows with {measure} > 0."
         )
-        raise InputError(message)
 
 
 def _set_limits(

@@ -16,8 +16,6 @@ from rockflex.plot._style import BLUE, GRAY, GREEN, ORANGE, letter, new_figure, 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_modal_combination"]
-
 _SYMBOLS = {"shear": ("o", ORANGE), "flexure": ("^", GREEN)}
 
 

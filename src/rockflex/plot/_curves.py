@@ -14,8 +14,6 @@ from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED,
 if TYPE_CHECKING:
     from rockflex.response import History, Response
 
-__all__ = ["Curve", "curves_of", "rotation_limit", "title_of"]
-
 Array = NDArray[np.float64]
 
 
@@ -115,8 +113,7 @@ def curves_of(responses: "Response | Iterable[Response]", labels: Sequence[str] 
     """
     everything: list[Response] = [responses] if hasattr(responses, "history") else list(responses)  # pyright: ignore
     if not everything:
-        message = 'There is no response to plot. Give at least one from simulate(..., output="history").'
-        raise InputError(message)
+        raise InputError('There is no response to plot. Give at least one from simulate(..., output="history").')
     histories = [_history(i, response) for i, response in enumerate(everything)]
     names = _names(everything, labels)
     looks = _looks(histories)
@@ -125,17 +122,15 @@ def curves_of(responses: "Response | Iterable[Response]", labels: Sequence[str] 
 
 def _history(index: int, response: "Response") -> "History":
     if not hasattr(response, "history"):
-        message = (
+        raise InputError(
             f"responses[{index}] must be a Response, but {type(response).__name__} was given. "
             'Give what simulate returned, or the column "response" of simulate_many(..., output="history").'
         )
-        raise InputError(message)
     if response.history is None:
-        message = (
+        raise InputError(
             f"responses[{index}] ({response.model} under {shown(response.motion)}) keeps peaks only, but a plot needs "
             'the history. Simulate it with output="history".'
         )
-        raise InputError(message)
     return response.history
 
 
@@ -147,8 +142,9 @@ def _names(responses: "list[Response]", labels: Sequence[str] | None) -> list[st
         return [literal(f"{response.model}, {response.motion}") for response in responses]
     if isinstance(labels, str) or len(labels) != len(responses):
         given = f"the string {shown(labels)}" if isinstance(labels, str) else f"{len(labels)}"
-        message = f"labels must be a sequence of {len(responses)} strings, one a response, but {given} was given."
-        raise InputError(message)
+        raise InputError(
+            f"labels must be a sequence of {len(responses)} strings, one a response, but {given} was given."
+        )
     return list(labels)
 
 
@@ -160,10 +156,9 @@ def _looks(histories: "list[History]") -> list[Look]:
     for own in wanted:
         if own is None or own in looks:
             if not spare:
-                message = (
+                raise InputError(
                     f"{len(histories)} responses are too many to be told apart in one figure. Plot fewer at a time."
                 )
-                raise InputError(message)
             own = spare.pop(0)
         looks.append(own)
     return looks

@@ -17,8 +17,6 @@ from rockflex.plot._units import short
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_design"]
-
 Array = NDArray[np.float64]
 
 _NEEDED = (
@@ -75,8 +73,7 @@ def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithm
     check_columns(table, (*_NEEDED, value), _SOURCE)
     tendons, models = names_in(table["tendon"]), names_in(table["model"])
     if len(tendons) > len(MARKERS):
-        message = f"{len(tendons)} tendons were given, but there are {len(MARKERS)} symbols. Plot some of them."
-        raise InputError(message)
+        raise InputError(f"{len(tendons)} tendons were given, but there are {len(MARKERS)} symbols. Plot some of them.")
     found = None if target is None else _least(table, target)
     looks: dict[str, tuple[Look, str]] = dict(zip(tendons, zip(_LOOKS, MARKERS, strict=False), strict=False))
     drawn = _Value(value, _words(table, value), value == "rate" if logarithmic is None else logarithmic)
@@ -124,8 +121,7 @@ def _words(table: "pd.DataFrame", value: str) -> str:
             times = "" if math.isclose(multiple[0], 1.0) else rf"{multiple[0]:g}\cdot"
             event = rf"θ_{{\mathrm{{max}}}}>{times}0.7\,\mathrm{{atan}}(B/h^*_1)"
         else:
-            message = "The designs have limits of several kinds. Plot the table of one limit."
-            raise InputError(message)
+            raise InputError("The designs have limits of several kinds. Plot the table of one limit.")
     event = f"${event}$" if ">" in event else event
     return f"annual rate of {event}" if value == "rate" else f"P({event})"
 

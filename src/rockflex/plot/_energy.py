@@ -12,8 +12,6 @@ from rockflex.plot._units import readable
 if TYPE_CHECKING:
     from rockflex.response import Response
 
-__all__ = ["plot_energy"]
-
 # From the bottom: what is gone never falls, so what can still return rides on it.
 _LAYERS = (
     ("damped", "damped", GRAY),

@@ -19,8 +19,6 @@ from rockflex.plot._style import GRAY, SHADE, SMALL, Look, columns, styled
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_fragility"]
-
 _POINTS = 400
 _END = np.log(0.995 / 0.005)  # logit at which a curve has arrived
 
@@ -105,22 +103,20 @@ def _fits(
         runs: pd.DataFrame = clouds  # pyright: ignore[reportAssignmentType]
         found = fit_clouds(runs, measure or "pgv")
         if not found:
-            message = "The table has no rows. Give what run_cloud returned."
-            raise InputError(message)
+            raise InputError("The table has no rows. Give what run_cloud returned.")
         return found, runs[runs["status"].notna()]
     given: list[Any] = list(clouds)
     fits = [fit for fit in given if isinstance(fit, CloudFits)]
     if not fits or len(fits) < len(given):
-        message = "clouds must be the table of a cloud study, or at least one fit of it from fit_clouds."
-        raise InputError(message)
+        raise InputError("clouds must be the table of a cloud study, or at least one fit of it from fit_clouds.")
     measures = names_in(fit.measure for fit in fits)
     if len(measures) > 1 or (measure is not None and measures != [measure]):
         wanted = "one measure" if measure is None else repr(measure)
-        message = f"The fits are of {', '.join(measures)}, but {wanted} is to be shown. Fit the clouds with that one."
-        raise InputError(message)
+        raise InputError(
+            f"The fits are of {', '.join(measures)}, but {wanted} is to be shown. Fit the clouds with that one."
+        )
     if groups:
-        message = "bins counts runs, but only fits were given. Give the table of the study."
-        raise InputError(message)
+        raise InputError("bins counts runs, but only fits were given. Give the table of the study.")
     return fits, None
 
 

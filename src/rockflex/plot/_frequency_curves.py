@@ -21,8 +21,6 @@ from rockflex.study import Structure, properties_of
 if TYPE_CHECKING:
     from rockflex.modal import UpliftedModes
 
-__all__ = ["plot_frequency_equation"]
-
 Float = NDArray[np.float64]
 
 _POINTS = 300  # of a curve between two poles
@@ -68,8 +66,9 @@ def plot_frequency_equation(
     """
     named = structures if isinstance(structures, Mapping) else {"": structures}
     if not named or not len(n_modes):
-        message = "There is nothing to plot. Give at least one structure, and one number of modes (None for all)."
-        raise InputError(message)
+        raise InputError(
+            "There is nothing to plot. Give at least one structure, and one number of modes (None for all)."
+        )
     end = None if highest is None else positive("highest", highest, "ω/ω_1")
     models = {name: _models_of(each, n_modes, side) for name, each in named.items()}
     looks = surrogate_looks(label for each in models.values() for label in each)
@@ -96,8 +95,7 @@ def _models_of(
     """Truncated properties and uplifted modes by the models' labels."""
     full = properties_of(structure)
     if full.n_modes == 0:
-        message = "A structure without modes has no frequency equation to plot. Give one with modes."
-        raise InputError(message)
+        raise InputError("A structure without modes has no frequency equation to plot. Give one with modes.")
     found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}
     for each in n_modes:
         count = full.n_modes if each is None else whole_number("n_modes", each, 1, full.n_modes)

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from rockflex.modal import PinnedBeam
 
-__all__ = ["plot_frequency_ratios"]
-
 Dashes = str | tuple[int, tuple[float, ...]]
 _DASHES: tuple[Dashes, ...] = ("-", (0, (5, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)))
 _NEEDED = ("model", "aspect_ratio", "mode", "ratio")
@@ -128,29 +126,27 @@ def _handles(looks: dict[str, Look], dashes: Mapping[str, Dashes], bounded: bool
 
 def _check(named: "Mapping[str, pd.DataFrame]", bounds: "Mapping[str, PinnedBeam]", modes: list[int]) -> None:
     if not modes:
-        message = "modes is empty. Give at least one mode, counted from 1."
-        raise InputError(message)
+        raise InputError("modes is empty. Give at least one mode, counted from 1.")
     if not 1 <= len(named) <= len(_DASHES):
-        message = f"{len(named)} tables were given, but one figure can show from 1 to {len(_DASHES)}."
-        raise InputError(message)
+        raise InputError(f"{len(named)} tables were given, but one figure can show from 1 to {len(_DASHES)}.")
     for name, table in named.items():
         lacking = [column for column in _NEEDED if column not in getattr(table, "columns", ())]
         if lacking:
-            message = f"The table {shown(name)} lacks {', '.join(lacking)}. Give what frequency_ratios returned."
-            raise InputError(message)
+            raise InputError(
+                f"The table {shown(name)} lacks {', '.join(lacking)}. Give what frequency_ratios returned."
+            )
         absent = [mode for mode in modes if not (table["mode"] == mode).any()]
         if absent:
-            message = f"The table {shown(name)} has no row of mode {absent[0]}. Show modes that a model in it keeps."
-            raise InputError(message)
+            raise InputError(
+                f"The table {shown(name)} has no row of mode {absent[0]}. Show modes that a model in it keeps."
+            )
     for name, beam in bounds.items():
         if name not in named:
-            message = (
+            raise InputError(
                 f"limits has the name {shown(name)}, which no table has: those have {', '.join(map(repr, named))}."
             )
-            raise InputError(message)
         if beam.ratio.size < max(modes):
-            message = (
+            raise InputError(
                 f"The limit {shown(name)} has {beam.ratio.size} frequency ratios, but mode {max(modes)} is to be "
                 f"shown. Give pinned_beam(..., n_modes={max(modes)})."
             )
-            raise InputError(message)

@@ -16,8 +16,6 @@ from rockflex.plot._style import GRAY, SHADE, columns, new_figure, styled
 if TYPE_CHECKING:
     from rockflex.response import Response
 
-__all__ = ["plot_history", "shade_uplifts"]
-
 _BAR = 0.025  # height of an uplift bar as a share of the panel
 
 

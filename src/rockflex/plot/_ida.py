@@ -17,8 +17,6 @@ from rockflex.plot._units import short
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_ida"]
-
 Array = NDArray[np.float64]
 
 _NEEDED = (
@@ -73,8 +71,9 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, level: float | None 
     groups = [(name, model) for name in names_in(runs["structure"]) for model in names_in(runs["model"])]
     groups = [group for group in groups if len(_of(runs, *group))]
     if len(groups) > _MOST:
-        message = f"{len(groups)} structures and models are too many for one figure; {_MOST} fit. Plot fewer at a time."
-        raise InputError(message)
+        raise InputError(
+            f"{len(groups)} structures and models are too many for one figure; {_MOST} fit. Plot fewer at a time."
+        )
     with styled():
         figure = new_figure(6.3, 0.9 + 2.1 * len(groups))
         grid = figure.subplots(len(groups), 2, sharex=True, squeeze=False)

@@ -12,8 +12,6 @@ from rockflex.modal import ModalProperties
 from rockflex.plot._style import BLUE, GRAY, new_figure, styled
 from rockflex.plot._units import short
 
-__all__ = ["plot_mode_shapes"]
-
 _PER_ROW = 5
 
 
@@ -71,11 +69,10 @@ def _modes_of(source: _HasModes | ModalProperties) -> ModalProperties:
     if isinstance(source, ModalProperties):
         return source
     if not hasattr(source, "modal"):
-        message = (
+        raise InputError(
             f"structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
             f"{type(source).__name__} was given. Give the structure itself, or structure.modal()."
         )
-        raise InputError(message)
     return source.modal()
 
 

@@ -17,8 +17,6 @@ from rockflex.plot._units import readable
 if TYPE_CHECKING:
     from rockflex.response import Response
 
-__all__ = ["plot_moment_rotation"]
-
 _HEADROOM = 1.1
 _PER_ROW = 3
 _FREE = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
@@ -55,11 +53,10 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
     """
     curves = [curve for curve in curves_of(responses, labels) if curve.lifts]
     if not curves:
-        message = (
+        raise InputError(
             "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
-        raise InputError(message)
     rotation = _HEADROOM * (rotation_limit(curves) or max(map(_whole_line, curves)))
     largest = max(_largest_moment(curve) for curve in curves)
     factor, unit = readable(largest, "N m")

@@ -12,8 +12,6 @@ from rockflex.plot._style import BLACK, GRAY, SMALL, letter, new_figure, styled
 from rockflex.plot._units import readable, short
 from rockflex.study import Structure, properties_of
 
-__all__ = ["plot_moment_rotation_laws"]
-
 _ROOM = 1.18
 
 

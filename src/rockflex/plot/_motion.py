@@ -13,8 +13,6 @@ from rockflex.plot._units import short
 if TYPE_CHECKING:
     from rockflex.motion import GroundMotion
 
-__all__ = ["plot_motion"]
-
 _PERIODS = np.geomspace(0.02, 10.0, 240)
 _DAMPING = 0.05
 
@@ -41,11 +39,10 @@ def plot_motion(motion: "GroundMotion") -> Figure:
         If it is not a ground motion.
     """
     if not hasattr(motion, "acceleration"):
-        message = (
+        raise InputError(
             f"motion must be a GroundMotion, but {type(motion).__name__} was given. "
             "Read one from a file, take one of a suite, or build it from its samples."
         )
-        raise InputError(message)
     spectrum = motion.spectrum(_PERIODS, _DAMPING)
     first = motion.significant_duration(0.0, 0.05)
     histories = (

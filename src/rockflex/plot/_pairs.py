@@ -15,8 +15,6 @@ from rockflex.plot._style import GRAY, SMALL
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["BEHAVIOURS", "Array", "Groups", "determination", "groups_of", "number", "slope", "square_panel"]
-
 Array = NDArray[np.float64]
 
 BEHAVIOURS = {"shear": r"shear, $ρ=\infty$", "flexure": r"flexure, $ρ=0$"}
@@ -44,8 +42,7 @@ def groups_of(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> Groups:
     check_columns(pairs, (*_NEEDED, *columns), "what run_population returned")
     solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
     if not len(solved):
-        message = "No pair was solved. See the column error of the table."
-        raise InputError(message)
+        raise InputError("No pair was solved. See the column error of the table.")
     resting = solved[solved["status_mdof"] == "no_uplift"]
     rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
     fallen, failed = len(solved) - len(resting) - len(rocking), len(pairs) - len(solved)

@@ -18,8 +18,6 @@ from rockflex.plot._units import readable, short
 if TYPE_CHECKING:
     from rockflex.response import History
 
-__all__ = ["Quantity", "draw_panel", "quantities_of", "scale_of", "usual_panels"]
-
 _HEADROOM = 1.12
 
 
@@ -61,8 +59,7 @@ def quantities_of(panels: Sequence[str]) -> list[Quantity]:
     """
     names = [panels] if isinstance(panels, str) else list(panels)
     if not names or len(set(names)) < len(names) or not set(names) <= set(ALL):
-        message = f"panels must be one or more of {', '.join(ALL)}, each once, but {shown(panels)} was given."
-        raise InputError(message)
+        raise InputError(f"panels must be one or more of {', '.join(ALL)}, each once, but {shown(panels)} was given.")
     return [next(quantity for quantity in _QUANTITIES if quantity.name == name) for name in names]
 
 

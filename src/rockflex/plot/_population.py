@@ -13,8 +13,6 @@ from rockflex.plot._style import BLUE, RED, letter, new_figure, styled
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_population"]
-
 _PANELS = {
     "n_stories": "stories",
     "aspect_ratio": r"$h^*_1/B$",

@@ -14,8 +14,6 @@ from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, LOOKS, RED, Look, lit
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_overturning_spectrum", "plot_rocking_spectrum"]
-
 _CROSSES = 0.045  # of the panel, from row to row
 _LOOKS = (Look(BLACK, "-"), Look(RED, "-."), Look(GREEN, "--"), Look(BLUE, ":"), *LOOKS)
 
@@ -99,8 +97,7 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
     """
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     if not named:
-        message = "There is no table to plot. Give at least one from overturning_spectrum."
-        raise InputError(message)
+        raise InputError("There is no table to plot. Give at least one from overturning_spectrum.")
     _check_number(len(named), "tables")
     for table in named.values():
         _check(table, ("frequency_ratio", "lowest", "highest_standing"), "overturning_spectrum")
@@ -137,11 +134,11 @@ def _check(table: "pd.DataFrame", columns: tuple[str, ...], source: str) -> None
     missing = [name for name in columns if name not in getattr(table, "columns", ())]
     if missing or not len(table):
         lacks = f"lacks {', '.join(missing)}" if missing else "has no rows"
-        message = f"The table {lacks}. Give what {source} returned."
-        raise InputError(message)
+        raise InputError(f"The table {lacks}. Give what {source} returned.")
 
 
 def _check_number(given: int, what: str) -> None:
     if given > len(_LOOKS):
-        message = f"{given} {what} are too many to be told apart in one figure; {len(_LOOKS)} can be. Plot fewer."
-        raise InputError(message)
+        raise InputError(
+            f"{given} {what} are too many to be told apart in one figure; {len(_LOOKS)} can be. Plot fewer."
+        )

@@ -11,8 +11,6 @@ from rockflex._files import path_of, write_whole
 from rockflex._shown import shown
 from rockflex.plot._style import styled
 
-__all__ = ["save_figure"]
-
 # A date in the file would make equal figures differ.
 _UNDATED: dict[str, dict[str, Any]] = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
 _DPI = 200
@@ -43,11 +41,10 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     target = path_of("path", path)
     suffix = target.suffix.lower()
     if suffix not in _UNDATED:
-        message = (
+        raise InputError(
             f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
             f"{shown(target.suffix)}. Change the suffix."
         )
-        raise InputError(message)
     content = io.BytesIO()
     with styled():
         figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])

@@ -17,8 +17,6 @@ from rockflex.plot._style import BLACK, GRAY, SHADE, columns, new_figure, styled
 if TYPE_CHECKING:
     from rockflex.response import Response
 
-__all__ = ["plot_spread"]
-
 Array = NDArray[np.float64]
 
 _POINTS = 2000  # across the panel, more than it has dots
@@ -62,11 +60,10 @@ def plot_spread(
     """
     curves = curves_of(responses, labels)
     if len(varied) != len(curves) or not all(len(group) for group in varied):
-        message = (
+        raise InputError(
             f"varied must hold {len(curves)} groups, one a response, each of at least one response, but groups of "
             f"{[len(group) for group in varied]} were given."
         )
-        raise InputError(message)
     groups = [[_alone(response) for response in group] for group in varied]
     quantities = quantities_of(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]

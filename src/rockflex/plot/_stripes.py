@@ -15,8 +15,6 @@ from rockflex.plot._style import Look, columns, styled
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["plot_stripes"]
-
 Array = NDArray[np.float64]
 
 _POINTS = 400
@@ -66,8 +64,7 @@ def plot_stripes(
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
-        message = "No run was solved. See the column error of the table."
-        raise InputError(message)
+        raise InputError("No run was solved. See the column error of the table.")
     looks = looks_of(names_in(runs["model"]))
     names = names_in(runs["structure"])
     end = 1.1 * float(counts["level"].max())

@@ -20,17 +20,6 @@ if TYPE_CHECKING:
 
     from rockflex.plot._style import Look
 
-__all__ = [
-    "MARKERS",
-    "check_columns",
-    "keys_of",
-    "label_plainly",
-    "looks_of",
-    "measure_name",
-    "names_in",
-    "structure_panels",
-]
-
 MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8", "H")
 
 _MEASURES = {
@@ -52,8 +41,7 @@ def check_columns(table: object, columns: Iterable[str], source: str) -> None:
     lacking = [name for name in columns if name not in getattr(table, "columns", ())]
     if lacking or not len(table):  # pyright: ignore[reportArgumentType]
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
-        message = f"The table {lacks}. Give {source}."
-        raise InputError(message)
+        raise InputError(f"The table {lacks}. Give {source}.")
 
 
 def measure_name(measure: str) -> str:
@@ -103,8 +91,7 @@ def structure_panels(names: Sequence[str], across: int, height: float, x: str, y
         If there are too many for one figure.
     """
     if len(names) > _MOST:
-        message = f"{len(names)} structures are too many for one figure; {_MOST} fit. Plot fewer at a time."
-        raise InputError(message)
+        raise InputError(f"{len(names)} structures are too many for one figure; {_MOST} fit. Plot fewer at a time.")
     columns = min(across, len(names))
     rows = math.ceil(len(names) / columns)
     figure = new_figure(4.2 if columns == 1 else 6.3, 0.6 + height * rows)

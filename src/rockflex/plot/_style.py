@@ -10,26 +10,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-__all__ = [
-    "BLACK",
-    "BLUE",
-    "GRAY",
-    "GREEN",
-    "LOOKS",
-    "ORANGE",
-    "PURPLE",
-    "RED",
-    "SHADE",
-    "SKY",
-    "SMALL",
-    "Look",
-    "columns",
-    "letter",
-    "literal",
-    "new_figure",
-    "styled",
-]
-
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
 BLACK, GRAY, GREEN, RED = "#000000", "#8c8c8c", "#009e73", "#d55e00"
 BLUE, ORANGE, SKY, PURPLE = "#0072b2", "#e69f00", "#56b4e9", "#cc79a7"

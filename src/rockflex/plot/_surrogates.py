@@ -5,8 +5,6 @@ from collections.abc import Iterable
 from rockflex._errors import InputError
 from rockflex.plot._style import BLACK, GREEN, LOOKS, RED, Look
 
-__all__ = ["surrogate_looks"]
-
 _OWN = {"2DOF-S": Look(RED, "-."), "3DOF-S": Look(GREEN, "--"), "MDOF-S": Look(BLACK, "-", 2.0)}
 
 
@@ -21,7 +19,6 @@ def surrogate_looks(models: Iterable[str]) -> dict[str, Look]:
     names = list(dict.fromkeys(models))
     others = [name for name in names if name not in _OWN]
     if len(others) > len(LOOKS):
-        message = f"{len(names)} models are too many to be told apart in one figure. Plot fewer at a time."
-        raise InputError(message)
+        raise InputError(f"{len(names)} models are too many to be told apart in one figure. Plot fewer at a time.")
     looks = _OWN | dict(zip(others, LOOKS, strict=False))
     return {name: looks[name] for name in names}

@@ -15,8 +15,6 @@ from rockflex.plot._units import short
 if TYPE_CHECKING:
     from rockflex.structure import TaperedTower
 
-__all__ = ["plot_tower"]
-
 _EDGE = "#404040"
 _SLICE = 0.015  # height of the slice over that of the tower
 
@@ -45,12 +43,10 @@ def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
         If no tower is given, or the section is outside it.
     """
     if not hasattr(tower, "top_radius"):
-        message = f"tower must be a TaperedTower, but {type(tower).__name__} was given."
-        raise InputError(message)
+        raise InputError(f"tower must be a TaperedTower, but {type(tower).__name__} was given.")
     z = 0.5 * tower.height if section is None else positive("section", section, "m")
     if z > tower.height:
-        message = f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given."
-        raise InputError(message)
+        raise InputError(f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given.")
     with styled():
         figure = new_figure(6.3, 4.6)
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))

@@ -1,7 +1,5 @@
 """Units that make the numbers of a figure short."""
 
-__all__ = ["readable", "short"]
-
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 
 

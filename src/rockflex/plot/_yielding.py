@@ -15,8 +15,6 @@ from rockflex.plot._style import columns, letter, new_figure, styled
 if TYPE_CHECKING:
     from rockflex.response import Response
 
-__all__ = ["plot_hysteresis", "plot_yielding"]
-
 
 def plot_hysteresis(
     responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None, *, title: str | None = None

@@ -4,8 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-__all__ = ["Document", "Line", "Proof", "Section", "Side"]
-
 
 class Line(Protocol):
     """One number of a publication beside ours; texts are plain."""

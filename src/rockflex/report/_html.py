@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from rockflex.report._document import Document
 
-__all__ = ["to_html"]
-
 TEMPLATES = Path(__file__).parent / "templates"
 CLASSES = ("best", "good", "fair", "open", "bad")  # of the verdicts, best first; the last one is bad
 

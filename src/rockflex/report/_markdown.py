@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rockflex.report._document import Document, Proof, Section
 
-__all__ = ["to_markdown"]
-
 CHECKS = ("place", "check", "paper", "rockflex", "unit", "holds", "criterion and remarks")
 HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict", "criterion and remarks")
 

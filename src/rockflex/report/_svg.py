@@ -2,8 +2,6 @@
 
 import re
 
-__all__ = ["inline"]
-
 
 def inline(drawing: str, stem: str, label: str) -> str:
     """Turn an SVG file into an element of a page.

@@ -10,8 +10,6 @@ from rockflex.report._document import Document
 from rockflex.report._html import to_html
 from rockflex.report._markdown import to_markdown
 
-__all__ = ["write_report"]
-
 
 def write_report(document: Document, folder: Path, progress: Callable[[str], None] | None = None) -> list[Path]:
     """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.

@@ -17,8 +17,6 @@ from rockflex._values import Value
 from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, stored_energies, tendon_energy
 from rockflex.solve import ClosedForm
 
-__all__ = ["EnergyLedger", "energy_ledger", "is_impact"]
-
 Array = NDArray[np.float64]
 
 REACH = 8.0  # radians of the fastest mode that one Gauss rule spans; its points then number 20 at most
@@ -142,12 +140,11 @@ def _rule(label: str, fastest: float, longest: float) -> tuple[Array, Array]:
     """Places in [0, 1] and weights of a composite Gauss rule for states that turn or decay at `fastest` (rad/s)."""
     pieces = max(math.ceil(fastest * longest / REACH), 1)
     if pieces > MOST_PIECES:
-        message = (
+        raise InputError(
             f"The energy ledger of {label} needs {pieces} quadratures a step, above the limit of {MOST_PIECES}: the "
             f"model turns or decays at up to {fastest:.3g} rad/s, and steps last up to {longest:.3g} s. Keep fewer "
             "modes, damp them less, or refine the record."
         )
-        raise InputError(message)
     places, weights = np.polynomial.legendre.leggauss(8 + math.ceil(1.5 * fastest * longest / pieces))
     starts = np.arange(pieces)[:, None]
     return ((starts + 0.5 + 0.5 * places) / pieces).ravel(), np.tile(0.5 * weights / pieces, pieces)

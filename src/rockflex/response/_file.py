@@ -29,8 +29,6 @@ from rockflex.models import (
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
 
-__all__ = ["load", "save"]
-
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 
 FORMAT = "rockflex-response-2"
@@ -61,12 +59,11 @@ FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_
 def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: History | None) -> Path:
     """Write a response to `path`, to which ``.npz`` is added where it lacks; the file appears whole or not at all."""
     if path.suffix[1:2].isalpha() and path.suffix.lower() != ".npz":  # "scale 1.5" has no suffix
-        message = (
+        raise InputError(
             f"A response is saved as .npz, but {path.name!r} was given. Name it {path.stem + '.npz'!r}; for a "
             'table of the history write pandas.DataFrame({"time": response.time, "rotation": response.rotation})'
             ".to_parquet(...)."
         )
-        raise InputError(message)
     path = path if path.suffix.lower() == ".npz" else path.with_name(path.name + ".npz")
     scalars = {"format": FORMAT, **peaks}
     arrays: dict[str, Any] = {}
@@ -96,8 +93,7 @@ def load(path: Path, kinds: dict[str, type]) -> Kept:
     """Read what `save` wrote, with peaks of these names and types."""
     check_regular(path)
     if not path.exists():
-        message = f"No saved response at {path}. Give the path that Response.save returned."
-        raise InputError(message)
+        raise InputError(f"No saved response at {path}. Give the path that Response.save returned.")
     try:
         with zipfile.ZipFile(path) as archive:  # whole members, so that their checksums are compared
             content = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
@@ -107,19 +103,16 @@ def load(path: Path, kinds: dict[str, type]) -> Kept:
         kept = _kept(scalars, arrays, kinds) if known else None
     except Exception as error:  # zipfile, zlib, NumPy and json meet damage with nearly any exception
         reason = f"{type(error).__name__}: {error}"
-        message = f"{path} is not a saved response ({reason}). Give a file that Response.save wrote."
-        raise InputError(message) from error
+        raise InputError(f"{path} is not a saved response ({reason}). Give a file that Response.save wrote.") from error
     if kept is None:
-        message = f"{path} has the format {shown(scalars['format'])}, but {FORMAT!r} is expected."
-        raise InputError(message)
+        raise InputError(f"{path} has the format {shown(scalars['format'])}, but {FORMAT!r} is expected.")
     return kept
 
 
 def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type]) -> Kept:
     for name, values in arrays.items():
         if name != "response" and values.dtype != np.float64:
-            message = f"{name} must be of type float64, but is of type {values.dtype}."
-            raise InputError(message)
+            raise InputError(f"{name} must be of type float64, but is of type {values.dtype}.")
     peaks = {name: _typed(scalars, name, kind) for name, kind in kinds.items()}
     floors = history = None
     if "nodes" in arrays:
@@ -127,15 +120,13 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
         if floors.story_drift.shape != arrays["floor_modes.heights"].shape:
-            message = f"There are peaks of {floors.story_drift.size} floors and not as many heights."
-            raise InputError(message)
+            raise InputError(f"There are peaks of {floors.story_drift.size} floors and not as many heights.")
     return peaks, floors, history
 
 
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
     if type(scalars[name]) is not kind:
-        message = f"{name} must be of type {kind.__name__}, but is {shown(scalars[name])}."
-        raise InputError(message)
+        raise InputError(f"{name} must be of type {kind.__name__}, but is {shown(scalars[name])}.")
     return scalars[name]
 
 

@@ -9,8 +9,6 @@ from rockflex._checks import finite_vector
 from rockflex._errors import InputError
 from rockflex._values import Value
 
-__all__ = ["FloorPeaks"]
-
 Array = NDArray[np.float64]
 
 
@@ -55,8 +53,7 @@ class FloorPeaks(Value):
         }
         sizes = [values.size for values in peaks.values()]
         if len(set(sizes)) > 1:
-            message = (
+            raise InputError(
                 f"The peaks of the floors must be one a floor each, but {', '.join(peaks)} have the sizes {sizes}."
             )
-            raise InputError(message)
         vars(self).update(peaks)

@@ -6,8 +6,6 @@ from numpy.typing import NDArray
 from rockflex.modal import FloorModes
 from rockflex.models import RockingModel, floor_accelerations, floor_quantities, values_of
 
-__all__ = ["floor_histories"]
-
 Array = NDArray[np.float64]
 
 NAMES = ("story_drift", "story_shear", "total_floor_displacement")

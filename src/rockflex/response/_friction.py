@@ -23,8 +23,6 @@ from rockflex.models import (
 from rockflex.response._energy import is_impact
 from rockflex.solve import ClosedForm
 
-__all__ = ["IMPACT_WINDOW", "Friction"]
-
 Array = NDArray[np.float64]
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has its short spikes
@@ -99,8 +97,7 @@ class Friction:
         """
         coefficient = real_or_nan(mu)
         if not 0.0 < coefficient < math.inf:
-            message = f"mu must be a friction coefficient above zero, such as 0.5, but {shown(mu)} was given."
-            raise InputError(message)
+            raise InputError(f"mu must be a friction coefficient above zero, such as 0.5, but {shown(mu)} was given.")
         limit = math.atan(coefficient)
         if not self._stretches.size:
             return float(self._nodes[0, TIME]) if self.demand[0] > coefficient else None
@@ -149,12 +146,11 @@ class Friction:
         longest = float(np.diff(self._nodes[:, TIME]).max(initial=0.0))
         pieces = max(math.ceil(self._fastest * longest / TURN), FEWEST)
         if pieces > MOST:
-            message = (
+            raise InputError(
                 f"The friction demand of {self._model.label} needs {pieces} looks a step, above the limit of {MOST}: "
                 f"the model turns or decays at up to {self._fastest:.3g} rad/s, and steps last up to {longest:.3g} s. "
                 "Keep fewer modes, damp them less, or refine the record."
             )
-            raise InputError(message)
         return np.linspace(0.0, 1.0, pieces + 1)
 
     @cached_property

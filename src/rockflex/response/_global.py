@@ -2,8 +2,6 @@
 
 from rockflex.models import Quantities, RockingModel, floor_quantities, quantities, rotation_by_side
 
-__all__ = ["FLOORS", "GLOBAL", "asked_of"]
-
 GLOBAL = ("top_displacement", "base_moment", "base_shear", "total_top_displacement", "horizontal_reaction")
 FLOORS = ("story_drift", "story_shear", "total_floor_displacement", "floor_acceleration")
 

@@ -16,8 +16,6 @@ from rockflex.response._global import GLOBAL
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._tendons import tendon_forces
 
-__all__ = ["History"]
-
 Array = NDArray[np.float64]
 
 
@@ -118,11 +116,10 @@ class History(Value):
         u_top + h_top θ; in the complete models that of Eq. 3, from its place before the base lifted.
         """
         if self.model.properties.top_height is None:
-            message = (
+            raise MissingQuantityError(
                 "The height of the top is not known, so there is no total displacement. Give RockingProperties their "
                 "top_height, in m above the base."
             )
-            raise MissingQuantityError(message)
         return self._global[:, 3]
 
     @property
@@ -271,12 +268,11 @@ class History(Value):
     def _floors(self) -> tuple[Array, Array, Array, Array]:
         floors = self.model.properties.floors
         if floors is None:
-            message = (
+            raise MissingQuantityError(
                 "The structure's properties name no floors, so there are no story drifts, story shears, floor "
                 "accelerations or floor displacements. Simulate a Frame or a LumpedStructure, or give "
                 "RockingProperties its floors."
             )
-            raise MissingQuantityError(message)
         histories = floor_histories(self.model, floors, self.nodes)
         for values in histories:
             values.setflags(write=False)

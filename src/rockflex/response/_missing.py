@@ -2,8 +2,6 @@
 
 from rockflex._errors import InputError
 
-__all__ = ["MissingQuantityError"]
-
 
 class MissingQuantityError(InputError, AttributeError):
     """A quantity that this run did not keep; an AttributeError too, so that `hasattr` answers False."""

@@ -22,8 +22,6 @@ from rockflex.response._tendons import largest_tendon_force
 from rockflex.response._warnings import warnings_of
 from rockflex.solve import Solution
 
-__all__ = ["PEAKS", "Response", "respond"]
-
 Array = NDArray[np.float64]
 Quantity = TypeVar("Quantity")
 
@@ -43,8 +41,9 @@ class _OfHistory(Generic[Quantity]):
         if response is None:
             return self
         if response.history is None:
-            message = f'This response keeps peaks only, so it has no {self.name}. Simulate with output="history".'
-            raise MissingQuantityError(message)
+            raise MissingQuantityError(
+                f'This response keeps peaks only, so it has no {self.name}. Simulate with output="history".'
+            )
         return getattr(response.history, self.name)
 
 

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from rockflex.models import RockingModel, stretch_per_arm
 
-__all__ = ["largest_tendon_force", "tendon_forces"]
-
 Array = NDArray[np.float64]
 
 

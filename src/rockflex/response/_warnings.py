@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["warnings_of"]
-
 
 def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
     """Return a sentence or two for each; `peaks` are those of a `Response` by their names."""

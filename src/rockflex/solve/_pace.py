@@ -13,8 +13,6 @@ import numpy as np
 from rockflex.models import RockingModel
 from rockflex.solve.layout import Array
 
-__all__ = ["Pace", "Work", "pace_of"]
-
 LOOKS = 0.8  # into a sample, for each radian beyond the first by which the fastest vibration turns in it
 SEARCH = 0.1  # looks into a sample whatever turns in it
 TURN = 1.0  # rad of the fastest vibration in a tried step

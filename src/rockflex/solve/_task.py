@@ -10,8 +10,6 @@ from rockflex._errors import InputError
 from rockflex.models import HEADER, RockingModel
 from rockflex.solve._pace import Pace, Work, pace_of
 
-__all__ = ["Task", "WorkLimitError"]
-
 HISTORY = 4e9  # bytes
 SWIFT = 10.0  # rad in a time step, from which on it matters whether the fastest vibration swings
 UNITS = (("years", 3.2e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 0.0))
@@ -75,11 +73,10 @@ class Task:
         if limit is not None:
             work = self.work()
             if work.total > limit:
-                message = (
+                raise WorkLimitError(
                     f"{self.model.label} would take about {_lasting(work.total)} of computing, but work_limit is "
                     f"{limit:g} s: {self.reason(work)} {LIFT}"
                 )
-                raise WorkLimitError(message)
         if self.history:
             self.check_room(self.record.size + (0.0 if self.free_vibration is None else self.free_vibration / self.dt))
 
@@ -87,11 +84,10 @@ class Task:
         """Raise `WorkLimitError` if a history of so many nodes takes too much memory."""
         size = 8.0 * nodes * (HEADER + self.model.layout.core)
         if size > HISTORY:
-            message = (
+            raise WorkLimitError(
                 f"The history of {self.model.label} would have {nodes:.3g} states and take {size / 1e9:.3g} GB, but "
                 f'{HISTORY / 1e9:g} GB is the most. Give output="peaks", less free_vibration, or a longer time step.'
             )
-            raise WorkLimitError(message)
 
     def stopped(self, time: float, limit: float | None) -> tuple[str, str]:
         """What is said of a run that has done all the work that it may, at `time`, and how to mend it."""

@@ -33,8 +33,6 @@ from rockflex.solve.layout import (
 )
 from rockflex.solve.peaks import raise_peak, raise_to
 
-__all__ = ["begin", "first_exit", "free_inertia", "move", "turning_rate"]
-
 
 @inlined_kernel
 def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) -> float:
@@ -63,6 +61,7 @@ def first_exit(
 
 @inlined_kernel
 def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> tuple[float, int, float]:
+    """Where a linear phase ends, by the power series of its guard."""
     expand(system, at.phase, motion, span, at.lift)
     row_series(system, at.phase, GUARD, motion, span)
     return phase_exit(system, at, motion.polys)
@@ -70,6 +69,7 @@ def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> 
 
 @inlined_kernel
 def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Stages) -> tuple[float, int, float]:
+    """Where an integrated phase ends, by the polynomial of its guard over the step."""
     p, polys = at.phase, room.polys
     extend(flow, system.phases[p].side, span, room)
     row_poly(system, p, GUARD, span, room)
@@ -105,6 +105,7 @@ def move(
 
 @inlined_kernel
 def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
+    """Put the motion at `stop` by its power series."""
     p = at.phase
     if system.phases[p].side != 0.0:
         raise_peak(motion.polys, GUARD, stop, span, log)
@@ -120,6 +121,7 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
 
 @inlined_kernel
 def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, room: Stages) -> None:
+    """Put the motion at `stop` by the step's polynomials."""
     p = at.phase
     side = system.phases[p].side
     if side != 0.0:

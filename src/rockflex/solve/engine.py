@@ -38,8 +38,6 @@ from rockflex.solve.phases import CompiledPhases
 from rockflex.solve.run import run
 from rockflex.solve.status import Status
 
-__all__ = ["Engine", "preparing"]
-
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
 MOST_SAMPLES = 2.0**62  # of free vibration: more than any machine will live to see
 EVENTS = 512  # states of a history between samples that there is room for at first
@@ -250,8 +248,7 @@ class Engine:
         law = shown(self.model.law)
         if Status(status) is Status.BROKEN:
             failure = self._failures.pop()
-            message = f"{Status.BROKEN.what.format(law=law)}: {failure}"
-            raise InputError(message) from failure
+            raise InputError(f"{Status.BROKEN.what.format(law=law)}: {failure}") from failure
         ended = Status.INFINITE if status >= 0 else Status(status)
         # A failure inside a sample is told with the sample's end.
         time = (_samples(at) + (ended not in (Status.UNSETTLED, Status.INFINITE))) * dt
@@ -259,8 +256,7 @@ class Engine:
 
     def _raise(self, what: str, mend: str, state: Array) -> None:
         values = ", ".join(f"{value:.6g}" for value in state[: self.model.layout.core])
-        message = f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}"
-        raise SolverError(message)
+        raise SolverError(f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}")
 
 
 def _samples(at: Progress) -> int:

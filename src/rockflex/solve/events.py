@@ -31,8 +31,6 @@ from rockflex.solve.layout import (
 )
 from rockflex.solve.status import Status
 
-__all__ = ["CROSSED", "PAUSED", "cross", "enter", "start_crossing"]
-
 CROSSED = int(Status.ENDED)
 OVERTURNED, PAUSED, LACKS_PHASE = int(Status.OVERTURNED), int(Status.PAUSED), int(Status.LACKS_PHASE)
 BROKEN, CHATTER, GAINED, STALLED = (

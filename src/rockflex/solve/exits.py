@@ -6,8 +6,6 @@ from rockflex._kernel import kernel
 from rockflex.solve.layout import GUARD, Array, Progress, System
 from rockflex.solve.polynomials import evaluate, first_descent
 
-__all__ = ["BEFORE", "HIGH", "INSIDE", "LIFTED", "LOW", "PASSING", "TOUCHED", "phase_exit"]
-
 LOW, HIGH = 0, 1  # the limits of a guard
 BEFORE = -1.0  # the phase was over before it began
 

@@ -4,8 +4,6 @@ from rockflex._kernel import kernel
 from rockflex.models import GROUND, HEADER, SIDE, TIME
 from rockflex.solve.layout import KEPT, Array, Log
 
-__all__ = ["MARGIN", "keep", "room_left"]
-
 MARGIN = 8  # states that a stretch between two pauses may add, at most
 
 

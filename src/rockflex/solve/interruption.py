@@ -4,8 +4,6 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-__all__ = ["RunStoppedError", "asked_to_stop", "check_interruption", "stopping_when"]
-
 _ASKED: ContextVar[Callable[[], bool] | None] = ContextVar("asked", default=None)
 
 
@@ -45,5 +43,4 @@ def check_interruption() -> None:
     """
     asked = _ASKED.get()
     if asked is not None and asked():
-        message = "The run was stopped before its end."
-        raise RunStoppedError(message)
+        raise RunStoppedError("The run was stopped before its end.")

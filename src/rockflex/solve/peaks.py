@@ -4,8 +4,6 @@ from rockflex._kernel import kernel
 from rockflex.solve.layout import GUARD, Array, Log, Motion, Span, System
 from rockflex.solve.polynomials import bend, evaluate, first_descent
 
-__all__ = ["raise_peak", "raise_peaks", "raise_row", "raise_to", "raise_to_state", "size_of"]
-
 ROUNDING = 1e-16
 MOST_TURNS = 64  # of a row within a unit, in which no mode turns by more than a radian
 

@@ -10,8 +10,6 @@ from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
 from rockflex.solve.layout import BESIDE, EVENT, FOLLOWING, FOLLOWS, LINKS, Array, System
 
-__all__ = ["CompiledPhases"]
-
 MOST_LEVELS = 8  # that there is room for before they are needed
 CAPACITY = 3  # phases that there is room for at first: contact, and rocking on either side
 

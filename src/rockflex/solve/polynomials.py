@@ -7,8 +7,6 @@ import numpy as np
 from rockflex._kernel import kernel
 from rockflex.solve.layout import Array
 
-__all__ = ["bend", "evaluate", "first_descent"]
-
 SHIFT = 40  # steps after which a polynomial is developed anew
 MOST_STEPS = 10_000  # a few do; only a root touched to a high order takes more, and then this close is close enough
 

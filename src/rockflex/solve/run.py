@@ -36,8 +36,6 @@ from rockflex.solve.peaks import raise_row, raise_to_state
 from rockflex.solve.sample import cross_sample
 from rockflex.solve.status import Status
 
-__all__ = ["run"]
-
 ENDED, SETTLED, UNSETTLED = int(Status.ENDED), int(Status.SETTLED), int(Status.UNSETTLED)
 
 BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: a stretch begins; over whole samples; a closer look at one

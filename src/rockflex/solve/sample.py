@@ -12,8 +12,6 @@ from rockflex.solve.history import keep
 from rockflex.solve.layout import ENDS, FINAL, LEFT, LOOK, NOW, Log, Motion, Progress, Span, System, unit_of
 from rockflex.solve.peaks import raise_peaks
 
-__all__ = ["cross_sample"]
-
 
 @inlined_kernel
 def cross_sample(

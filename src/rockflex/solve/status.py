@@ -2,8 +2,6 @@
 
 from enum import IntEnum
 
-__all__ = ["Status"]
-
 
 class Status(IntEnum):
     """What the kernels return; those below zero are failures, with what is said of them and how to mend it.

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-__all__ = ["DamagedPart", "StudyFolder"]
-
 PARTS, LOCK = "parts", "lock"
 
 
@@ -119,10 +117,9 @@ class StudyFolder:
         folder = path_of("path", path)
         with reported(folder):
             if not (folder / MANIFEST).is_file():
-                message = (
+                raise InputError(
                     f"There is no study at {folder}: it has no {MANIFEST}. Give the folder that a study was run in."
                 )
-                raise InputError(message)
             study = cls(folder, Manifest.read(folder))
             study._refuse_strays()
         return study
@@ -179,11 +176,11 @@ class StudyFolder:
 
         place = whole_number("number", number, 0, self.n_chunks - 1)
         if not isinstance(table, pa.Table):
-            message = f"A chunk must be a pyarrow.Table, but {type(table).__name__} was given."
-            raise InputError(message)
+            raise InputError(f"A chunk must be a pyarrow.Table, but {type(table).__name__} was given.")
         if self.lock is None:
-            message = f"{self.path} was opened to read. Open it by StudyFolder.open, with its specification, to write."
-            raise InputError(message)
+            raise InputError(
+                f"{self.path} was opened to read. Open it by StudyFolder.open, with its specification, to write."
+            )
         self.lock.check()
         content = encode(table, self.manifest.study, place, self.manifest.versions)
         self._refuse_other_columns(place, schema_of(content))
@@ -213,16 +210,16 @@ class StudyFolder:
                 if path.exists():
                     tables[number] = read(path, self.manifest.study, number)
             except (PartError, OSError) as error:
-                message = (
+                raise InputError(
                     f"{path} is damaged: {error}. Run the study again in this folder, which computes this part anew "
                     "and keeps the others; or delete the file and load with partial=True."
-                )
-                raise InputError(message) from error
+                ) from error
         absent = self.n_chunks - len(tables)
         if not tables or (absent and not partial):
             hint = "" if not tables else ", or take what is there by partial=True"
-            message = f"{absent} of {self.n_chunks} parts of {self.path} are missing. Run the study to its end{hint}."
-            raise InputError(message)
+            raise InputError(
+                f"{absent} of {self.n_chunks} parts of {self.path} are missing. Run the study to its end{hint}."
+            )
         first = next(iter(tables.values())).schema
         for number, table in tables.items():
             refuse_other_columns(self._part(number), first, table.schema)
@@ -266,10 +263,9 @@ class StudyFolder:
         expected = {self._part(number).name for number in range(self.n_chunks)}
         strays = sorted(path.name for path in (self.path / PARTS).glob("*.parquet") if path.name not in expected)
         if strays:
-            message = (
+            raise InputError(
                 f"In {self.path / PARTS} there are files of no part of the study:{listed(strays)}\nMove them away."
             )
-            raise InputError(message)
 
     def _refuse_other_columns(self, number: int, schema: "pa.Schema") -> None:
         """Compare with the first intact part that is not the one to be written."""

@@ -14,8 +14,6 @@ from uuid import uuid4
 from rockflex._errors import InputError
 from rockflex._shown import shortened
 
-__all__ = ["Lock"]
-
 UNREADABLE_FOR = 1.0  # s; a file that stays empty for longer was left by a process killed between two calls
 
 
@@ -54,11 +52,10 @@ class Lock:
     def check(self) -> None:
         """Raise an `InputError` if the file is no longer this lock's: released, deleted or taken over."""
         if _text(self.path) != self.content:
-            message = (
+            raise InputError(
                 f"The lock {self.path} is no longer held: the folder was closed, or the file was deleted or taken "
                 "over. What was written is kept. Open the study again."
             )
-            raise InputError(message)
 
     def release(self) -> None:
         _release(self.path, self.content)
@@ -72,8 +69,7 @@ def _release(path: Path, content: str) -> None:
 
 def _take_away_if_stale(path: Path, waited: float) -> None:
     if path.exists() and not path.is_file():
-        message = f"{path} is no file, but the study's lock belongs there. Move it away and try again."
-        raise InputError(message)
+        raise InputError(f"{path} is no file, but the study's lock belongs there. Move it away and try again.")
     text = _text(path)
     holder = _parsed(text)
     if holder is None:
@@ -87,12 +83,11 @@ def _take_away_if_stale(path: Path, waited: float) -> None:
             time.sleep(0.05)
             return
     elif not _dead(holder):
-        message = (
+        raise InputError(
             f"{path.parent} is in use by process {holder['pid']} on {shortened(holder['host'])} since "
             f"{shortened(holder['since'])}. "
             f"Wait until it has finished, or end it. If it no longer runs, delete {path} and try again."
         )
-        raise InputError(message)
     aside = path.with_name(f".{path.name}.{uuid4().hex}")
     try:
         path.rename(aside)  # succeeds for one process only

@@ -14,8 +14,6 @@ from rockflex._files import check_regular, write_whole
 from rockflex._shown import shortened, shown
 from rockflex.store._spec import differences, listed, plain
 
-__all__ = ["MANIFEST", "SPEC", "Manifest"]
-
 FORMAT = "rockflex-study-2"  # 1: without total displacements and reactions of the ground
 MANIFEST, SPEC = "manifest.json", "spec.json"
 MOST_PARTS = 100_000  # every part is a file, whose number has five digits
@@ -58,8 +56,7 @@ class Manifest:
     ) -> Self:
         for name, given in (("spec", spec), ("versions", versions), ("checksums", checksums)):
             if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
-                message = f"{name} must be a mapping, but {type(given).__name__} was given."
-                raise InputError(message)
+                raise InputError(f"{name} must be a mapping, but {type(given).__name__} was given.")
         count = _part_count(n_chunks)
         content, sums = plain("spec", spec), plain("checksums", checksums)
         now = datetime.now(UTC).isoformat(timespec="seconds")
@@ -97,20 +94,17 @@ class Manifest:
                     return manifest
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FileNotFoundError) as error:
             reason = f"{type(error).__name__}: {shortened(str(error))}"
-            message = (
+            raise InputError(
                 f"{path} or the {SPEC} beside it is damaged ({reason}). Restore both from a copy, "
                 f"or give another folder; the results in {folder / 'parts'} can still be read as Parquet."
-            )
-            raise InputError(message) from error
+            ) from error
         if known != FORMAT:
-            message = (
+            raise InputError(
                 f"{path} has the format {shown(known)}, but this version of rockflex reads {FORMAT!r}. "
                 "Use the version that wrote it, or run the study again in another folder; the results in "
                 f"{folder / 'parts'} can still be read as Parquet."
             )
-            raise InputError(message)
-        message = f"{folder / SPEC} was changed after the study began. Undo the change, or give another folder."
-        raise InputError(message)
+        raise InputError(f"{folder / SPEC} was changed after the study began. Undo the change, or give another folder.")
 
     def accept(self, given: "Manifest", folder: Path, *, any_version: bool) -> None:
         """Raise an `InputError` that says what differs if `given` is not this study."""
@@ -118,36 +112,32 @@ class Manifest:
         if self.n_chunks != given.n_chunks:
             changed.append(f"number of chunks: {self.n_chunks} in the folder, {given.n_chunks} now")
         if changed:
-            message = (
+            raise InputError(
                 f"{folder} holds another study. What differs:{listed(changed)}\n"
                 "Give another folder for this study, or the folder's own specification to go on with it."
             )
-            raise InputError(message)
         changed = differences(self.checksums, given.checksums)
         if changed:
-            message = (
+            raise InputError(
                 f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
                 f"{listed(changed)}\nUse the same files, or give another folder."
             )
-            raise InputError(message)
         changed = differences(self.versions, given.versions)
         if changed and not any_version:
-            message = (
+            raise InputError(
                 f"{folder} was begun with other versions, whose numbers may differ in the last digits:"
                 f"{listed(changed)}\n"
                 "Install those versions, give another folder, or pass any_version=True to mix them."
             )
-            raise InputError(message)
 
 
 def _part_count(n_chunks: SupportsIndex) -> int:
     count = whole_number("n_chunks", n_chunks, 1)
     if count > MOST_PARTS:
-        message = (
+        raise InputError(
             f"n_chunks must be at most {MOST_PARTS}, for each chunk is a file, but {shown(count)} was given. "
             "Compute more runs a chunk: runs_per_chunk in a study."
         )
-        raise InputError(message)
     return count
 
 

@@ -12,8 +12,6 @@ from rockflex._files import irregular
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["PartError", "encode", "read", "schema_of", "verify"]
-
 # The checksum stands in the footer, as a value of fixed length: it is taken with zeros in its own place.
 MARKER, BLANK = b"rockflex-crc32:", b"00000000"
 
@@ -46,27 +44,21 @@ def verify(path: Path, study: str, number: int) -> bytes:
     """
     kind = irregular(path)
     if kind:
-        message = f"it is {kind}"
-        raise PartError(message)
+        raise PartError(f"it is {kind}")
     content = path.read_bytes()
     if content[:4] != b"PAR1" or content[-4:] != b"PAR1" or len(content) < 12:
-        message = f"it is no whole Parquet file, but {len(content)} bytes"
-        raise PartError(message)
+        raise PartError(f"it is no whole Parquet file, but {len(content)} bytes")
     place = content.rfind(MARKER)
     if place < 0:
-        message = "it is a Parquet file that carries no checksum, so that no study wrote it"
-        raise PartError(message)
+        raise PartError("it is a Parquet file that carries no checksum, so that no study wrote it")
     recorded = content[place + len(MARKER) :][:8]
     if recorded != b"%08x" % crc32(_sealed(content, BLANK)):
-        message = "its bytes do not agree with their checksum"
-        raise PartError(message)
+        raise PartError("its bytes do not agree with their checksum")
     origin = _origin(content)
     if origin.get(b"rockflex.study") != study.encode():
-        message = "it belongs to another study"
-        raise PartError(message)
+        raise PartError("it belongs to another study")
     if origin.get(b"rockflex.chunk") != str(number).encode():
-        message = f"it holds chunk {origin.get(b'rockflex.chunk', b'?').decode()}"
-        raise PartError(message)
+        raise PartError(f"it holds chunk {origin.get(b'rockflex.chunk', b'?').decode()}")
     return content
 
 

@@ -16,8 +16,6 @@ from rockflex.store._spec import listed
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["refuse_foreign", "refuse_other_columns", "reported"]
-
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
@@ -30,23 +28,22 @@ def refuse_other_columns(path: Path, old: "pa.Schema", new: "pa.Schema", number:
     lines = [f"{name}: {before.get(name)}, {now.get(name)}" for name in names if before.get(name) != now.get(name)]
     what = f"Chunk {number} has" if number is not None else f"{path} and the first part have"
     against = f" other columns than {path}" if number is not None else " other columns"
-    message = f"{what}{against}:{listed(lines or ['the order of the columns'])}\nAll chunks must have the same columns."
-    raise InputError(message)
+    raise InputError(
+        f"{what}{against}:{listed(lines or ['the order of the columns'])}\nAll chunks must have the same columns."
+    )
 
 
 def refuse_foreign(folder: Path, own: set[str]) -> None:
     """Refuse a file, and a folder with anything but hidden files and what a study killed at its start left."""
     if folder.exists() and not folder.is_dir():
-        message = f"{folder} is a file. Give a folder for the study."
-        raise InputError(message)
+        raise InputError(f"{folder} is a file. Give a folder for the study.")
     names = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
     foreign = [name for name in names if name not in own and not name.startswith(".")]
     if foreign:
-        message = (
+        raise InputError(
             f"{folder} is no study, and not empty ({shown(foreign[0])} is in it). Give an empty or a new folder, or "
             "that of a study."
         )
-        raise InputError(message)
 
 
 @contextmanager

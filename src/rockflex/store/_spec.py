@@ -8,8 +8,6 @@ from typing import Any, cast
 from rockflex._errors import InputError
 from rockflex._shown import shortened, shown
 
-__all__ = ["differences", "listed", "plain"]
-
 SHOWN = 10  # differences in a message
 DEEPEST = 50  # levels of a specification; those of studies have five
 WIDTH = 60  # characters of a value in a message
@@ -26,11 +24,10 @@ def plain(name: str, value: object, depth: int = 0) -> Any:
         If there is anything else in it, or it is nested too deep; the message has the dotted path.
     """
     if depth > DEEPEST:
-        message = (
+        raise InputError(
             f"{shortened(name)} is nested more than {DEEPEST} deep, which no specification is. Give the value itself, "
             "not lists within lists, and no list that holds itself."
         )
-        raise InputError(message)
     if value is None or isinstance(value, str | bool):
         return value
     if isinstance(value, int | float):
@@ -39,17 +36,15 @@ def plain(name: str, value: object, depth: int = 0) -> Any:
         items = cast("Mapping[object, object]", value)
         for key in items:
             if not isinstance(key, str):
-                message = f"The keys of {name} must be strings, but {shown(key)} was given."
-                raise InputError(message)
+                raise InputError(f"The keys of {name} must be strings, but {shown(key)} was given.")
         return {str(key): plain(f"{name}.{key}", each, depth + 1) for key, each in items.items()}
     if isinstance(value, list | tuple):
         entries = cast("Sequence[object]", value)
         return [plain(f"{name}[{place}]", each, depth + 1) for place, each in enumerate(entries)]
-    message = (
+    raise InputError(
         f"{name} is of type {type(value).__name__}, which JSON does not know. Give a number, a string, a list or a "
         "dict; a NumPy array or number by its .tolist()."
     )
-    raise InputError(message)
 
 
 def differences(old: Any, new: Any, where: str = "") -> list[str]:

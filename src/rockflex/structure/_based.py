@@ -4,8 +4,6 @@ from typing import Protocol, SupportsIndex
 
 from rockflex.modal import ModalProperties, RockingProperties
 
-__all__ = ["Based", "is_structure"]
-
 
 class Based(Protocol):
     """Any structure."""

@@ -18,8 +18,6 @@ from rockflex.structure._profile import Along, Profile, profile
 from rockflex.structure._ritz import RitzShapes, cosine_shapes, ritz_modes
 from rockflex.structure._sections import LumpedMasses, Sections, on_beam
 
-__all__ = ["Beam"]
-
 _N_ELEMENTS = 1000
 _MOST_ELEMENTS = 10_000
 _RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
@@ -92,8 +90,7 @@ class Beam(Value):
     def __post_init__(self) -> None:
         height = positive("height", self.height, "m")
         if not isinstance(self.rotary_in_modes, bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"rotary_in_modes must be True or False, but {shown(self.rotary_in_modes)} was given."
-            raise InputError(message)
+            raise InputError(f"rotary_in_modes must be True or False, but {shown(self.rotary_in_modes)} was given.")
         n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
             height=height,
@@ -158,20 +155,19 @@ class Beam(Value):
 
     def _check_method(self) -> None:
         if not one_of(self.method, ("fe", "ritz")):
-            message = f'method must be "fe" or "ritz", but {shown(self.method)} was given.'
-            raise InputError(message)
+            raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.')
         lacking = {"fe": {"shapes": "ritz"}, "ritz": {"n_elements": "fe", "shear_stiffness": "fe"}}
         for name, other in lacking[self.method].items():
             if getattr(self, name) is not None:
-                message = f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".'
-                raise InputError(message)
+                raise InputError(
+                    f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".'
+                )
         if self.n_elements is not None:
             vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, _MOST_ELEMENTS))
         if self.shapes is not None:
             found = instance("shapes", self.shapes, RitzShapes).check(self.height)
             if found < self.n_modes:
-                message = f"shapes must hold at least n_modes = {self.n_modes} shapes, but it holds {found}."
-                raise InputError(message)
+                raise InputError(f"shapes must hold at least n_modes = {self.n_modes} shapes, but it holds {found}.")
 
 
 def _optional(name: str, given: Along | None, height: float, unit: str, *, zero: bool = False) -> Profile | None:

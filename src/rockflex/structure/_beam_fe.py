@@ -9,8 +9,6 @@ from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 from rockflex.structure._lowest_modes import lowest_modes
 from rockflex.structure._sections import Sections
 
-__all__ = ["finite_element_modes"]
-
 Float = NDArray[np.float64]
 
 _POINTS = 4  # exact for cubic shapes with mass and stiffness of the first degree
@@ -74,8 +72,9 @@ def _check_bodies(beam: Sections, mass: float) -> None:
     if beam.rotary_in_modes:
         heaviest = max(heaviest, float(lumped.rotary.max(initial=0.0)) / beam.height**2)
     if heaviest > _HEAVIEST * mass:
-        message = f"a body on it has {heaviest / mass:.1g} times its mass, more than {_HEAVIEST:g} times"
-        raise np.linalg.LinAlgError(message)
+        raise np.linalg.LinAlgError(
+            f"a body on it has {heaviest / mass:.1g} times its mass, more than {_HEAVIEST:g} times"
+        )
 
 
 def _elements(beam: Sections, nodes: Float) -> tuple[Float, Float, float]:

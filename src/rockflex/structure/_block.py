@@ -8,8 +8,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 
-__all__ = ["rigid_block"]
-
 
 @computable("The inertia of a block with this half_diagonal and mass")
 def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> RockingProperties:
@@ -34,8 +32,7 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
     """
     alpha = within("slenderness", slenderness, 0.5 * math.pi, "rad")
     if alpha <= 0.0:
-        message = f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad."
-        raise InputError(message)
+        raise InputError(f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.")
     r, m = positive("half_diagonal", half_diagonal, "m"), positive("mass", mass, "kg")
     return RockingProperties(
         omega=(),

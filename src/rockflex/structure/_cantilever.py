@@ -14,8 +14,6 @@ from rockflex.structure._beam import Beam
 from rockflex.structure._from_matrices import ModalStructure, from_matrices
 from rockflex.structure._sections import LumpedMasses
 
-__all__ = ["CantileverWithTipMass"]
-
 _N_MODES = 5
 
 

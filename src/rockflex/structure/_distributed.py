@@ -3,8 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["N_STATIONS", "gathered", "gauss", "mesh"]
-
 Float = NDArray[np.float64]
 
 N_STATIONS = 21

@@ -9,8 +9,6 @@ from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._based import Based, is_structure
 
-__all__ = ["Eccentric"]
-
 
 @dataclass(frozen=True, init=False)
 class Eccentric:
@@ -40,11 +38,10 @@ class Eccentric:
 
     def __init__(self, structure: Based, eccentricity: float) -> None:
         if not is_structure(structure):
-            message = (
+            raise InputError(
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
                 "take their eccentricity themselves: RockingProperties(..., eccentricity=...)."
             )
-            raise InputError(message)
         vars(self).update(structure=structure, eccentricity=finite("eccentricity", eccentricity, "m"))
         self.rocking(1)  # whether the axis stands within the base, and tendons do
 

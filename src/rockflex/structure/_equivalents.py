@@ -17,8 +17,6 @@ from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, modal_properties
 from rockflex.structure._lumped import LumpedStructure
 
-__all__ = ["equivalent_2hz_long_base", "equivalent_s1"]
-
 Float = NDArray[np.float64]
 
 _SPACING = (1.25, 1.7)  # beyond, no positive masses meet both ratios of S1 with room to spare
@@ -182,8 +180,9 @@ def _five_masses(spacing: float) -> tuple[Float, Float]:
 
     found = root(missing, [1.0, 0.5], tol=1e-13)
     if not found.success or max(map(abs, missing(found.x))) > 1e-10:
-        message = f"No masses were found that meet the ratios of S1 with spacing={spacing:g}. Give one nearer 1.5."
-        raise InputError(message)
+        raise InputError(
+            f"No masses were found that meet the ratios of S1 with spacing={spacing:g}. Give one nearer 1.5."
+        )
     m = masses(found.x)
     for array in (x, m):
         array.setflags(write=False)

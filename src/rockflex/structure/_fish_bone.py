@@ -15,8 +15,6 @@ from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._lumped import LumpedStructure
 
-__all__ = ["FishBone", "condensed_stiffness"]
-
 Float = NDArray[np.float64]
 
 
@@ -79,8 +77,7 @@ class FishBone(Value):
         n = lengths.size
         _check_signs("story_heights", lengths, "m")
         if n == 0:
-            message = "story_heights must hold at least one height in m, but none was given."
-            raise InputError(message)
+            raise InputError("story_heights must hold at least one height in m, but none was given.")
         vars(self).update(
             story_heights=lengths,
             masses=_one_a_story("masses", masses, n, "kg"),
@@ -154,8 +151,7 @@ def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:
         return filled
     array = finite_vector(name, values, unit)
     if array.size != n:
-        message = f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given."
-        raise InputError(message)
+        raise InputError(f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given.")
     _check_signs(name, array, unit)
     return array
 
@@ -163,8 +159,7 @@ def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:
 def _check_signs(name: str, array: Float, unit: str) -> None:
     if array.min(initial=np.inf) <= 0.0:
         i = int(np.argmin(array))
-        message = f"{name} must be positive, but {name}[{i}] = {array[i]:g} {unit} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be positive, but {name}[{i}] = {array[i]:g} {unit} was given.")
 
 
 def _beams(values: ArrayLike, n: int) -> Float:
@@ -173,10 +168,9 @@ def _beams(values: ArrayLike, n: int) -> Float:
     if array.ndim == 0:
         array = np.full(n, float(array))
     if array.shape != (n,) or not (array >= 0.0).all():
-        message = (
+        raise InputError(
             f"beam_stiffness must be one number, or one for each of the {n} stories, from 0 (no beams) to float('inf') "
             f"(rigid beams) in N m/rad, but {shown(values)} was given."
         )
-        raise InputError(message)
     array.setflags(write=False)
     return array

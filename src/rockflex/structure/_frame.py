@@ -16,8 +16,6 @@ from rockflex.modal import ModalProperties, RockingProperties, modal_properties
 from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
 
-__all__ = ["Frame"]
-
 Float = NDArray[np.float64]
 
 
@@ -153,9 +151,8 @@ def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Float, ModalPro
 def _checked_stiffness_ratio(value: float) -> float:
     ratio = real_or_nan(value)
     if not ratio >= 0.0:
-        message = (
+        raise InputError(
             f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
             f"but {shown(value)} was given."
         )
-        raise InputError(message)
     return ratio

@@ -12,8 +12,6 @@ from rockflex._errors import InputError
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._matrix_files import Given, numbers
 
-__all__ = ["Freedoms", "Heights"]
-
 Float = NDArray[np.float64]
 Heights = Given | Mapping[int, float]
 """Height of every freedom in m, or a map from the index of each that translates horizontally to its height."""
@@ -56,29 +54,27 @@ class Freedoms:
             values = finite_vector("heights", numbers("heights", heights), "m")
             where = list(range(values.size))
             if values.size != size:
-                message = (
+                raise InputError(
                     f"heights must hold one height for each of the {size} freedoms, but {values.size} were given. "
                     "Where some do not translate horizontally, give a map {index: height} of those that do."
                 )
-                raise InputError(message)
         if not isinstance(rotations, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"rotations must be a sequence of indices of freedoms, but {type(rotations).__name__} was given."
-            raise InputError(message)
+            raise InputError(
+                f"rotations must be a sequence of indices of freedoms, but {type(rotations).__name__} was given."
+            )
         turning = [whole_number("rotations, index", i, 0, size - 1) for i in rotations]
         twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
         if twice:
-            message = (
+            raise InputError(
                 f"rotations must name each freedom once, and none that has a height, but {twice[0]} is named twice. "
                 "Give heights as a map {index: height} of the freedoms that translate horizontally."
             )
-            raise InputError(message)
         if values.min(initial=np.inf) <= 0.0 or values.size == 0:
             lowest = f"{values.min():g} m" if values.size else "none"
-            message = (
+            raise InputError(
                 f"heights must be positive, in m above the base, at least one of them, but {lowest} was given. "
                 "A mass at the base belongs to base_mass."
             )
-            raise InputError(message)
         order = np.argsort(values, kind="stable")
         return cls(np.array(where, dtype=np.intp)[order], values[order], np.array(turning, dtype=np.intp), size)
 
@@ -93,8 +89,9 @@ class Freedoms:
         number = np.cumsum(keep) - 1
         moves, turns = keep[self.translates], keep[self.rotates]
         if not moves.any():
-            message = "mass must move with at least one freedom that translates horizontally, but all have none."
-            raise InputError(message)
+            raise InputError(
+                "mass must move with at least one freedom that translates horizontally, but all have none."
+            )
         return Freedoms(
             number[self.translates[moves]], self.heights[moves], number[self.rotates[turns]], int(keep.sum())
         )

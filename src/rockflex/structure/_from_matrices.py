@@ -16,8 +16,6 @@ from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperti
 from rockflex.structure._freedoms import Freedoms, Heights
 from rockflex.structure._matrix_files import Given, numbers
 
-__all__ = ["ModalStructure", "from_matrices", "from_modes"]
-
 Float = NDArray[np.float64]
 
 _ORTHOGONAL = 1e-5  # room for printed digits
@@ -172,8 +170,9 @@ def from_modes(
     w = finite_vector("omega", numbers("omega", omega), "rad/s")
     falls = np.flatnonzero(np.diff(w, prepend=0.0) < 0.0)
     if w.size == 0 or w[0] <= 0.0 or falls.size:
-        message = f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes."
-        raise InputError(message)
+        raise InputError(
+            f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes."
+        )
     given = numbers("shapes", shapes)
     columns = finite_vector("shapes", given, "any unit")[:, None] if dimensions(given) == 1 else given
     size = np.shape(columns)[0] if dimensions(columns) == 2 else 1
@@ -184,17 +183,17 @@ def from_modes(
     own = np.diag(products)
     if not (own > 0.0).all():
         i = int(np.argmin(own))
-        message = f"Mode shape {i + 1} moves no mass (φ^T M φ = {own[i]:.3g}). Check the order of the freedoms in both."
-        raise InputError(message)
+        raise InputError(
+            f"Mode shape {i + 1} moves no mass (φ^T M φ = {own[i]:.3g}). Check the order of the freedoms in both."
+        )
     cosines = products / np.sqrt(np.outer(own, own)) - np.eye(w.size)
     if np.abs(cosines).max() > _ORTHOGONAL:
         i, j = sorted(int(each) for each in np.unravel_index(np.argmax(np.abs(cosines)), cosines.shape))
-        message = (
+        raise InputError(
             f"The mode shapes must be orthogonal with respect to the mass, but φ_{i + 1}^T M φ_{j + 1} is "
             f"{cosines[i, j]:.3g} of what their norms allow. Give the mass that the modes were computed with, freedoms "
             "in the same order, and shapes with enough digits."
         )
-        raise InputError(message)
     return _structure(freedoms.modes(w, phi / np.sqrt(own), m), base_mass, half_width, damping_ratio, n_modes)
 
 
@@ -228,14 +227,12 @@ def _mass_matrix(given: ArrayLike, size: int) -> Float:
     else:
         values = finite_vector("mass", given, "kg")
         if values.size != size:
-            message = f"mass must hold one mass for each of the {size} freedoms, but {values.size} were given."
-            raise InputError(message)
+            raise InputError(f"mass must hold one mass for each of the {size} freedoms, but {values.size} were given.")
         m = np.diag(values)
     own = np.diag(m)
     if own.min() < 0.0:
         i = int(np.argmin(own))
-        message = f"mass must not be negative, but that of freedom {i} is {own[i]:g}."
-        raise InputError(message)
+        raise InputError(f"mass must not be negative, but that of freedom {i} is {own[i]:g}.")
     return m
 
 

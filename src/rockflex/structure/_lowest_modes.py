@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigsh, splu
 
-__all__ = ["lowest_modes"]
-
 Float = NDArray[np.float64]
 
 _MISFIT = 1e-6
@@ -53,8 +51,7 @@ def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) 
     bent = np.column_stack([flexibility(force) for force in moved.T])
     misfits = omega**2 * np.einsum("in,in->n", moved, bent) - 1.0  # zero for modes, else positive
     if not (misfits < _MISFIT).all():
-        message = f"a mode misses its equation by {misfits.max():.1g}"
-        raise np.linalg.LinAlgError(message)
+        raise np.linalg.LinAlgError(f"a mode misses its equation by {misfits.max():.1g}")
     return omega * (stiff / math.sqrt(heavy)), unit @ vectors / math.sqrt(heavy)
 
 
@@ -93,7 +90,6 @@ def _beside(
         raise np.linalg.LinAlgError(str(error)) from error
     lowest = squares[squares > 0.0].min(initial=np.inf)
     if not np.isfinite(lowest):
-        message = "no mode was found"
-        raise np.linalg.LinAlgError(message)
+        raise np.linalg.LinAlgError("no mode was found")
     kept: Float = shapes[:, (squares > 0.0) & (squares <= _SPREAD * lowest)]
     return kept / np.sqrt(np.einsum("in,in->n", kept, np.asarray(mass @ kept)))

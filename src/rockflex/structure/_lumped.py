@@ -12,8 +12,6 @@ from rockflex._matrices import checked_heights, checked_mass, checked_stiffness
 from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
 
-__all__ = ["LumpedStructure"]
-
 Float = NDArray[np.float64]
 
 

@@ -11,8 +11,6 @@ from rockflex._errors import InputError
 from rockflex._files import check_regular, path_of
 from rockflex.structure._matrix_market import read_matrix_market
 
-__all__ = ["Given", "checksum", "numbers"]
-
 Float = NDArray[np.float64]
 Given: TypeAlias = ArrayLike | str | Path
 """Numbers, or the path of a file that holds them."""
@@ -36,19 +34,16 @@ def numbers(name: str, given: Given) -> ArrayLike:
         return given
     path = path_of(name, given)
     if path.suffix.lower() not in _SUFFIXES:
-        message = f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix."
-        raise InputError(message)
+        raise InputError(f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix.")
     check_regular(path, name)
     if not path.exists():
-        message = f"{name}: the file {path} does not exist (working directory: {Path.cwd()})."
-        raise InputError(message)
+        raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).")
     try:
         array = _READERS[path.suffix.lower()](name, path)
     except InputError:
         raise
     except Exception as error:  # the readers of damaged files raise many kinds
-        message = f"{name}: {path} does not hold a matrix of numbers that can be read: {error}."
-        raise InputError(message) from error
+        raise InputError(f"{name}: {path} does not hold a matrix of numbers that can be read: {error}.") from error
     return array.ravel() if 1 in array.shape and array.shape != (1, 1) else array
 
 
@@ -68,8 +63,7 @@ def _from_npz(name: str, path: Path) -> Float:
 
             return _dense(name, path, load_npz(path))
         if name not in keys and len(keys) != 1:
-            message = f'{name}: {path} must hold an array "{name}", or one array alone, but it holds {keys}.'
-            raise InputError(message)
+            raise InputError(f'{name}: {path} must hold an array "{name}", or one array alone, but it holds {keys}.')
         return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
 
 
@@ -79,11 +73,10 @@ def _from_mtx(name: str, path: Path) -> Float:
 
 def _dense(name: str, path: Path, matrix: Any) -> Float:
     if max(matrix.shape) > MOST:
-        message = (
+        raise InputError(
             f"{name}: {path} holds a sparse matrix of the shape {matrix.shape}, but matrices are taken as dense, with "
             f"{MOST} freedoms at most. Condense it to the freedoms that carry mass, or give its modes to from_modes."
         )
-        raise InputError(message)
     return np.asarray(matrix.toarray(), dtype=np.float64)
 
 

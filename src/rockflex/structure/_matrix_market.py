@@ -11,8 +11,6 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.sparse import coo_array
 
-__all__ = ["read_matrix_market"]
-
 
 def read_matrix_market(path: Path) -> "coo_array":
     """Return the matrix of a file, coordinate or array, real or integer, general or symmetric.
@@ -33,34 +31,35 @@ def read_matrix_market(path: Path) -> "coo_array":
         or field not in ("real", "integer", "double")
         or symmetry not in ("general", "symmetric")
     ):
-        message = "its first line must name a matrix, coordinate or array, real or integer, general or symmetric"
-        raise ValueError(message)
+        raise ValueError(
+            "its first line must name a matrix, coordinate or array, real or integer, general or symmetric"
+        )
     head, *body = [line for line in lines if line.strip() and not line.startswith("%")] or [""]
     numbers = [int(word) for word in head.split()]
     if len(numbers) != (3 if form == "coordinate" else 2) or min(numbers) < 0:
-        message = "its second line must hold the numbers of rows and columns, and of entries where they are named"
-        raise ValueError(message)
+        raise ValueError(
+            "its second line must hold the numbers of rows and columns, and of entries where they are named"
+        )
     rows, columns = numbers[:2]
     if form == "coordinate":
         entries = np.loadtxt(body, dtype=np.float64, ndmin=2) if body else np.zeros((0, 3))
         if entries.shape != (numbers[2], 3):
-            message = f"it must hold {numbers[2]} entries of three numbers, but it holds {entries.shape}"
-            raise ValueError(message)
+            raise ValueError(f"it must hold {numbers[2]} entries of three numbers, but it holds {entries.shape}")
         row, column, value = entries.T
     else:
         value = np.loadtxt(body, dtype=np.float64, ndmin=1) if body else np.zeros(0)
         count = rows * columns if symmetry == "general" else rows * (rows + 1) // 2
         if value.size != count or (symmetry == "symmetric" and rows != columns):
-            message = f"it must hold {count} numbers of a matrix of {rows} by {columns}, but it holds {value.size}"
-            raise ValueError(message)
+            raise ValueError(
+                f"it must hold {count} numbers of a matrix of {rows} by {columns}, but it holds {value.size}"
+            )
         whole = np.ones((columns, rows), dtype=np.bool_)  # its columns stand one after the other
         column, row = np.nonzero(whole if symmetry == "general" else np.triu(whole))
         row, column = row + 1.0, column + 1.0
     places = np.stack((row, column)) - 1.0
     inside = (places >= 0.0).all() and (places < [[rows], [columns]]).all()
     if not inside or (places != np.floor(places)).any():
-        message = f"its entries must stand in {rows} rows and {columns} columns, counted from 1"
-        raise ValueError(message)
+        raise ValueError(f"its entries must stand in {rows} rows and {columns} columns, counted from 1")
     i, j = places.astype(np.int64)
     if symmetry == "symmetric":
         mirrored = i != j

@@ -11,8 +11,6 @@ from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
 
-__all__ = ["Along", "Profile", "profile"]
-
 Float = NDArray[np.float64]
 
 Along: TypeAlias = float | Callable[[Float], ArrayLike] | tuple[ArrayLike, ArrayLike]
@@ -87,21 +85,19 @@ class Profile(Value):
             with np.errstate(all="ignore"):  # what is not finite is refused below
                 values = np.broadcast_to(np.asarray(self.function(flat), dtype=np.float64), flat.shape)
         except (TypeError, ValueError) as error:
-            message = (
+            raise InputError(
                 f"{self.name} must return one number for each of the heights it is given, an array of shape "
                 f"{flat.shape}, but it did not: {error}."
-            )
-            raise InputError(message) from error
+            ) from error
         allowed = (values >= 0.0) if self.zero else (values > 0.0)
         bad = np.flatnonzero(~(allowed & np.isfinite(values)))
         if bad.size:
             i = int(bad[0])
             kind = "zero or positive" if self.zero else "positive"
-            message = (
+            raise InputError(
                 f"{self.name} must be {kind} and finite along the whole height, but it is {values[i]:g} "
                 f"{self.unit} at {flat[i]:.6g} m."
             )
-            raise InputError(message)
         return values.reshape(z.shape)
 
 
@@ -126,35 +122,30 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
 
 def _table(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool) -> Profile:
     if len(given) != 2:  # pyright: ignore[reportUnnecessaryComparison]
-        message = f"{name} must be a table (heights, values), but {len(given)} columns were given."
-        raise InputError(message)
+        raise InputError(f"{name} must be a table (heights, values), but {len(given)} columns were given.")
     z = finite_vector(f"{name}, heights", given[0], "m")
     values = finite_vector(f"{name}, values", given[1], unit)
     if z.size != values.size or z.size < 2:
-        message = (
+        raise InputError(
             f"{name} must hold one value for each height of its table, and two rows or more, but {z.size} heights and "
             f"{values.size} values were given."
         )
-        raise InputError(message)
     falls = np.flatnonzero(z[1:] < z[:-1])
     if falls.size:
         i = int(falls[0])
-        message = (
+        raise InputError(
             f"{name}: the heights of a table must not fall, but {z[i + 1]:g} m follows {z[i]:g} m. Sort the rows; "
             "two rows at one height are a jump."
         )
-        raise InputError(message)
     if z[0] > _ROOM * height or z[-1] < height * (1.0 - _ROOM):
-        message = (
+        raise InputError(
             f"{name}: a table must run from the base (0 m) to the top ({height:g} m), but it runs from {z[0]:g} m to "
             f"{z[-1]:g} m. Add the rows that are missing."
         )
-        raise InputError(message)
     low = values < 0.0 if zero else values <= 0.0
     if low.any():
         i = int(np.flatnonzero(low)[0])
         kind = "zero or positive" if zero else "positive"
-        message = f"{name} must be {kind}, but its table holds {values[i]:g} {unit} at {z[i]:g} m."
-        raise InputError(message)
+        raise InputError(f"{name} must be {kind}, but its table holds {values[i]:g} {unit} at {z[i]:g} m.")
     inside = z[(z > 0.0) & (z < height)]
     return Profile(name, unit, Interpolated(z, values), np.unique(inside), zero)

@@ -9,8 +9,6 @@ from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties, Tendon, tendon_set
 from rockflex.structure._based import Based, is_structure
 
-__all__ = ["Restrained"]
-
 
 @dataclass(frozen=True, init=False)
 class Restrained:
@@ -38,11 +36,10 @@ class Restrained:
 
     def __init__(self, structure: Based, tendons: Tendon | Iterable[Tendon]) -> None:
         if not is_structure(structure):
-            message = (
+            raise InputError(
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
                 "take their tendons themselves: RockingProperties(..., tendons=...)."
             )
-            raise InputError(message)
         vars(self).update(structure=structure, tendons=tendon_set(tendons))
         self.rocking(1)  # whether they stand within the base
 

@@ -16,8 +16,6 @@ from rockflex.modal import MassNormalisedModes
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 from rockflex.structure._sections import Sections
 
-__all__ = ["RitzShapes", "cosine_shapes", "ritz_modes"]
-
 Float = NDArray[np.float64]
 
 _PANELS, _POINTS = 64, 8
@@ -56,14 +54,12 @@ class RitzShapes(Value):
                 array = np.asarray(getattr(self, name)(z), dtype=np.float64)
             if array.ndim != 2 or array.shape[0] != z.size or (rows and array.shape != rows[0].shape):
                 expected = rows[0].shape if rows else f"({z.size}, n_shapes)"
-                message = (
+                raise InputError(
                     f"shapes.{name} must return one row a height and one column a shape, {expected}, but it returned "
                     f"an array of shape {array.shape}."
                 )
-                raise InputError(message)
             if not np.isfinite(array).all():
-                message = f"shapes.{name} must be finite along the height, but it is not."
-                raise InputError(message)
+                raise InputError(f"shapes.{name} must be finite along the height, but it is not.")
             rows.append(array)
         return rows[0], rows[1], rows[2]
 
@@ -91,8 +87,7 @@ class RitzShapes(Value):
         for misses, words in tests:
             bad = np.flatnonzero(np.abs(misses) > _CLOSE * np.maximum(size, np.abs(misses).max() * _CLOSE))
             if bad.size:
-                message = f"Shape {bad[0] + 1} {words}."
-                raise InputError(message)
+                raise InputError(f"Shape {bad[0] + 1} {words}.")
         return value.shape[1]
 
 
@@ -180,8 +175,7 @@ def _check_independent(mass: Float) -> None:
     size = np.sqrt(np.diag(mass))
     smallest = float(np.linalg.eigvalsh(mass / np.outer(size, size))[0]) if size.all() else 0.0
     if smallest < _INDEPENDENT:
-        message = (
+        raise InputError(
             f"The {size.size} Ritz shapes are linearly dependent (smallest eigenvalue of their mass matrix, each of "
             f"unit mass: {smallest:.2g}). Leave out those that the others can form, or take shapes further apart."
         )
-        raise InputError(message)

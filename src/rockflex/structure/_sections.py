@@ -11,8 +11,6 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.structure._profile import Profile
 
-__all__ = ["LumpedMasses", "Sections", "on_beam"]
-
 Float = NDArray[np.float64]
 
 
@@ -44,11 +42,10 @@ class LumpedMasses(Value):
         m = finite_vector("lumped_masses.masses", masses, "kg")
         j = finite_vector("lumped_masses.rotary", np.zeros(z.size) if rotary is None else rotary, "kg m²")
         if not z.size == m.size == j.size:
-            message = (
+            raise InputError(
                 f"lumped_masses must hold one mass, and one rotary inertia, for each of its {z.size} heights, but "
                 f"{m.size} and {j.size} were given."
             )
-            raise InputError(message)
         for name, values, bad, kind, unit in (
             ("heights", z, z <= 0.0, "positive", "m"),
             ("masses", m, m <= 0.0, "positive", "kg"),
@@ -57,10 +54,9 @@ class LumpedMasses(Value):
             if bad.any():
                 i = int(np.flatnonzero(bad)[0])
                 hint = " A mass at the base belongs to base_mass." if name == "heights" else ""
-                message = (
+                raise InputError(
                     f"lumped_masses.{name} must be {kind}, but {name}[{i}] = {values[i]:g} {unit} was given.{hint}"
                 )
-                raise InputError(message)
         vars(self).update(heights=z, masses=m, rotary=j)
 
 
@@ -115,12 +111,10 @@ def on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
     """
     bodies: Any = LumpedMasses([], []) if given is None else given
     if not isinstance(bodies, LumpedMasses):
-        message = f"lumped_masses must be LumpedMasses(heights, masses), but {type(bodies).__name__} was given."
-        raise InputError(message)
+        raise InputError(f"lumped_masses must be LumpedMasses(heights, masses), but {type(bodies).__name__} was given.")
     if bodies.heights.max(initial=0.0) > height * (1.0 + 1e-12):
-        message = (
+        raise InputError(
             f"lumped_masses must lie on the beam, at most {height:g} m above the base, but one lies at "
             f"{bodies.heights.max():g} m."
         )
-        raise InputError(message)
     return bodies

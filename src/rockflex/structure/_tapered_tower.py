@@ -16,8 +16,6 @@ from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure._beam import Beam
 
-__all__ = ["TaperedTower"]
-
 Float = NDArray[np.float64]
 
 _N_ELEMENTS = 2000  # as many as the paper takes
@@ -68,8 +66,7 @@ class TaperedTower(Value):
 
     def __post_init__(self) -> None:
         if not one_of(self.method, ("fe", "ritz")):
-            message = f'method must be "fe" or "ritz", but {shown(self.method)} was given.'
-            raise InputError(message)
+            raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.')
         vars(self).update(
             height=positive("height", self.height, "m"),
             base_radius=positive("base_radius", self.base_radius, "m"),
@@ -80,11 +77,10 @@ class TaperedTower(Value):
         )
         name, radius = min(("top_radius", self.top_radius), ("base_radius", self.base_radius), key=lambda r: r[1])
         if self.wall > radius:
-            message = (
+            raise InputError(
                 f"wall must be at most the smaller radius, {name} = {radius:g} m, but {self.wall:g} m was given. "
                 "It is the thickness of the wall, not a diameter; a solid tower has a wall of its radius."
             )
-            raise InputError(message)
         vars(self).update(n_modes=self.beam.n_modes, damping_ratio=self.beam.damping_ratio)
 
     @cached_property

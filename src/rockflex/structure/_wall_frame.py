@@ -15,8 +15,6 @@ from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 
-__all__ = ["WallFrame"]
-
 Float = NDArray[np.float64]
 
 _PANELS, _POINTS = 64, 8

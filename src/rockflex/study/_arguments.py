@@ -13,25 +13,6 @@ from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.study._initial import InitialState
 
-__all__ = [
-    "WORK_LIMIT",
-    "Output",
-    "Structure",
-    "check_initial",
-    "check_options",
-    "check_output",
-    "check_settling",
-    "described",
-    "factors_of",
-    "free_vibration_time",
-    "hysteresis_of",
-    "is_structure",
-    "positive_numbers",
-    "properties_of",
-    "sequence_of",
-    "work_limit_of",
-]
-
 Output = Literal["history", "peaks"]
 
 LONGEST = 1e9  # s of free vibration
@@ -51,8 +32,7 @@ class Structure(Protocol):
 def check_output(output: str) -> None:
     """Raise an InputError unless `output` is known."""
     if not one_of(output, get_args(Output)):
-        message = f'output must be "history" or "peaks", but {shown(output)} was given.'
-        raise InputError(message)
+        raise InputError(f'output must be "history" or "peaks", but {shown(output)} was given.')
 
 
 def properties_of(structure: Structure | RockingProperties) -> RockingProperties:
@@ -66,11 +46,10 @@ def properties_of(structure: Structure | RockingProperties) -> RockingProperties
     if isinstance(structure, RockingProperties):
         return structure
     if not is_structure(structure):
-        message = (
+        raise InputError(
             "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
             f"{described(structure)} was given."
         )
-        raise InputError(message)
     return structure.rocking()
 
 
@@ -96,11 +75,10 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
         return None
     seconds = real_or_nan(value)
     if not 0.0 <= seconds <= LONGEST:
-        message = (
+        raise InputError(
             f'free_vibration must be zero or more seconds (at most {LONGEST:g}), or "settle", but {shown(value)} was '
             "given."
         )
-        raise InputError(message)
     return seconds
 
 
@@ -116,29 +94,26 @@ def work_limit_of(value: float | Literal["none"] | None) -> float | None:
         return None
     seconds = real_or_nan(value)
     if not seconds > 0.0:
-        message = (
+        raise InputError(
             f"work_limit must be a positive number of seconds of computing for one run, or None for no limit ("
             f'"none" in a file and on the command line), but {value!r} was given.'
         )
-        raise InputError(message)
     return seconds if math.isfinite(seconds) else None
 
 
 def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
     """Raise an InputError unless both are what their names say, or None."""
     if not isinstance(bouc_wen, BoucWen | None):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = (
+        raise InputError(
             f"bouc_wen must be a BoucWen or None, but {shown(bouc_wen)} was given. "
             "Write BoucWen(yield_displacement=...)."
         )
-        raise InputError(message)
     if impact is not None and (isinstance(impact, type) or not isinstance(impact, ImpactLaw)):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = (
+        raise InputError(
             f"impact must be an impact law, but {described(impact)} was given. Give VVELSimplified(), VVELComplete(), "
             "Restitution(e), or an object with `keeps`, `loses` and `after(properties, modal_velocity, "
             "rotation_velocity)`."
         )
-        raise InputError(message)
 
 
 def hysteresis_of(models: Sequence[Model], bouc_wen: BoucWen | None) -> list[BoucWen | None]:
@@ -150,21 +125,19 @@ def hysteresis_of(models: Sequence[Model], bouc_wen: BoucWen | None) -> list[Bou
 def check_settling(model: RockingModel, free_vibration: float | None) -> None:
     """Raise an InputError where a run is to settle and no one can tell when a hysteretic spring has."""
     if free_vibration is None and model.bouc_wen is not None:
-        message = (
+        raise InputError(
             f'free_vibration="settle" cannot tell when the hysteretic spring of {model.label} is at rest. '
             "Give the free vibration in seconds."
         )
-        raise InputError(message)
 
 
 def check_initial(initial: InitialState | None) -> None:
     """Raise an InputError unless `initial` is a state or None."""
     if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = (
+        raise InputError(
             f"initial must be an InitialState or None, but {shown(initial)} was given. "
             "Write InitialState(rotation=...)."
         )
-        raise InputError(message)
 
 
 def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: str) -> list[Any]:
@@ -173,15 +146,12 @@ def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: s
         return [given]
     items = _items(given)
     if items is None:
-        message = f"{name} must be {wanted}, or a sequence of them, but {described(given)} was given."
-        raise InputError(message)
+        raise InputError(f"{name} must be {wanted}, or a sequence of them, but {described(given)} was given.")
     if not items:
-        message = f"{name} is empty. Give at least one."
-        raise InputError(message)
+        raise InputError(f"{name} is empty. Give at least one.")
     for place, item in enumerate(items):
         if not accepts(item):
-            message = f"{name}[{place}] is {described(item)}. Expected {wanted}."
-            raise InputError(message)
+            raise InputError(f"{name}[{place}] is {described(item)}. Expected {wanted}.")
     return items
 
 
@@ -189,8 +159,9 @@ def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[floa
     """One positive number or more, as a list."""
     numbers = finite_vector(name, values, unit)
     if numbers.min(initial=math.inf) <= 0.0 or numbers.size == 0:
-        message = f"{name} must be one or more positive numbers{unit and f' in {unit}'}, but {shown(values)} was given."
-        raise InputError(message)
+        raise InputError(
+            f"{name} must be one or more positive numbers{unit and f' in {unit}'}, but {shown(values)} was given."
+        )
     return numbers.tolist()
 
 
@@ -199,15 +170,13 @@ def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list
     given = [scales] if isinstance(scales, Real) else _items(scales)
     factors = [real_or_nan(factor) for factor in given or ()]
     if not factors or not all(map(math.isfinite, factors)):
-        message = f"scales must be one or more finite factors, but {shown(scales)} was given."
-        raise InputError(message)
+        raise InputError(f"scales must be one or more finite factors, but {shown(scales)} was given.")
     largest = max(factors, key=abs)
     if not math.isfinite(largest * strongest.pga):
-        message = (
+        raise InputError(
             f"scales must keep the accelerations finite, but the factor {largest:g} was given for "
             f"{shown(strongest.name)} with {strongest.pga:.3g} m/s². Give a smaller factor."
         )
-        raise InputError(message)
     return factors
 
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from rockflex.study.plans import ChunkedPlan, Study
 
-__all__ = ["Progress", "estimate_time", "run_study"]
-
 LIBRARIES = ("rockflex", "numpy", "scipy", "numba")  # that the numbers depend on
 SAMPLE = 48  # units of a study at most that an estimate runs
 PATIENCE = 2.0  # s that it takes at most, the compilation aside
@@ -85,8 +83,9 @@ def run_study(
 
     spec = load_study(study) if isinstance(study, str | Path) else study
     if workers is not None and dask is not None:
-        message = f"workers is for threads here, but {shown(workers)} was given together with the cluster at {dask}."
-        raise InputError(message)
+        raise InputError(
+            f"workers is for threads here, but {shown(workers)} was given together with the cluster at {dask}."
+        )
     plan = spec.plan()
     plan.check_work()
     if folder is None:

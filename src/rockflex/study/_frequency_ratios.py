@@ -11,8 +11,6 @@ from rockflex.study._arguments import Structure, positive_numbers, properties_of
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["frequency_ratios"]
-
 
 def frequency_ratios(
     structure: Structure | RockingProperties,
@@ -60,8 +58,9 @@ def frequency_ratios(
     properties = properties_of(structure)
     if properties.n_modes == 0 or properties.effective_height[0] <= 0.0:
         height = f"h*_1 = {properties.effective_height[0]:g} m" if properties.n_modes else "no modes"
-        message = f"An aspect ratio h*_1/B needs a structure whose h*_1 is positive, but one with {height} was given."
-        raise InputError(message)
+        raise InputError(
+            f"An aspect ratio h*_1/B needs a structure whose h*_1 is positive, but one with {height} was given."
+        )
     kept = [_kept(each, properties.n_modes) for each in _several(n_modes)]
     rows: list[dict[str, Any]] = []
     for label, count in kept:
@@ -89,8 +88,7 @@ def frequency_ratios(
 def _several(n_modes: Any) -> list[Any]:
     given = list(n_modes) if dimensions(n_modes) == 1 else [n_modes]
     if not given:
-        message = "n_modes is empty. Give at least one number of modes, or None for all."
-        raise InputError(message)
+        raise InputError("n_modes is empty. Give at least one number of modes, or None for all.")
     return given
 
 

@@ -12,8 +12,6 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.models import RockingModel
 
-__all__ = ["InitialState"]
-
 Array = NDArray[np.float64]
 
 LARGEST = 1e9  # m, m/s or rad/s: beyond any structure, and far from where numbers overflow
@@ -78,16 +76,14 @@ class InitialState(Value):
             if values is None:
                 continue
             if values.size > n:
-                message = f"{name} has {values.size} values, but {model.label} has {n} modes. Give at most {n}."
-                raise InputError(message)
+                raise InputError(f"{name} has {values.size} values, but {model.label} has {n} modes. Give at most {n}.")
             state[first : first + values.size] = values
         state[-2:] = self.rotation, self.rotation_velocity
         if not model.lifts and np.any(state[-2:] != 0.0):
-            message = (
+            raise InputError(
                 f"{model.label} has a base that cannot lift, but rotation={shown(self.rotation)} and "
                 f"rotation_velocity={shown(self.rotation_velocity)} were given. Give zero, or a model that rocks."
             )
-            raise InputError(message)
         return state
 
 

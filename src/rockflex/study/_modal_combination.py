@@ -11,8 +11,6 @@ from rockflex.response import Response
 from rockflex.study._arguments import WORK_LIMIT, Structure, properties_of
 from rockflex.study._simulate import simulate
 
-__all__ = ["CombinedPeaks", "SecondMode", "combine", "modal_combination", "second_mode"]
-
 
 @dataclass(frozen=True)
 class SecondMode:
@@ -66,8 +64,9 @@ def second_mode(properties: RockingProperties, motion: GroundMotion) -> SecondMo
         If the structure has one mode only.
     """
     if properties.n_modes < 2:
-        message = f"A modal combination needs two modes, but the structure has {properties.n_modes}. Give more modes."
-        raise InputError(message)
+        raise InputError(
+            f"A modal combination needs two modes, but the structure has {properties.n_modes}. Give more modes."
+        )
     omega = float(properties.omega[1])
     displacement = motion.sd(2.0 * math.pi / omega, float(properties.zeta[1]))
     force = float(properties.effective_mass[1]) * omega**2 * displacement

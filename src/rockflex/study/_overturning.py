@@ -32,8 +32,6 @@ from rockflex.study._simulate import make_engine
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["OverturningScales", "overturning_scales", "overturning_spectrum"]
-
 SCAN = tuple(float(scale) for scale in np.arange(1.0, 30.01, 0.1))  # a_p/(g α)
 
 
@@ -96,8 +94,7 @@ def overturning_scales(
     tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
-        raise InputError(message)
+        raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
     check_horizontal(motion)
     return _search(_runner(structure, model, impact, work_limit), motion, tried, width)
 
@@ -159,16 +156,14 @@ def overturning_spectrum(
     run = _runner(properties, model, impact, work_limit)
     periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
     if not callable(pulse):
-        message = f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given."
-        raise InputError(message)
+        raise InputError(f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given.")
     pulses = [pulse(unit, period) for period in periods]
     for made in pulses:
         if not isinstance(made, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = (
+            raise InputError(
                 f"pulse must make a GroundMotion of an amplitude and a period, but it made {described(made)}. "
                 "Give one_sine_pulse, for instance."
             )
-            raise InputError(message)
     found: list[OverturningScales | None] = [None] * len(pulses)
 
     def work(row: int) -> None:
@@ -201,8 +196,7 @@ def _runner(
     limit = work_limit_of(work_limit)
     tied = parse_model(model).of(properties_of(structure), impact)
     if not tied.lifts:
-        message = f"{tied.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks."
-        raise InputError(message)
+        raise InputError(f"{tied.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks.")
     engine = make_engine(tied, "peaks")
 
     def run(motion: GroundMotion, scale: float) -> Response:
@@ -244,6 +238,7 @@ def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: 
 def _scan(name: str, scales: Sequence[float]) -> list[float]:
     numbers = positive_numbers(name, scales, "")
     if len(numbers) < 2 or any(b <= a for a, b in pairwise(numbers)):
-        message = f"{name} must rise, two at least, but {shown(scales)} was given. They are the grid that is searched."
-        raise InputError(message)
+        raise InputError(
+            f"{name} must rise, two at least, but {shown(scales)} was given. They are the grid that is searched."
+        )
     return numbers

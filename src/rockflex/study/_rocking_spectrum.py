@@ -17,8 +17,6 @@ from rockflex.study._simulate_many import simulate_many
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["rocking_spectrum"]
-
 
 def rocking_spectrum(
     motion: GroundMotion,
@@ -70,8 +68,7 @@ def rocking_spectrum(
     alphas, times = positive_numbers("slendernesses", slendernesses, "rad"), positive_numbers("periods", periods, "s")
     chosen = parse_model(model)
     if chosen.n_modes != 0:
-        message = f'Blocks have no modes, but the model {chosen.label} was given. Use "rigid" or "rigid-C".'
-        raise InputError(message)
+        raise InputError(f'Blocks have no modes, but the model {chosen.label} was given. Use "rigid" or "rigid-C".')
     check_options(None, impact)
     radii = [0.75 * GRAVITY * (time / (2.0 * math.pi)) ** 2 for time in times]
     blocks = [rigid_block(alpha, radius) for alpha in alphas for radius in radii]

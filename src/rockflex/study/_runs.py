@@ -7,8 +7,6 @@ from typing import SupportsIndex, TypeVar
 from rockflex.parallel import map_threads
 from rockflex.solve import asked_to_stop, stopping_when
 
-__all__ = ["map_runs"]
-
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 

@@ -23,8 +23,6 @@ from rockflex.study._arguments import (
 )
 from rockflex.study._initial import InitialState
 
-__all__ = ["make_engine", "simulate"]
-
 
 def simulate(
     structure: Structure | RockingProperties,
@@ -91,8 +89,7 @@ def simulate(
     check_options(bouc_wen, impact)
     tied = parse_model(model).of(properties_of(structure), impact, bouc_wen)
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first."
-        raise InputError(message)
+        raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
     check_horizontal(motion)
     check_initial(initial)
     free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)

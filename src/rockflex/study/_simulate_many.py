@@ -32,8 +32,6 @@ from rockflex.study._table import Table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["simulate_many"]
-
 Prepared = tuple[RockingModel, Engine]
 
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly

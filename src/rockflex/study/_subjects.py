@@ -10,8 +10,6 @@ from rockflex.models import Model, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.study._arguments import Structure, is_structure, sequence_of
 
-__all__ = ["Models", "Motions", "Structures", "models_of", "motions_of", "structures_of"]
-
 Structures: TypeAlias = (
     Structure
     | RockingProperties
@@ -71,6 +69,7 @@ def _named(what: str, given: Any) -> tuple[list[str] | None, Any]:
     entries = cast("Mapping[Any, Any]", given)
     for name in entries:
         if not isinstance(name, str):
-            message = f"The names of {what} must be texts, but {name!r} was given. Write {{{str(name)!r}: ...}}."
-            raise InputError(message)
+            raise InputError(
+                f"The names of {what} must be texts, but {name!r} was given. Write {{{str(name)!r}: ...}}."
+            )
     return list(entries), list(entries.values())

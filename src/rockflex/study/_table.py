@@ -10,8 +10,6 @@ from rockflex.response import PEAKS, Response
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Table"]
-
 STATUSES = ("no_uplift", "rocking", "overturned")
 KINDS = {float: "f8", int: "i8", bool: "?"}
 

@@ -9,8 +9,6 @@ from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELS
 from rockflex.structure.file import Table
 from rockflex.study._arguments import check_options
 
-__all__ = ["LAWS", "Assumed", "BoucWenTable", "impact_law"]
-
 LAWS = ("simplified", "complete", "restitution")
 
 
@@ -52,8 +50,7 @@ class Assumed(Table):
             If a coefficient of restitution is missing, out of range, or given to another law.
         """
         if (self.restitution is not None) != (self.impact == "restitution"):
-            message = 'restitution and impact = "restitution" go together. Give both or neither.'
-            raise InputError(message)
+            raise InputError('restitution and impact = "restitution" go together. Give both or neither.')
         if self.impact is None or isinstance(self.impact, str):
             return impact_law(self.impact, self.restitution)
         check_options(None, self.impact)  # a copy with another law was not checked
@@ -75,8 +72,7 @@ def impact_law(name: str | None, restitution: float | None = None) -> ImpactLaw 
     if name is None:
         return None
     if name not in LAWS:
-        message = f"impact must be one of {', '.join(LAWS)}, but {name!r} was given."
-        raise InputError(message)
+        raise InputError(f"impact must be one of {', '.join(LAWS)}, but {name!r} was given.")
     if restitution is not None:
         return Restitution(restitution)
     return VVELSimplified() if name == "simplified" else VVELComplete()

@@ -37,8 +37,6 @@ from rockflex.web._state import State
 from rockflex.web._structures import build, structure_view
 from rockflex.web._uploads import Uploads, read_matrices, read_record
 
-__all__ = ["LOOPBACK", "create"]
-
 LOOK = 0.2  # s between looks at whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
 LOOPBACK = ("127.0.0.1", "localhost")
@@ -87,8 +85,7 @@ class Server:
         try:
             return await self._answer(guarded, most)
         except RunStoppedError as error:
-            message = "The run was stopped, for nobody waits for its answer."
-            raise Refusal(message, 499) from error
+            raise Refusal("The run was stopped, for nobody waits for its answer.", 499) from error
         finally:
             watching.cancel()
 
@@ -187,8 +184,7 @@ class Server:
     def _job(self, request: Request) -> tuple[str, Job]:
         kind, job = _kind(request), self.jobs.get(request.path_params["token"])
         if job.kind != kind:
-            message = f"That study is not of the kind {kind}."
-            raise Refusal(message, 404)
+            raise Refusal(f"That study is not of the kind {kind}.", 404)
         return kind, job
 
 
@@ -202,8 +198,7 @@ _STUDIES: dict[str, tuple[Any, Any, Any]] = {
 def _kind(request: Request) -> str:
     kind = request.path_params["kind"]
     if kind not in _STUDIES:
-        message = f"There is no study of the kind {kind[:40]!r}."
-        raise Refusal(message, 404)
+        raise Refusal(f"There is no study of the kind {kind[:40]!r}.", 404)
     return kind
 
 

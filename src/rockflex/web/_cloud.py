@@ -18,8 +18,6 @@ from rockflex.web._studies import none_solved, planned, progress, runs_of, share
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["cloud_plan", "cloud_study", "cloud_view"]
-
 Array = NDArray[np.float64]
 
 GRID = 60  # points of a curve

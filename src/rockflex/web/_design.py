@@ -16,8 +16,6 @@ from rockflex.web._studies import none_solved, planned, progress, runs_of, share
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["design_plan", "design_study", "design_table_of", "design_view", "limit_of"]
-
 RESAMPLES = 60  # while runs still come; then 200
 
 

@@ -27,8 +27,6 @@ from rockflex.web._uploads import Uploads, clean_name
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["cloud_files", "design_files", "download", "svg"]
-
 ROWS = 250_000  # of a table of histories
 COLUMNS = {
     "time": "s",
@@ -65,8 +63,7 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     """
     maker = _MAKERS.get(what)
     if maker is None:
-        message = f"There is nothing to download by the name {what[:40]!r}."
-        raise Refusal(message, 404)
+        raise Refusal(f"There is nothing to download by the name {what[:40]!r}.", 404)
     name, content = maker(state, uploads)
     kinds = {".svg": "image/svg+xml", ".csv": "text/csv", ".toml": "application/toml", ".py": "text/x-python"}
     data = content if isinstance(content, bytes) else content.encode()
@@ -210,8 +207,9 @@ def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
 
     fits, reasons = fit_each_cloud(runs, state.cloud.measure, nominal=state.cloud.limit == "nominal")
     if not fits:
-        message = f"There is no curve to draw. {' '.join(f'{model}: {why}' for (_, model), why in reasons.items())}"
-        raise Refusal(message)
+        raise Refusal(
+            f"There is no curve to draw. {' '.join(f'{model}: {why}' for (_, model), why in reasons.items())}"
+        )
     try:
         figure = plot_fragility(fits, level=state.cloud.level, overturning=True)
         return "fragility.svg", "image/svg+xml", svg(figure)
@@ -242,8 +240,7 @@ def design_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
 def _runs(job: Job) -> "pd.DataFrame":
     runs = runs_of(job)
     if runs is None:
-        message = "No run has come yet."
-        raise Refusal(message)
+        raise Refusal("No run has come yet.")
     return runs
 
 

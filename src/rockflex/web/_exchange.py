@@ -12,9 +12,6 @@ from rockflex.web._limits import BODY, FILE
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state
 
-__all__ = ["file_answer", "file_of", "question_of", "state_of", "step_of"]
-
-
 PATIENCE = 60.0  # s for a body to arrive
 SMALL = 20_000  # bytes that are judged within a millisecond or some; more would keep the event loop busy
 
@@ -62,11 +59,9 @@ async def _body_of(request: Request) -> bytes:
                 elif size > 5 * BODY:
                     break
     except TimeoutError as error:
-        message = f"The request did not arrive within {PATIENCE:g} s."
-        raise Refusal(message, 408) from error
+        raise Refusal(f"The request did not arrive within {PATIENCE:g} s.", 408) from error
     if size > BODY:  # the rest was read and dropped: an answer before its end would be lost to most clients
-        message = f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes."
-        raise Refusal(message, 413)
+        raise Refusal(f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes.", 413)
     return b"".join(chunks)
 
 
@@ -78,15 +73,13 @@ async def _json_of(request: Request) -> bytes:
 
 def _check_type(request: Request, wanted: str) -> None:
     if request.headers.get("content-type", "").split(";")[0].strip().lower() != wanted:
-        message = f"A request must be {wanted}."
-        raise Refusal(message, 415)
+        raise Refusal(f"A request must be {wanted}.", 415)
 
 
 def _question(body: bytes) -> tuple[State, dict[str, Any]]:
     content = parse_json(body)
     if not isinstance(content, dict):
-        message = "A request must be a JSON object."
-        raise Refusal(message, 400)
+        raise Refusal("A request must be a JSON object.", 400)
     return parse_state(content.get("state")), content
 
 

@@ -13,8 +13,6 @@ from rockflex.web._limits import INFINITE, RANGES
 from rockflex.web._packing import plain
 from rockflex.web._presets import PRESETS
 
-__all__ = ["forms"]
-
 TITLES = {
     "frame": "Frame of equal stories",
     "fish_bone": "Frame of unequal stories",

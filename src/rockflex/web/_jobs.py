@@ -14,8 +14,6 @@ from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.study.plans import Plan
 from rockflex.web._refusal import Refusal
 
-__all__ = ["Job", "Jobs"]
-
 KEPT = 40  # jobs that are remembered
 WAITING = 12  # jobs that may wait or run at once
 FORGOTTEN = 30.0  # s without a look after which a job stops: its page was closed
@@ -79,8 +77,7 @@ class Jobs:
         """
         with self._lock:
             if sum(not job.over for job in self._jobs.values()) >= WAITING:
-                message = "The server is busy with the studies of others. Try again in a minute."
-                raise Refusal(message, 503)
+                raise Refusal("The server is busy with the studies of others. Try again in a minute.", 503)
             token = secrets.token_urlsafe(18)
             job = self._jobs[token] = Job(plan, kind)
             while len(self._jobs) > KEPT:
@@ -100,8 +97,7 @@ class Jobs:
         with self._lock:
             job = self._jobs.get(token)
         if job is None:
-            message = "The server does not know this study (any more). Start it again."
-            raise Refusal(message, 404)
+            raise Refusal("The server does not know this study (any more). Start it again.", 404)
         job.seen = monotonic()
         return job
 

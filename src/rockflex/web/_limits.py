@@ -15,23 +15,6 @@ from rockflex.web._refusal import Refusal
 if TYPE_CHECKING:
     from rockflex.study.plans import CloudPlan
 
-__all__ = [
-    "BODY",
-    "FILE",
-    "FREEDOMS",
-    "INFINITE",
-    "MODELS",
-    "RANGES",
-    "RUN",
-    "RUNS",
-    "STOP",
-    "check_motion",
-    "check_numbers",
-    "check_runs",
-    "check_together",
-    "errors_of_numbers",
-]
-
 FILE = 5_000_000  # bytes of an upload
 BODY = 6_000_000  # bytes of any request
 FREEDOMS = 200  # stories, masses, rows of a matrix

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["envelope", "pack", "plain"]
-
 
 def pack(values: ArrayLike) -> str:
     """Write an array as base64 of little-endian single precision: enough for a picture, and half of the size."""

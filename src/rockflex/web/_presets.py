@@ -3,8 +3,6 @@
 import math
 from typing import Any
 
-__all__ = ["PRESETS"]
-
 
 def _frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:
     kind = "shear" if stiffness_ratio else "flexure"

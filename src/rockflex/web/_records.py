@@ -24,8 +24,6 @@ from rockflex.web._state import PulseChoice, RecordChoice, State
 from rockflex.web._structures import Built
 from rockflex.web._uploads import Uploads
 
-__all__ = ["PULSES", "motion_of", "record_view", "suite_view", "suites"]
-
 THUMBNAIL = 120  # points of a small picture
 POINTS = 2000  # of a curve
 PERIODS = np.geomspace(0.05, 5.0, 90)

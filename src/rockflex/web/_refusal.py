@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping
 
-__all__ = ["Refusal"]
-
 
 class Refusal(Exception):  # noqa: N818 - an answer, not a failure
     """Messages by the dotted path of the field at fault, such as ``structure.frame.period``; empty for none of them."""

@@ -20,8 +20,6 @@ from rockflex.web._state import State
 from rockflex.web._structures import Built, build
 from rockflex.web._uploads import Uploads
 
-__all__ = ["check_energy", "response_view", "responses"]
-
 Array = NDArray[np.float64]
 
 POINTS = 2000  # of a history, events aside

@@ -16,8 +16,6 @@ from rockflex.web._design import design_study, limit_of
 from rockflex.web._records import PULSES
 from rockflex.web._state import PulseChoice, State
 
-__all__ = ["cloud_script", "design_script", "record_file", "response_script"]
-
 
 def response_script(state: State, upload_name: str = "record") -> str:
     """Return a program that simulates what the Response tab shows, in `responses` by model."""

@@ -8,8 +8,6 @@ from rockflex._errors import InputError
 if TYPE_CHECKING:
     from starlette.applications import Starlette
 
-__all__ = ["make_app", "serve"]
-
 NEEDED = ("anyio", "starlette", "tomli_w", "uvicorn")
 
 
@@ -62,8 +60,9 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, open_browser: bool = Fal
         listener.bind((host, number))
     except OSError as error:
         listener.close()
-        message = f"The page cannot listen at {host}, port {number}: {error.strerror or error}. Choose another --port."
-        raise InputError(message) from error
+        raise InputError(
+            f"The page cannot listen at {host}, port {number}: {error.strerror or error}. Choose another --port."
+        ) from error
     config = uvicorn.Config(app, log_level="warning", timeout_keep_alive=20, limit_concurrency=500, server_header=False)
     with listener:
         if open_browser:
@@ -79,5 +78,4 @@ def _check_installed() -> None:
 
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
-        message = f"The web page needs {', '.join(missing)}. Install it: pip install 'rockflex[web]'."
-        raise InputError(message)
+        raise InputError(f"The web page needs {', '.join(missing)}. Install it: pip install 'rockflex[web]'.")

@@ -13,8 +13,6 @@ from rockflex.study.assumed import Assumed
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._refusal import Refusal
 
-__all__ = ["CloudChoice", "DesignChoice", "PulseChoice", "RecordChoice", "State", "parse_json", "parse_state"]
-
 Name = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 Scale = Annotated[float, Field(ge=0.01, le=20.0, description="a number from 0.01 to 20")]
 Labels = Annotated[list[Name], Field(min_length=1, max_length=MODELS, description="a list of one to four models")]
@@ -123,8 +121,7 @@ def parse_json(body: bytes) -> Any:
     try:
         return json.loads(body, parse_int=lambda text: int(text) if len(text) < 16 else float(text))
     except (ValueError, RecursionError) as error:
-        message = f"The request is no JSON that can be read: {str(error)[:200]}."
-        raise Refusal(message, 400) from error
+        raise Refusal(f"The request is no JSON that can be read: {str(error)[:200]}.", 400) from error
 
 
 def parse_state(content: Any) -> State:
@@ -136,20 +133,17 @@ def parse_state(content: Any) -> State:
         With a message for each field at fault.
     """
     if not isinstance(content, dict):
-        message = "The link does not hold a state of the page."
-        raise Refusal(message)
+        raise Refusal("The link does not hold a state of the page.")
     try:
         if _size(content) > NODES:
-            message = f"The link holds more than {NODES} values, which is more than the page takes."
-            raise Refusal(message, 413)
+            raise Refusal(f"The link holds more than {NODES} values, which is more than the page takes.", 413)
         state = State.model_validate(_infinite(content))
     except ValidationError as error:
         structure = _infinite(content.get("structure"))
         ranges = errors_of_numbers("structure", structure) if isinstance(structure, dict) else {}
         raise Refusal(dict([*(ranges | _messages(error, content)).items()][:TOLD])) from error
     except RecursionError as error:
-        message = "The link is nested too deep."
-        raise Refusal(message) from error
+        raise Refusal("The link is nested too deep.") from error
     try:
         state.structure.name.encode()
     except UnicodeEncodeError as error:

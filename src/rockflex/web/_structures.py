@@ -16,8 +16,6 @@ from rockflex.structure.file import Structure, StructureEntry
 from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 
-__all__ = ["Built", "build", "structure_view"]
-
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
 

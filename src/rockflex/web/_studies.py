@@ -14,8 +14,6 @@ from rockflex.web._state import CloudChoice, DesignChoice, State
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["none_solved", "planned", "progress", "runs_of", "shared", "study_of"]
-
 PER_CHUNK = 24  # runs between two looks at whether to go on
 CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
 UNITS = {

@@ -18,8 +18,6 @@ from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical,
 from rockflex.web._limits import FILE, FREEDOMS, check_motion
 from rockflex.web._refusal import Refusal
 
-__all__ = ["Uploads", "read_matrices", "read_record"]
-
 KEPT = 64  # records in memory
 MATRICES = ("mass", "stiffness", "heights", "rotations")
 

@@ -7,8 +7,6 @@ from enum import StrEnum
 from rockflex.papers.silva_stojadinovic_2024._printed import range_of
 from rockflex.papers.silva_stojadinovic_2024._shown import digits_of, shown
 
-__all__ = ["Check", "Kind", "Remark", "check"]
-
 
 @dataclass(frozen=True)
 class Check:

@@ -9,8 +9,6 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 
-__all__ = ["TARGETS", "reproduce", "title_of"]
-
 TARGETS = (
     *("figure-3", "figure-4", "table-1", "figure-5", "figure-6", "figure-7", "sliding", "figure-8", "figure-9"),
     *("figure-10", "figure-11", "figure-12", "figure-13", "table-2", "figure-14", "table-3", "figure-15"),
@@ -66,8 +64,7 @@ def _results(wanted: Sequence[str], records: Records, tell: Callable[[str], None
         try:
             yield module.reproduce(records)
         except rf.InputError as error:
-            message = f"{name}: {error}"
-            raise rf.InputError(message) from error
+            raise rf.InputError(f"{name}: {error}") from error
         tell(name)
 
 
@@ -80,5 +77,4 @@ def _known(target: str) -> str:
         return target
     near = get_close_matches(target.lower().replace("_", "-").replace(" ", "-"), TARGETS, n=3, cutoff=0.5)
     hint = f"The nearest are {', '.join(near)}" if near else f"There are {', '.join(TARGETS)}"
-    message = f"There is no target {target!r}. {hint}; rockflex reproduce --list names all."
-    raise rf.InputError(message)
+    raise rf.InputError(f"There is no target {target!r}. {hint}; rockflex reproduce --list names all.")

@@ -15,8 +15,6 @@ from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTUR
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["PGV", "THRESHOLD", "cloud", "differences", "percent", "places"]
-
 Array = NDArray[np.float64]
 
 PGV = 0.4  # m/s, at which the text gives its differences

@@ -7,8 +7,6 @@ import rockflex as rf
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["measure"]
-
 QUANTITIES = ("top_displacement", "base_shear", "base_moment")
 FEW = 5  # pairs that "the largest" are
 

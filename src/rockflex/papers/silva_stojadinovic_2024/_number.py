@@ -21,8 +21,6 @@ from rockflex.papers.silva_stojadinovic_2024._printed import Range, range_of
 from rockflex.papers.silva_stojadinovic_2024._shown import digits_of, percent, shown
 from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST, Verdict
 
-__all__ = ["Interval", "Number", "compared", "stated", "statistic", "tendency"]
-
 
 class Interval(NamedTuple):
     """An estimate and its 90 % interval: over resampled recordings, or over random draws. NaN where there is none."""

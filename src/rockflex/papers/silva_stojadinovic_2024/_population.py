@@ -18,8 +18,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["DRAWS", "PAIRS", "SEED", "intervals", "pool", "population"]
-
 PAIRS, SEED = 1000, 2024
 DRAWS = 400
 KNOWN = 0.95  # of the draws, for which a measure must exist

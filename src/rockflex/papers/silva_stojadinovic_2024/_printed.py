@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import rockflex as rf
 
-__all__ = ["Range", "range_of"]
-
 _WORDS = r"(?:about|approximately|≈|≅)\s*"
 _NUMBER = r"[-+−]?\d[\d' ]*(?:\.\d+)?"
 _VALUE = re.compile(rf"(?:{_WORDS})?(?P<value>{_NUMBER})(?:\s*/\s*(?P<divisor>{_NUMBER}))?")
@@ -78,11 +76,10 @@ def range_of(printed: str, *, truncated: bool = False) -> Range:
         return Range(low, high, sign in "<>", value, _step(bound["value"]), is_bound=True)
     match = _VALUE.fullmatch(printed.strip())
     if not match:
-        message = (
+        raise rf.InputError(
             f"A printed number must read like '1.66', 'about 44', '580000/3' or '≤ 3.2', but {printed!r} was given. "
             "Give what is no number as a statement, with a criterion."
         )
-        raise rf.InputError(message)
     divisor = _number(match["divisor"]) if match["divisor"] else 1.0
     value, step = _number(match["value"]) / divisor, _step(match["value"]) / divisor
     low, high = value - 0.5 * step, value + 0.5 * step

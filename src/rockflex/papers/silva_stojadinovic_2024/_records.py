@@ -6,8 +6,6 @@ from pathlib import Path
 
 import rockflex as rf
 
-__all__ = ["SEEDS", "Records"]
-
 SEEDS, FEWEST = 40, 10
 SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
 
@@ -30,11 +28,10 @@ class Records:
 
     def __post_init__(self) -> None:
         if self.seeds < FEWEST:
-            message = (
+            raise rf.InputError(
                 f"seeds must be a whole number of at least {FEWEST}, but {self.seeds!r} was given: of fewer random "
                 "populations the spread of Figs. 9 and 13 cannot be told."
             )
-            raise rf.InputError(message)
 
     @cached_property
     def suite(self) -> rf.Suite:

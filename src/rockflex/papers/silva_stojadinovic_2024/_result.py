@@ -10,8 +10,6 @@ from rockflex.papers.silva_stojadinovic_2024._beside import Check, Remark
 from rockflex.papers.silva_stojadinovic_2024._number import Number
 from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
-__all__ = ["Result"]
-
 
 @dataclass(frozen=True, eq=False)
 class Result:

@@ -4,8 +4,6 @@ import math
 
 from rockflex.papers.silva_stojadinovic_2024._printed import Range
 
-__all__ = ["digits_of", "percent", "shown"]
-
 
 def digits_of(wanted: Range, ours: float) -> int:
     """Two decimals more than are printed; none of whole numbers beside a whole number."""

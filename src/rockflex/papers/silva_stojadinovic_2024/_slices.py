@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
 
-__all__ = ["first_frequency", "ritz_of_slices"]
-
 Array = NDArray[np.float64]
 
 FUNCTIONS = 5  # of Eq. 36

@@ -6,8 +6,6 @@ from typing import Any
 
 import rockflex as rf
 
-__all__ = ["S1", "SPECIMEN_MODELS", "TWO_HZ", "combinations", "histories", "nominal", "spread", "widest"]
-
 SPECIMEN_MODELS = ("2DOF-C", "2DOF-C-SI", "2DOF-S", "MDOF-S")
 
 # Nominal values first. None of them is known of the specimens.

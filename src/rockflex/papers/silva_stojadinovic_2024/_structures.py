@@ -4,8 +4,6 @@ import math
 
 import rockflex as rf
 
-__all__ = ["BEHAVIOURS", "MARK", "MODELS", "STRUCTURES", "TOWER", "frame_of", "tall_frame"]
-
 BEHAVIOURS = {"shear": math.inf, "flexure": 0.0}
 STRUCTURES = {
     "#1": (1.0, 10.0, "shear"),

@@ -5,8 +5,6 @@ from functools import lru_cache
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._structures import tall_frame
 
-__all__ = ["errors", "ratio"]
-
 
 @lru_cache
 def ratio(behaviour: str, model: str, mode: int, aspect_ratio: float) -> float:

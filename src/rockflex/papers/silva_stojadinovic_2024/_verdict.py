@@ -2,8 +2,6 @@
 
 from enum import StrEnum
 
-__all__ = ["WIDEST", "Verdict"]
-
 WIDEST = 0.5  # of the printed value: the width of an interval, above which it tells nothing
 
 

@@ -13,8 +13,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["under_weaker"]
-
 FACTOR = 0.6  # times the records' acceleration
 
 

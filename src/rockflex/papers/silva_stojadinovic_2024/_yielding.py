@@ -6,8 +6,6 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import frame_of
 
-__all__ = ["SAME", "STRONG", "STRONGER", "WEAK", "largest_yielding", "run"]
-
 STRONG = 0.075  # m, D_1,y of Fig. 17
 WEAK, STRONGER = 0.035, 0.045  # m, D_1,y of Fig. 16, which the paper does not give
 SAME = "< 1.1"  # our reading of "approximately the same", of top displacements

@@ -9,8 +9,6 @@ from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import BEHAVIOURS, MARK, tall_frame
 from rockflex.papers.silva_stojadinovic_2024._uplifted import errors, ratio
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Uplifted over fixed-base frequencies"
 PLACE = "Section 3.4"
 LOW = (1.0, 2.0)  # h*_1/B that a building can have at the least

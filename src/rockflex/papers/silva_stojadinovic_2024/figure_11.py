@@ -6,8 +6,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import tall_frame
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Base moment over rotation of a pinned beam and of a rocking base"
 
 

@@ -7,8 +7,6 @@ from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import BEHAVIOURS, MARK, tall_frame
 from rockflex.papers.silva_stojadinovic_2024._uplifted import errors
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Zeros of the frequency equation at h*_1/B = 10"
 STATEMENTS = (
     ("shear", "2DOF-S", 1, "poor", "> 50"),

@@ -9,8 +9,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Modal combination with the second mode"
 PLACE = "Section 3.4"
 PRINTED = {

@@ -8,8 +8,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Geometry of the chimney, I_θ, L_0^r and M_r"
 
 

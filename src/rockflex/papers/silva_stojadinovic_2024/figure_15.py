@@ -11,8 +11,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Chimney under El Centro times 2"
 PLACE = "Section 4.1.1"
 MODELS = ("5DOF-fixed", "2DOF-S", "3DOF-S", "4DOF-S", "6DOF-S")

@@ -19,8 +19,6 @@ from rockflex.papers.silva_stojadinovic_2024._yielding import (
     run,
 )
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "An elastic and a weak structure #1 that may rock, El Centro"
 PLACE = "Section 4.2"
 YIELDS, BARELY, TOP = "> 0.99", "< 0.4", "≈ 0.05"

@@ -13,8 +13,6 @@ from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._specimens import TWO_HZ, histories, nominal, spread, widest
 from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
-__all__ = ["TITLE", "reproduce", "run"]
-
 TITLE = "Specimen 2Hz-Long Base(14) under an antisymmetric Ricker pulse, by an equivalent"
 LABEL = "Equivalent of 2Hz-Long Base(14), not the specimen; Ricker pulse 0.1 g, 0.5 s"
 PLACE = "Section 3.1"

@@ -14,8 +14,6 @@ from rockflex.papers.silva_stojadinovic_2024._shown import shown
 from rockflex.papers.silva_stojadinovic_2024._specimens import S1, combinations, histories, nominal, spread, widest
 from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
-__all__ = ["TITLE", "reproduce", "run"]
-
 TITLE = "Specimen S1 in free vibration from 0.11 rad, by an equivalent"
 LABEL = "Equivalent of S1, not the specimen; released at 0.11 rad; $h^*_1$ = 1 m is assumed"
 PLACE = "Section 3.1"

@@ -9,8 +9,6 @@ from rockflex.papers.silva_stojadinovic_2024._number import statistic
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Clouds of the rotation of the runs that rock and stand"
 PLACE = "Section 3.2, PGV = 0.4 m/s"
 QUANTITY = "max_rotation"

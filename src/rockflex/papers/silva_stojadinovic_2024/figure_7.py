@@ -6,8 +6,6 @@ from rockflex.papers.silva_stojadinovic_2024._number import statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Clouds of the relative top displacement of the runs that rock and stand"
 PLACE = "Section 3.2, PGV = 0.4 m/s"
 QUANTITY = "max_top_displacement"

@@ -6,8 +6,6 @@ from rockflex.papers.silva_stojadinovic_2024._population import population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Distribution of the random prototypes"
 RANGES = {
     "stories": ("n_stories", "2 to 15", "≥ 2", "≤ 15"),

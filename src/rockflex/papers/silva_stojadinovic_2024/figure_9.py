@@ -20,8 +20,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Agreement of 2DOF-S with MDOF-S"
 PLACE = "Section 3.3"
 OWN = "hangs on how strong the records are"

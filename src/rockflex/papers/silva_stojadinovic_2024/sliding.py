@@ -16,8 +16,6 @@ from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTUR
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["TITLE", "reproduce"]
-
 Array = NDArray[np.float64]
 
 TITLE = "Friction that keeps the prototypes from sliding"

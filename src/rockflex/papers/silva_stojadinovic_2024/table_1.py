@@ -7,8 +7,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import STRUCTURES, frame_of
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Parameters of the six 5-story prototypes"
 SHEAR, FLEXURE = (tuple(name for name, row in STRUCTURES.items() if row[2] == b) for b in ("shear", "flexure"))
 MASSES = {SHEAR: ("0.88", "0.09", "0.02", "0.008", "0.002"), FLEXURE: ("0.68", "0.21", "0.07", "0.03", "0.01")}

@@ -11,8 +11,6 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import frame_of
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Formulas of the eight parameters of 2DOF-S"
 GRAVITY = 9.81
 

@@ -10,8 +10,6 @@ from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._slices import first_frequency, ritz_of_slices
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
 
-__all__ = ["TITLE", "reproduce"]
-
 TITLE = "Modes of the chimney, by Rayleigh-Ritz and by 2000 finite elements"
 RITZ = {
     "ω": (("1.66", "7.76", "19.94", "38.14", "62.74"), "rad/s"),

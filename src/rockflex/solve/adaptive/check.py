@@ -12,8 +12,6 @@ from rockflex.solve.adaptive.tableau import LAST
 from rockflex.solve.layout import GUARD, Log, Span, System
 from rockflex.solve.peaks import raise_peaks, size_of
 
-__all__ = ["nothing_hides"]
-
 
 @inlined_kernel
 def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:

@@ -26,8 +26,6 @@ from rockflex.solve.exact.probe import cubic_range
 from rockflex.solve.layout import Array, Log, Span, System
 from rockflex.solve.peaks import raise_row, size_of
 
-__all__ = ["curves_hide", "is_curved", "raise_curves", "stretch", "tell", "values_of_rows"]
-
 STRAY = 0.2
 NEAR = 0.7  # of its peak: what a row must come near to be looked at twice
 LIGHT = 0.05  # of the vertical reaction at rest: a smaller loss of support is no measure of what is near

@@ -12,23 +12,6 @@ from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
 from rockflex.solve.layout import Array, Progress
 
-__all__ = [
-    "AT_ENDS",
-    "AT_ENDS_AHEAD",
-    "AT_STARTS",
-    "AT_STARTS_AHEAD",
-    "END",
-    "END_RATES",
-    "PLACE",
-    "PLACE_RATES",
-    "TERMS",
-    "TOLD",
-    "TRIAL",
-    "Flow",
-    "Stages",
-    "stages_of",
-]
-
 TERMS = 8  # of the polynomial across a step
 
 # Places in `Stages.vectors`: the state at the end of the step, within it, and where a stretch of it ends, with the

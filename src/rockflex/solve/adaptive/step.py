@@ -9,19 +9,6 @@ from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.layout import LEFT, STEP, Array, Span, System
 
-__all__ = [
-    "FAILED",
-    "choose_branch",
-    "expand_nested",
-    "extend",
-    "forget",
-    "place_at",
-    "row_poly",
-    "settle_on",
-    "step_over",
-    "take_step",
-]
-
 SHORTEST = 1e-13  # s: a step this short means that the motion cannot be followed
 FAILED = -1.0
 SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control

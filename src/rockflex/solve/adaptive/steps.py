@@ -7,8 +7,6 @@ from rockflex.solve.adaptive.step import FAILED, step_over, take_step
 from rockflex.solve.history import keep, room_left
 from rockflex.solve.layout import CARRY, LEFT, Array, Log, Progress, Span, System
 
-__all__ = ["step_through"]
-
 
 @inlined_kernel
 def step_through(system: System, flow: Flow, piece: Array, dt: float, at: Progress, log: Log, stages: Stages) -> bool:

@@ -4,8 +4,6 @@ from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.tableau import A
 from rockflex.solve.layout import Array
 
-__all__ = ["place_stage"]
-
 
 @inlined_kernel
 def place_stage(stage: int, step: float, start: Array, rates: Array, out: Array) -> None:

@@ -7,8 +7,6 @@ published with E. Hairer, S. P. Nørsett and G. Wanner, *Solving Ordinary Differ
 
 import numpy as np
 
-__all__ = ["DENSE", "ERROR_3", "ERROR_5", "LAST", "STAGES", "A", "C"]
-
 LAST, STAGES = 12, 16  # the stage that is the step's end; all stages
 
 

@@ -7,8 +7,6 @@ from rockflex.solve.adaptive.layout import TERMS, Flow, Stages
 from rockflex.solve.adaptive.step import expand_nested
 from rockflex.solve.polynomials import first_descent
 
-__all__ = ["BARELY", "turning"]
-
 BARELY = 1e-300  # m/s: what a velocity is set to where it turns, for its sign
 
 

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from rockflex.models import FREEDOMS, Arrow, RockingModel
 from rockflex.solve.layout import Array
 
-__all__ = ["Basis", "basis_of", "with_constant"]
-
 WORST_CONDITION = 1e5  # of the eigenvectors in energy scale: beyond it five digits are lost
 
 Complex = NDArray[np.complex128]

@@ -10,8 +10,6 @@ from rockflex.solve.exact.basis import Basis, basis_of
 from rockflex.solve.exact.tables import propagate
 from rockflex.solve.layout import Array
 
-__all__ = ["ClosedForm"]
-
 
 class ClosedForm:
     """The linear phases of a model, uncoupled.

@@ -2,8 +2,6 @@
 
 from rockflex._kernel import kernel
 
-__all__ = ["largest_step"]
-
 
 @kernel
 def largest_step(place: int, levels: int) -> int:

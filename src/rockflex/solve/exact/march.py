@@ -25,8 +25,6 @@ from rockflex.solve.layout import (
 )
 from rockflex.solve.peaks import raise_peaks
 
-__all__ = ["march", "to_coordinates", "to_state"]
-
 WHOLE = ZERO  # the level of a whole sample
 
 

@@ -26,8 +26,6 @@ from rockflex.solve.layout import (
     unit_of,
 )
 
-__all__ = ["EVENT", "NOTHING", "PEAK", "cubic_range", "examine", "probe", "set_limits"]
-
 NOTHING, PEAK, EVENT = 0, 1, 2  # what a step may hide; the first row hides events, and the peak of the rotation
 
 

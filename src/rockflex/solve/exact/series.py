@@ -24,8 +24,6 @@ from rockflex.solve.layout import (
 )
 from rockflex.solve.polynomials import evaluate
 
-__all__ = ["advance", "expand", "row_series"]
-
 
 @kernel
 def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) -> None:

@@ -26,8 +26,6 @@ from rockflex.solve.layout import (
 )
 from rockflex.solve.peaks import raise_peak, raise_row
 
-__all__ = ["survey"]
-
 
 @kernel
 def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -> bool:

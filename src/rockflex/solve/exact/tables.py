@@ -35,8 +35,6 @@ from rockflex.solve.layout import (
     System,
 )
 
-__all__ = ["check_step", "empty_system", "grown", "levels_of", "propagate", "put_phase", "terms_of"]
-
 LONGEST_FALL = 300.0  # e-folds of the rotation within a time step: beyond it numbers overflow
 
 
@@ -50,11 +48,10 @@ def check_step(basis: Basis, dt: float) -> None:
     """
     fall = float(basis.roots.real.max())
     if fall * dt > LONGEST_FALL:
-        message = (
+        raise InputError(
             f"The time step of {dt:g} s is too long: a rocking rotation of this structure grows e-fold in "
             f"{1.0 / fall:.3g} s. Give the motion at a step of at most {LONGEST_FALL / fall:.3g} s."
         )
-        raise InputError(message)
 
 
 def levels_of(fastest: float, dt: float) -> int:

@@ -10,8 +10,6 @@ from rockflex.structure import Beam, LumpedMasses
 from rockflex.structure.file._table import Table
 from rockflex.structure.file._tables import BaseMass, Damping, HalfWidth, StructureTable, Vector
 
-__all__ = ["BeamTable"]
-
 _PROFILES = ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia")
 
 
@@ -61,11 +59,13 @@ class BeamTable(StructureTable):
         z = given.pop("z", None)
         lists = [name for name in _PROFILES if isinstance(given.get(name), list)]
         if z is None and lists:
-            message = f"{lists[0]} is a list, but its heights are not known. Add z, a list of as many heights in m."
-            raise InputError(message)
+            raise InputError(
+                f"{lists[0]} is a list, but its heights are not known. Add z, a list of as many heights in m."
+            )
         if z is not None and not lists:
-            message = "z holds heights, but nothing varies along them. Give a list of as many values, or leave z out."
-            raise InputError(message)
+            raise InputError(
+                "z holds heights, but nothing varies along them. Give a list of as many values, or leave z out."
+            )
         given |= {name: (z, given[name]) for name in lists}
         if self.lumped_masses is not None:
             given["lumped_masses"] = LumpedMasses(**given["lumped_masses"])

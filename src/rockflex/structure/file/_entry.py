@@ -26,8 +26,6 @@ from rockflex.structure.file._tables import (
     WallFrameTable,
 )
 
-__all__ = ["KINDS", "StructureEntry", "TendonTable"]
-
 _A_TABLE = "a table"
 
 KINDS: dict[str, type[StructureTable]] = {
@@ -95,8 +93,7 @@ class StructureEntry(Table):
         if len(found) != 1:
             *others, last = (f"[{kind}]" for kind in KINDS)
             was = " and ".join(found) + " were" if found else "none was"
-            message = f"one structure is expected, {', '.join(others)} or {last}, but {was} found."
-            raise InputError(message)
+            raise InputError(f"one structure is expected, {', '.join(others)} or {last}, but {was} found.")
         return self
 
     @property
@@ -131,8 +128,7 @@ class StructureEntry(Table):
         try:
             built = self.table.build(Path(folder))
         except InputError as error:
-            message = f"[{self.kind}]: {error}"
-            raise InputError(message) from error
+            raise InputError(f"[{self.kind}]: {error}") from error
         if self.eccentricity:
             if isinstance(built, RockingProperties):
                 built = replace(built, eccentricity=self.eccentricity)
@@ -146,8 +142,7 @@ class StructureEntry(Table):
                 return replace(built, tendons=tendons)
             return Restrained(built, tendons)
         except InputError as error:
-            message = f"[[tendons]]: {error}"
-            raise InputError(message) from error
+            raise InputError(f"[[tendons]]: {error}") from error
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is made from, by its key, such as "matrices.mass".

@@ -8,8 +8,6 @@ from pydantic import Field, StringConstraints
 from rockflex.structure import from_matrices, from_modes
 from rockflex.structure.file._tables import BaseMass, Damping, HalfWidth, StructureTable, Vector
 
-__all__ = ["MatricesTable", "ModesTable"]
-
 Matrix = list[list[float]]
 Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
 

@@ -11,8 +11,6 @@ from rockflex.structure.file._entry import StructureEntry
 from rockflex.structure.file._table import checked
 from rockflex.structure.file._tables import Built
 
-__all__ = ["build_in", "read_structure", "read_toml"]
-
 _FOR_RUNS = ("impact", "restitution", "bouc_wen")  # for `rockflex run` alone
 
 
@@ -60,17 +58,15 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
     try:
         return tomllib.loads(file.read_text("utf-8"))
     except FileNotFoundError as error:
-        message = f"The {kind} file {file} does not exist (working directory: {Path.cwd()})."
-        raise InputError(message) from error
+        raise InputError(f"The {kind} file {file} does not exist (working directory: {Path.cwd()}).") from error
     except OSError as error:
-        message = f"The {kind} file {file} cannot be read: {error.strerror}."
-        raise InputError(message) from error
+        raise InputError(f"The {kind} file {file} cannot be read: {error.strerror}.") from error
     except ValueError as error:  # not TOML, or not UTF-8
-        message = f"{file} is not a valid TOML file: {shortened(str(error))}."
-        raise InputError(message) from error
+        raise InputError(f"{file} is not a valid TOML file: {shortened(str(error))}.") from error
     except RecursionError as error:
-        message = f"{file} is nested too deep to be read: brackets within brackets, more than any {kind} has."
-        raise InputError(message) from error
+        raise InputError(
+            f"{file} is nested too deep to be read: brackets within brackets, more than any {kind} has."
+        ) from error
 
 
 def build_in(file: Path, entry: StructureEntry) -> Built:
@@ -84,5 +80,4 @@ def build_in(file: Path, entry: StructureEntry) -> Built:
     try:
         return entry.build(file.parent)
     except InputError as error:
-        message = f"{file}, {error}"
-        raise InputError(message) from error
+        raise InputError(f"{file}, {error}") from error

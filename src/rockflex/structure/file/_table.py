@@ -11,8 +11,6 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from rockflex._errors import InputError
 
-__all__ = ["Table", "checked", "problems"]
-
 AnyTable = TypeVar("AnyTable", bound="Table")
 
 

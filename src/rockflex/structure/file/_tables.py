@@ -18,24 +18,6 @@ from rockflex.structure import (
 )
 from rockflex.structure.file._table import Table
 
-__all__ = [
-    "BaseMass",
-    "BlockTable",
-    "Built",
-    "CantileverTable",
-    "Damping",
-    "FishBoneTable",
-    "FrameTable",
-    "HalfWidth",
-    "LumpedTable",
-    "PropertiesTable",
-    "Structure",
-    "StructureTable",
-    "TaperedTowerTable",
-    "Vector",
-    "WallFrameTable",
-]
-
 Vector = list[float]
 Matrix = list[list[float]]
 BaseMass = Annotated[float, Field(description="the mass of the base, a number in kg")]

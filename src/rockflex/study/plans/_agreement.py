@@ -14,8 +14,6 @@ from rockflex._values import Value
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["PopulationStatistics", "population_statistics"]
-
 Array = NDArray[np.float64]
 
 FEWEST = 3  # pairs, below which nothing is said
@@ -115,8 +113,9 @@ def population_statistics(
     shown = whole_number("n_outliers", n_outliers, 0)
     solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
     if not len(solved):
-        message = "pairs holds no pair that was solved. Give the table of run_population, or see its column error."
-        raise InputError(message)
+        raise InputError(
+            "pairs holds no pair that was solved. Give the table of run_population, or see its column error."
+        )
     import pandas as pd
 
     resting = solved[solved["status_mdof"] == "no_uplift"]

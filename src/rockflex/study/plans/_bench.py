@@ -26,8 +26,6 @@ from rockflex.study.plans._intensity import MEASURES, intensity_measures, scaled
 from rockflex.study.plans._records import record_group
 from rockflex.study.plans._tables import RESULTS, Columns, Row, kinds_of, peaks_of
 
-__all__ = ["Assumptions", "Bench", "bench_of", "check_different", "record_columns", "record_facts"]
-
 
 @dataclass(frozen=True)
 class Assumptions:
@@ -57,11 +55,10 @@ class Bench:
         self.labels = [model.label for model in assumptions.models]
         check_different("models", self.labels)
         if assumptions.bouc_wen is not None and assumptions.free_vibration is None:
-            message = (
+            raise InputError(
                 'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free vibration in '
                 "seconds."
             )
-            raise InputError(message)
         self._facts = record_facts(motions)
         self._yielding = hysteresis_of(assumptions.models, assumptions.bouc_wen)
         self._engines: dict[tuple[int, int], tuple[RockingModel, Engine] | str] = {}
@@ -171,8 +168,7 @@ def check_different(name: str, values: Sequence[str]) -> None:
     """Raise an InputError if a value occurs more than once."""
     repeated = [value for place, value in enumerate(values) if value in values[:place]]
     if repeated:
-        message = f"{name}: {shown(repeated[0])} occurs more than once. Give each once."
-        raise InputError(message)
+        raise InputError(f"{name}: {shown(repeated[0])} occurs more than once. Give each once.")
 
 
 def record_facts(motions: Suite) -> list[Row]:

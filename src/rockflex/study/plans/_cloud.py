@@ -17,8 +17,6 @@ from rockflex.study.plans._spec import StructuresSpec
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["CloudPlan", "CloudStudy", "run_cloud"]
-
 
 class CloudStudy(StructuresSpec):
     """Cloud analysis (Silva & Stojadinović 2024, Section 3.2).

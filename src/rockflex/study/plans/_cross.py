@@ -7,8 +7,6 @@ from rockflex.study.plans._bench import Bench
 from rockflex.study.plans._plan import ChunkedPlan
 from rockflex.study.plans._tables import Columns, Row
 
-__all__ = ["CrossPlan"]
-
 
 class CrossPlan(ChunkedPlan):
     """The cross product of structures, records, models and `n_levels` levels, a unit each, cut into chunks."""

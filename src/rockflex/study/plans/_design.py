@@ -27,8 +27,6 @@ from rockflex.study.plans._tables import Columns, Row
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["DesignPlan", "DesignStudy", "design_tables", "run_design"]
-
 
 class TendonLevelTable(Table):
     """The arguments of `TendonLevel`."""
@@ -104,8 +102,9 @@ class DesignStudy(StructuresSpec):
     @model_validator(mode="after")
     def _question(self) -> "DesignStudy":
         if (self.level is None) == (self.hazard is None):
-            message = "level and hazard: one of them is needed, and not both, to say how strong the ground shakes."
-            raise InputError(message)
+            raise InputError(
+                "level and hazard: one of them is needed, and not both, to say how strong the ground shakes."
+            )
         if self.level is not None:
             positive("level", self.level, "the unit of the measure")
         if self.hazard is not None:
@@ -134,8 +133,7 @@ class DesignStudy(StructuresSpec):
                 try:
                     rotation_of(limit, design.properties.nominal_overturning_rotation)
                 except InputError as error:
-                    message = f"{design.name}: {error}"
-                    raise InputError(message) from error
+                    raise InputError(f"{design.name}: {error}") from error
         return DesignPlan(bench, designs, self.scales, self.runs_per_chunk)
 
 
@@ -145,8 +143,9 @@ class DesignPlan(CloudPlan):
     def __init__(self, bench: Bench, designs: Sequence[Design], scales: Sequence[float], per_chunk: int) -> None:
         for model in bench.assumptions.models:
             if not model.lifts:
-                message = f"models: {model.label} has a base that cannot lift, so its width is nothing. Leave it out."
-                raise InputError(message)
+                raise InputError(
+                    f"models: {model.label} has a base that cannot lift, so its width is nothing. Leave it out."
+                )
         self._tendons = list(dict.fromkeys(design.tendon for design in designs))
         self._facts = [self._facts_of(design) for design in designs]
         made = Bench({each.name: each.properties for each in designs}, bench.motions, bench.assumptions)
@@ -227,8 +226,7 @@ def run_design(
     """
     given: Any = scales
     if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        message = f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given."
-        raise InputError(message)
+        raise InputError(f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given.")
     bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
     return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)

@@ -23,8 +23,6 @@ from rockflex.study.plans._design_resamples import exceedances, resample_weights
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Band", "Question", "judged"]
-
 Float = NDArray[np.float64]
 Curve = Callable[[Float], Float]
 
@@ -73,8 +71,7 @@ class Question:
             If both or none were given, or the level is not positive.
         """
         if (at is None) == (hazard is None):
-            message = "Give either at, a level of the measure, or hazard, a HazardCurve in it."
-            raise InputError(message)
+            raise InputError("Give either at, a level of the measure, or hazard, a HazardCurve in it.")
         if hazard is None:
             level = positive("at", at, "the unit of the measure")  # pyright: ignore[reportArgumentType]
             return cls(None, np.array([level]), np.ones(1))

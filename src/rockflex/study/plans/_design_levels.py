@@ -12,8 +12,6 @@ from rockflex.modal import RockingProperties, Tendon
 from rockflex.study._arguments import described, positive_numbers
 from rockflex.study.plans._bench import check_different
 
-__all__ = ["Design", "TendonLevel", "designs_of", "half_widths_of"]
-
 RANGE = ("smallest", "largest", "count")
 MOST = 10_000  # bases
 
@@ -60,11 +58,10 @@ class TendonLevel:
             limit = positive("yield_ratio", self.yield_ratio, "W")
             vars(self).update(yield_ratio=limit)
             if force > limit:
-                message = (
+                raise InputError(
                     f"prestress_ratio must not exceed yield_ratio, {limit:g}, but {force:g} was given. A tendon that "
                     "has yielded is not elastic."
                 )
-                raise InputError(message)
 
     def held(self, properties: RockingProperties) -> RockingProperties:
         """The structure with this tendon in place of any other; without one where both ratios are zero."""
@@ -101,15 +98,13 @@ def designs_of(
     per_width = positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
     for place, level in enumerate(levels):
         if not isinstance(level, TendonLevel):  # pyright: ignore[reportUnnecessaryIsInstance]
-            message = f"tendons[{place}] is {described(level)}. Expected a TendonLevel."
-            raise InputError(message)
+            raise InputError(f"tendons[{place}] is {described(level)}. Expected a TendonLevel.")
     check_different("tendons", [level.name for level in levels])
     if levels and properties.tendons:
-        message = (
+        raise InputError(
             "The structure has tendons of its own, and there are levels of tendons besides. Leave out the one or the "
             "other: levels take the place of its tendons."
         )
-        raise InputError(message)
     found: list[Design] = []
     for level in levels or (None,):
         for width in widths:
@@ -118,8 +113,7 @@ def designs_of(
                 based = _on_base(properties, width, per_width)
                 based = based if level is None else level.held(based)
             except InputError as error:
-                message = f"{name}: {error}"
-                raise InputError(message) from error
+                raise InputError(f"{name}: {error}") from error
             own = "no tendon" if not properties.tendons else "its own tendons"
             found.append(Design(name, own if level is None else level.name, based))
     return found
@@ -150,11 +144,10 @@ def half_widths_of(given: Any) -> list[float]:
         smallest, largest, count = (real_or_nan(given.get(key)) for key in RANGE)
         sound = 0.0 < smallest < largest < np.inf and 2.0 <= count <= MOST and count == int(count)
         if set(given) != set(RANGE) or not sound:
-            message = (
+            raise InputError(
                 "half_widths must be a list in m, or a range {smallest = 1.0, largest = 3.0, count = 9} of "
                 f"positive numbers in m, 2 to {MOST} of them, but {shown(given)} was given."
             )
-            raise InputError(message)
         given = np.linspace(smallest, largest, int(count))
     widths = sorted(positive_numbers("half_widths", given, "m"))
     check_different("half_widths", [f"{width:.6g}" for width in widths])

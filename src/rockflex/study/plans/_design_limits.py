@@ -7,8 +7,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.study.plans._intensity import check_measure
 
-__all__ = ["OVERTURNED", "THRESHOLD", "check_limit", "check_same_for_all", "rotation_of"]
-
 OVERTURNED = 0.5 * math.pi
 THRESHOLD = 1e-4  # rad up to which a run counts as one without rocking
 RELATIVE = ("relative_pga", "relative_pgv")  # to the base, so of another motion for each width
@@ -23,8 +21,7 @@ def check_same_for_all(measure: str) -> None:
     """Raise an InputError unless there is such a measure, and a level of it is the same motion for every base."""
     check_measure(measure)
     if measure in RELATIVE:
-        message = f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1."
-        raise InputError(message)
+        raise InputError(f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1.")
 
 
 def rotation_of(limit: float | str, nominal: float) -> float:
@@ -46,9 +43,8 @@ def rotation_of(limit: float | str, nominal: float) -> float:
             rotation = math.nan
     if not THRESHOLD <= rotation < OVERTURNED:
         is_of = f" ({rotation:.3g} rad)" if words and math.isfinite(rotation) else ""
-        message = (
+        raise InputError(
             f"limit must be a rotation from {THRESHOLD:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
             f'"nominal" or "0.5 nominal" in the same range, or "overturning", but {shown(limit)}{is_of} was given.'
         )
-        raise InputError(message)
     return rotation

@@ -3,8 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["exceedances", "resample_weights"]
-
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 

@@ -10,8 +10,6 @@ from rockflex.study.plans._design_limits import check_limit, check_same_for_all
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["design_table"]
-
 FACTS = ("tendon", "half_width", "aspect_ratio", "prestress_ratio", "stiffness_ratio", "resisting_moment")
 RESULTS = ("status", "max_rotation", "nominal_limit", "max_base_moment", "tendon_utilisation", "group")
 
@@ -71,8 +69,7 @@ def design_table(
     lacking = [name for name in ("structure", "model", *FACTS, *RESULTS, measure) if name not in runs]
     if lacking or not len(runs):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
-        message = f"The table {lacks}. Give what run_design returned."
-        raise InputError(message)
+        raise InputError(f"The table {lacks}. Give what run_design returned.")
     question = Question.of(at, hazard)
     band = None if confidence is None else Band(confidence, n_resamples, seed)
     check_limit(limit)

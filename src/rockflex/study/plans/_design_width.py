@@ -13,8 +13,6 @@ from rockflex._errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["smallest_width"]
-
 Float = NDArray[np.float64]
 
 NEEDED = ("model", "tendon", "half_width", "prestress_ratio", "stiffness_ratio", "high")
@@ -54,8 +52,7 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     lacking = [name for name in (*NEEDED, value) if name not in table]
     if lacking or not len(table):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
-        message = f"The table {lacks}. Give what design_table returned."
-        raise InputError(message)
+        raise InputError(f"The table {lacks}. Give what design_table returned.")
     wanted = positive("target", target, "1/year" if value == "rate" else "probability")
     rows: list[dict[str, Any]] = []
     for (model, tendon), group in table.groupby(["model", "tendon"], observed=True, sort=False):

@@ -22,8 +22,6 @@ from rockflex.study.plans._tables import Columns, Row
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["IncrementalPlan", "IncrementalStudy", "incremental_capacities", "run_incremental"]
-
 Limit = Literal["overturning", "nominal"]
 
 WIDEST = 1e12  # the last scale over the first
@@ -85,8 +83,9 @@ class IncrementalPlan(CrossPlan):
         check_ladder(smallest, largest, growth, tolerance)
         for model in bench.assumptions.models:
             if not model.lifts:
-                message = f"models: {model.label} has a base that cannot lift, so nothing overturns it. Leave it out."
-                raise InputError(message)
+                raise InputError(
+                    f"models: {model.label} has a base that cannot lift, so nothing overturns it. Leave it out."
+                )
         self.growth, self.tolerance, self.limit = growth, tolerance, limit
         self.scales = rungs(smallest, largest, growth)
         most = len(self.scales) + steps_between(growth, tolerance) + steps_from_rest(tolerance)
@@ -129,14 +128,12 @@ def check_ladder(smallest: float, largest: float, growth: float, tolerance: floa
     positive("smallest_scale", smallest, "times the record")
     positive("largest_scale", largest, "times the record")
     if not smallest < largest:
-        message = f"largest_scale must be above smallest_scale, {smallest:g}, but {largest:g} was given."
-        raise InputError(message)
+        raise InputError(f"largest_scale must be above smallest_scale, {smallest:g}, but {largest:g} was given.")
     if largest / smallest > WIDEST:
-        message = (
+        raise InputError(
             f"largest_scale must be at most {WIDEST:g} times smallest_scale, {smallest:g}, but {largest:g} was given. "
             "Bring the two closer."
         )
-        raise InputError(message)
     in_range("growth", growth, 1.0001, 100.0, hint="It is the factor from one scale to the next: 1.15 for 15 %.")
     in_range("tolerance", tolerance, 1e-9, 0.5)
 
@@ -189,8 +186,7 @@ def run_incremental(
     """
     bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     if not one_of(limit, ("overturning", "nominal")):
-        message = f'limit must be "overturning" or "nominal", but {shown(limit)} was given.'
-        raise InputError(message)
+        raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
     plan = IncrementalPlan(bench, smallest_scale, largest_scale, growth, tolerance, limit, 64)
     return run_plan(plan, workers)
 

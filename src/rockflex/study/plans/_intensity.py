@@ -9,8 +9,6 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
 
-__all__ = ["MEASURES", "check_measure", "factor_to", "intensity_measures", "scaled_measures"]
-
 MEASURES = ("pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "relative_pga", "relative_pgv")
 STIFF = 1e-6  # s
 SQUARED = frozenset({"arias"})  # of the acceleration; all others are linear in it
@@ -56,5 +54,4 @@ def factor_to(measures: dict[str, float], name: str, level: float) -> float:
 def check_measure(name: str) -> None:
     """Raise an InputError unless there is such a measure."""
     if not one_of(name, MEASURES):
-        message = f"measure must be one of {', '.join(MEASURES)}, but {shown(name)} was given."
-        raise InputError(message)
+        raise InputError(f"measure must be one of {', '.join(MEASURES)}, but {shown(name)} was given.")

@@ -7,8 +7,6 @@ from itertools import pairwise
 
 from rockflex.study.plans._tables import Row
 
-__all__ = ["Ladder", "rungs", "steps_between", "steps_from_rest"]
-
 
 def rungs(smallest: float, largest: float, growth: float) -> list[float]:
     """Scales from `smallest`, each larger by `growth`, to `largest`, which is the last."""

@@ -13,8 +13,6 @@ from rockflex.study.plans._incremental import IncrementalStudy
 from rockflex.study.plans._population import PopulationStudy
 from rockflex.study.plans._stripes import StripeStudy
 
-__all__ = ["Study", "load_study"]
-
 Study = CloudStudy | PopulationStudy | IncrementalStudy | StripeStudy | DesignStudy
 
 KINDS: dict[str, type[Study]] = {
@@ -57,10 +55,8 @@ def load_study(path: str | Path) -> Study:
         near = get_close_matches(str(kind), KINDS, n=1)
         hint = f' Did you mean "{near[0]}"?' if near else ""
         was = f"{shown(kind)} was given" if "study" in content else "it is missing"
-        message = f"{file}: study must be one of {known}, but {was}.{hint}"
-        raise InputError(message)
+        raise InputError(f"{file}: study must be one of {known}, but {was}.{hint}")
     try:
         return model(**content).read_from(file.parent)
     except InputError as error:
-        message = f"{file}: {error}"
-        raise InputError(message) from error
+        raise InputError(f"{file}: {error}") from error

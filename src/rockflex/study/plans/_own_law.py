@@ -11,8 +11,6 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.models import ImpactLaw
 
-__all__ = ["law_checksum", "law_document"]
-
 
 def law_document(law: ImpactLaw) -> dict[str, Any]:
     """Return the law's class, its words and the values that it holds, as plain JSON.
@@ -43,11 +41,10 @@ def law_checksum(law: ImpactLaw) -> dict[str, str]:
     try:
         source = inspect.getsource(sys.modules[kind.__module__])
     except (OSError, TypeError, KeyError) as error:
-        message = (
+        raise InputError(
             f"The impact law {kind.__qualname__} stands in no file, so a study's folder cannot tell later whether it "
             "is still the same law. Put it into a module (a .py file) and import it, or run the study without a folder."
-        )
-        raise InputError(message) from error
+        ) from error
     return {f"impact, {kind.__module__}": hashlib.sha256(source.encode()).hexdigest()}
 
 
@@ -60,8 +57,7 @@ def _said(name: str, value: Any, kind: type) -> Any:
         return [_said(name, each, kind) for each in cast("list[Any]", value)]
     if isinstance(value, Mapping):
         return {str(key): _said(name, each, kind) for key, each in cast("Mapping[Any, Any]", value).items()}
-    message = (
+    raise InputError(
         f"A study's folder must record the values of its impact law, but {kind.__qualname__}.{name} is of type "
         f"{type(value).__name__}. Let the law hold numbers, texts and arrays, or run the study without a folder."
     )
-    raise InputError(message)

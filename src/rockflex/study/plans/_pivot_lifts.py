@@ -5,8 +5,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["PivotLifts", "pivot_lifts"]
-
 LEAST = "min_vertical_reaction"
 
 

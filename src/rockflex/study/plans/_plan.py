@@ -13,8 +13,6 @@ from rockflex.study.plans._tables import Columns, Row, Table, tabulate, to_frame
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["ChunkedPlan", "Plan", "run_plan"]
-
 
 class Plan(Protocol):
     """A study cut into chunks."""

@@ -26,8 +26,6 @@ from rockflex.study.plans._tables import RESULTS, Columns, Row, kinds_of, peaks_
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["PopulationPlan", "PopulationStudy", "run_population"]
-
 BEHAVIOURS = ("shear", "flexure")
 DRAWN = "height period coefficient aspect_ratio base_mass_ratio stiffness_ratio damping_ratio"
 STRUCTURE = "nominal_limit structure_mass total_mass l0r_g uplift_acceleration"

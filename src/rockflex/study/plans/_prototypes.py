@@ -8,8 +8,6 @@ import numpy as np
 from rockflex._checks import whole_number
 from rockflex.structure import Frame
 
-__all__ = ["Prototype", "draw_prototype"]
-
 STORIES = (2, 15)
 ASPECT_RATIOS = (5, 10)
 BASE_MASSES = (1.0, 1.5, 2.0, 2.5, 3.0)  # times the mass of a story

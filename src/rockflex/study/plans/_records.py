@@ -12,8 +12,6 @@ from rockflex._shown import shown
 from rockflex.motion import GroundMotion, OnError, Suite, load_suite, read_suite
 from rockflex.structure.file import Table
 
-__all__ = ["Records", "checksums", "record_group"]
-
 
 class Records(Table):
     """Records by the names of embedded suites, from a folder, or both."""
@@ -28,11 +26,9 @@ class Records(Table):
     @model_validator(mode="after")
     def _some(self) -> "Records":
         if not self.suites and self.folder is None:
-            message = 'no record is named. Give suites = ["fema-p695-far-field"], folder = "...", or both.'
-            raise InputError(message)
+            raise InputError('no record is named. Give suites = ["fema-p695-far-field"], folder = "...", or both.')
         if self.folder is None and self.on_error != "raise":
-            message = "on_error is for the files of a folder, but none is named. Leave it out."
-            raise InputError(message)
+            raise InputError("on_error is for the files of a folder, but none is named. Leave it out.")
         return self
 
     def load(self, base: Path) -> Suite:
@@ -50,11 +46,10 @@ class Records(Table):
         names = [motion.name for motion in motions]
         for pattern in self.include:
             if not any(fnmatchcase(name, pattern) for name in names):
-                message = (
+                raise InputError(
                     f"[records] include: no record's name fits {shown(pattern)}. There are {len(names)}, from "
                     f"{shown(names[0])} to {shown(names[-1])}; * stands for any text and ? for one letter."
                 )
-                raise InputError(message)
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))
 
 

@@ -17,8 +17,6 @@ from rockflex.study.plans._bench import Assumptions, Bench, check_different
 from rockflex.study.plans._own_law import law_checksum, law_document
 from rockflex.study.plans._records import Records
 
-__all__ = ["Spec", "StructuresSpec"]
-
 
 class Spec(Table):
     """A study, as it stands in a file or is written in Python; tables within it are given as dictionaries.
@@ -44,8 +42,7 @@ class Spec(Table):
         try:
             super().__init__(**content)
         except ValidationError as error:
-            message = " ".join(problems(error, content, type(self)))
-            raise InputError(message) from error
+            raise InputError(" ".join(problems(error, content, type(self)))) from error
 
     @field_validator("work_limit")
     @classmethod
@@ -131,8 +128,9 @@ class StructuresSpec(Assumed, Spec):
             try:
                 properties[names[place - 1]] = properties_of(entry.build(self._folder))
             except InputError as error:
-                message = f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"
-                raise InputError(message) from error
+                raise InputError(
+                    f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"
+                ) from error
         free = free_vibration_time(self.free_vibration)
         models = tuple(map(parse_model, self.models))
         limit = work_limit_of(self.work_limit)

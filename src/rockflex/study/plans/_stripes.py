@@ -19,8 +19,6 @@ from rockflex.study.plans._tables import Columns, Row
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["StripePlan", "StripeStudy", "stripe_counts"]
-
 
 class StripeStudy(StructuresSpec):
     """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
@@ -54,10 +52,9 @@ class StripePlan(CrossPlan):
         for structure, name in enumerate(bench.names):
             for record, motion in enumerate(bench.motions):
                 if not math.isfinite(factor_to(bench.measures(structure, record), measure, 1.0)):
-                    message = (
+                    raise InputError(
                         f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
                     )
-                    raise InputError(message)
         super().__init__(bench, len(self.levels), per_chunk)
 
     def scale(self, structure: int, record: int, level: int) -> float:
@@ -106,10 +103,9 @@ def stripe_counts(
     elif limit == "uplift":
         exceeds = solved["status"] != "no_uplift"
     elif isinstance(limit, str):
-        message = (
+        raise InputError(
             f'limit must be "overturning", "nominal", "uplift" or a rotation in rad, but {shown(limit)} was given.'
         )
-        raise InputError(message)
     else:
         exceeds = solved["max_rotation"] > positive("limit", limit, "rad")
     counted = solved.assign(exceeds=exceeds.astype(bool)).groupby(["structure", "model", "level"], observed=True)

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
 Table: TypeAlias = Any  # a pyarrow.Table: pyarrow comes without types
 
-__all__ = ["RESULTS", "Columns", "Row", "Table", "kinds_of", "peaks_of", "tabulate", "to_frame"]
-
 # A kind of column, or the names that the codes of a column of names stand for.
 Columns = Mapping[str, type | Sequence[str]]
 Row = dict[str, Any]
