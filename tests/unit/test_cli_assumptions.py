@@ -113,7 +113,6 @@ def test_free_vibration_with_and_without_a_record():
 def test_many_runs_of_elastic_and_yielding_models_in_batches(monkeypatch):
     flags = ("--model", "2DOF-S-BW,2DOF-S,1DOF-fixed-BW", *YIELDING, "--scale", 1, "--scale", 0.5)
     arguments = (STRUCTURE, "fema-p695-near-field-pulse", *flags, "--impact", "complete")
-    monkeypatch.setattr(_simulations, "BATCH", 24)  # several batches
     many = document(*arguments)["runs"]
     monkeypatch.setattr(_simulations, "FEW", 10**6)
     few = document(*arguments)["runs"]

@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from rockflex.cli import _simulations, app
+from rockflex.study import Case
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
 FRAME = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
@@ -111,15 +112,15 @@ def test_many_runs(monkeypatch):
 
 
 def test_a_run_that_cannot_be_solved(monkeypatch):
-    solved = _simulations.simulate
+    solved = Case.run
 
-    def flaky(structure, motion, model, **options):
-        if model == "MDOF-S":
+    def flaky(case, motion, scale=1.0):
+        if case.model.label == "MDOF-S":
             message = "The motion is not finite at 1 s."
             raise rf.SolverError(message)
-        return solved(structure, motion, model, **options)
+        return solved(case, motion, scale)
 
-    monkeypatch.setattr(_simulations, "simulate", flaky)
+    monkeypatch.setattr(Case, "run", flaky)
     arguments = (STRUCTURE, "el-centro-1940", "--friction", 0.4)
     assert [rows_of(*arguments)[1][name] for name in NAMES] == [None, None, None]
     last = [line.split() for line in invoke(*arguments).stdout.splitlines() if "MDOF-S" in line][-1]

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from rockflex.cli import _run_output, _simulations, app
 from rockflex.response import PEAKS
+from rockflex.study import Case
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")
@@ -102,7 +103,6 @@ def test_many_runs_are_those_done_one_by_one(monkeypatch, workers):
         "2DOF-S,fixed",
         *workers,
     ]
-    monkeypatch.setattr(_simulations, "BATCH", 24)  # several batches
     many = document(*arguments)["runs"]
     monkeypatch.setattr(_simulations, "FEW", 10**6)
     few = document(*arguments)["runs"]
@@ -282,24 +282,22 @@ def test_full_folder_is_refused_before_anything_runs(tmp_path, monkeypatch):
     assert "is not empty. Give another one, or --force" in result.stderr
 
 
-class Flaky:
-    """Stands in for `simulate`: a model that cannot be solved."""
+def break_down(monkeypatch, broken):
+    """Let no run with these models be solved."""
+    solved = Case.run
 
-    def __init__(self, monkeypatch, broken):
-        self.simulate = _simulations.simulate
-        self.broken = broken
-        monkeypatch.setattr(_simulations, "simulate", self)
-
-    def __call__(self, structure, motion, model, **options):
-        if model in self.broken:
+    def run(case, motion, scale=1.0):
+        if case.model.label in broken:
             message = "The motion is not finite at 1 s."
             raise rf.SolverError(message)
-        return self.simulate(structure, motion, model, **options)
+        return solved(case, motion, scale)
+
+    monkeypatch.setattr(Case, "run", run)
 
 
 @pytest.mark.parametrize(("more", "code"), [([], 0), (["--strict"], 1)])
 def test_failed_runs_are_told_and_the_others_go_on(monkeypatch, more, code):
-    Flaky(monkeypatch, {"MDOF-S"})
+    break_down(monkeypatch, {"MDOF-S"})
     result = invoke(STRUCTURE, "el-centro-1940", *more)
     assert result.exit_code == code
     assert "1 of 3 runs could not be solved:" in result.stderr
@@ -310,7 +308,7 @@ def test_failed_runs_are_told_and_the_others_go_on(monkeypatch, more, code):
 
 
 def test_failed_runs_in_the_files(monkeypatch, tmp_path):
-    Flaky(monkeypatch, {"MDOF-S"})
+    break_down(monkeypatch, {"MDOF-S"})
     result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out", "--json")
     failed = json.loads(result.stdout)["runs"][1]
     assert failed["status"] is None
@@ -322,7 +320,7 @@ def test_failed_runs_in_the_files(monkeypatch, tmp_path):
 
 
 def test_long_list_of_failures_is_cut(monkeypatch):
-    Flaky(monkeypatch, {"MDOF-S"})
+    break_down(monkeypatch, {"MDOF-S"})
     scales = [item for k in range(1, 8) for item in ("--scale", k)]
     result = invoke(STRUCTURE, "el-centro-1940", *scales)
     assert "7 of 21 runs could not be solved:" in result.stderr
@@ -331,7 +329,7 @@ def test_long_list_of_failures_is_cut(monkeypatch):
 
 @pytest.mark.parametrize("strict", [[], ["--strict"]])
 def test_nothing_solved_is_a_solver_error(monkeypatch, tmp_path, strict):
-    Flaky(monkeypatch, {"MDOF-S", "2DOF-S", "fixed"})
+    break_down(monkeypatch, {"MDOF-S", "2DOF-S", "fixed"})
     result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out", *strict)
     assert result.exit_code == 1
     assert result.stdout == ""
@@ -399,8 +397,7 @@ def test_ctrl_c_ends_without_a_trace(tmp_path, monkeypatch):
     def interrupted(*_arguments, **_options):
         raise KeyboardInterrupt
 
-    for name in ("simulate", "simulate_many"):
-        monkeypatch.setattr(_simulations, name, interrupted)
+    monkeypatch.setattr(Case, "run", interrupted)
     done = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out")
     assert done.exit_code == 130
     assert done.stderr == "Stopped; nothing was written.\n"

@@ -116,7 +116,7 @@ def test_chunks_depend_on_nothing_but_their_number(plan):
     fresh = study().plan()
     backwards = [fresh.chunk(number) for number in reversed(range(5))][::-1]
     copied = pickle.loads(pickle.dumps(plan))
-    assert not copied.bench._engines
+    assert not copied.bench._cases
     for number, table in enumerate(backwards):
         assert plan.chunk(number).equals(table)
         assert copied.chunk(number).equals(table)

@@ -10,7 +10,7 @@ import rockflex as rf
 from rockflex import InputError, SolverError
 from rockflex.models import parse_model
 from rockflex.solve import Pace, Task, WorkLimitError, pace_of
-from rockflex.study import make_engine
+from rockflex.study import Case
 from rockflex.study._arguments import WORK_LIMIT, work_limit_of
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
@@ -35,7 +35,8 @@ def frame(**given):
 
 def task(label="MDOF-S", structure=None, motion=EL_CENTRO, free=0.0, bouc_wen=None, output="peaks"):
     model = parse_model(label).of((structure or frame()).rocking(), None, bouc_wen)
-    return make_engine(model, output).task(motion.acceleration, motion.dt, free, history=output == "history")
+    whole = output == "history"
+    return Case(model, free, history=whole, floors=whole).task(motion)
 
 
 @pytest.mark.parametrize(
@@ -133,7 +134,7 @@ def test_the_fastest_vibration_is_that_of_the_uplifted_structure(label, lifts) -
     expected = rf.uplifted_modes(p).omega[-1] if lifts else p.omega[-1]
     model = parse_model(label).of(p)
     assert 0.999999 * expected <= pace_of(model, 4).fastest <= 1.03 * expected  # a bound
-    assert make_engine(model, "peaks").pace.fastest == pace_of(model, 4).fastest
+    assert Case(model).engine.pace.fastest == pace_of(model, 4).fastest
 
 
 def test_work_grows_with_what_it_is_said_to_grow_with() -> None:

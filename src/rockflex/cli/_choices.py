@@ -26,11 +26,6 @@ class Assumptions:
     bouc_wen: BoucWen | None = None
     initial: InitialState | None = None
 
-    def options(self, model: str) -> dict[str, Any]:
-        """Arguments of `simulate` for one model: the hysteresis belongs to labels that end in -BW."""
-        bouc_wen = self.bouc_wen if parse_model(model).yields else None
-        return {"impact": self.law, "bouc_wen": bouc_wen, "initial": self.initial}
-
     def describe(self) -> dict[str, Any]:
         """Return what was given, for a document."""
         described: dict[str, Any] = {}

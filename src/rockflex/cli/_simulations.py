@@ -1,9 +1,9 @@
 """The runs of one structure: timed one by one where they are few, shared among threads where they are many."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext, suppress
-from dataclasses import dataclass, field
-from itertools import groupby, product
+from dataclasses import dataclass, field, replace
+from itertools import product
 from time import perf_counter
 from typing import Any, Literal
 
@@ -15,11 +15,11 @@ from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import PEAKS, Response, warnings_of
 from rockflex.solve import WorkLimitError
-from rockflex.study import WORK_LIMIT, simulate, simulate_many
+from rockflex.study import WORK_LIMIT, Case
+from rockflex.study._arguments import free_vibration_time, work_limit_of
 from rockflex.study._runs import map_runs
 
 FEW = 64  # runs; more are not timed one by one
-BATCH = 1024  # runs between two steps of the progress bar
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,13 @@ class Plan:
     work_limit: float | None = WORK_LIMIT
     """The most computing of one run in s, or None."""
 
-    @property
-    def output(self) -> Literal["history", "peaks"]:
-        """What a run returns; the friction is that of a history."""
-        return "history" if self.history or self.friction is not None else "peaks"
+    def case(self, model: str) -> Case:
+        """Return what is run with one model, which may keep its history: the friction is found from it."""
+        chosen = parse_model(model)
+        given, whole = self.assumptions, self.history or self.friction is not None
+        tied = chosen.of(self.properties, given.law, given.bouc_wen if chosen.yields else None)
+        free = free_vibration_time(self.free_vibration)
+        return Case(tied, free, given.initial, work_limit_of(self.work_limit), history=whole, floors=whole)
 
     def describe(self) -> dict[str, Any]:
         """Return what was asked for, for a document."""
@@ -99,11 +102,25 @@ def perform(plan: Plan) -> list[Run]:
     SolverError
         If not one run could be solved.
     """
-    runs = _one_by_one(plan) if plan.output == "history" or plan.size <= FEW else _in_batches(plan)
-    failed = [run for run in runs if run.error is not None]
+    cases = {model: plan.case(model) for model in plan.models}
+    many = plan.size > FEW
+
+    def run(task: tuple[int, tuple[GroundMotion, float, str]]) -> tuple[int, Run]:
+        place, (motion, scale, model) = task
+        return place, _run(plan, cases[model], motion, scale, timed=not many)
+
+    tasks = enumerate(product(plan.motions, plan.scales, plan.models))
+    done: list[tuple[int, Run]] = []
+    with progress("Simulating", plan.size) if many else nullcontext() as advance:
+        for item in map_runs(run, tasks, plan.workers if many else plan.workers or 1):
+            done.append(item)
+            if advance is not None:
+                advance(1)
+    runs = [found for _, found in sorted(done, key=lambda item: item[0])]
+    failed = [found for found in runs if found.error is not None]
     if len(failed) == len(runs):
         first = failed[0]
-        if first.error is not None and all(run.refused for run in runs):
+        if first.error is not None and all(found.refused for found in runs):
             raise WorkLimitError(first.error)
         raise SolverError(
             f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
@@ -116,45 +133,22 @@ def warm_up(plan: Plan) -> None:
     with progress("Loading the kernels (compiling them, the first time)"):
         for model in plan.models:
             with suppress(SolverError, WorkLimitError):
-                options: dict[str, Any] = {"work_limit": plan.work_limit, **plan.assumptions.options(model)}
-                response = simulate(plan.properties, plan.motions[0], model, output=plan.output, **options)
-                _friction(plan, response)
+                _friction(plan, replace(plan.case(model), free_vibration=0.0).run(plan.motions[0]))
 
 
-def _one_by_one(plan: Plan) -> list[Run]:
-    def run(task: tuple[int, tuple[GroundMotion, float, str]]) -> tuple[int, Run]:
-        place, (motion, scale, model) = task
-        start = perf_counter()
-        try:
-            response = simulate(
-                plan.properties,
-                motion.scaled(scale),
-                model,
-                output=plan.output,
-                free_vibration=plan.free_vibration,
-                work_limit=plan.work_limit,
-                **plan.assumptions.options(model),
-            )
-        except (SolverError, WorkLimitError) as error:
-            lost: dict[str, float | None] = {} if plan.friction is None else dict.fromkeys(SLIDING, None)
-            refused = isinstance(error, WorkLimitError)
-            nothing = dict.fromkeys(COLUMNS)
-            return place, Run(motion.name, scale, model, None, str(error), nothing, friction=lost, refused=refused)
-        elapsed = None if many else perf_counter() - start
-        peaks = {name: getattr(response, name) for name in COLUMNS}
-        kept = response if plan.history else None
-        friction = _friction(plan, response)
-        return place, Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction)
-
-    many = plan.size > FEW
-    tasks = enumerate(product(plan.motions, plan.scales, plan.models))
-    done: list[tuple[int, Run]] = []
-    with progress("Simulating", plan.size) if many else nullcontext() as advance:
-        for item in map_runs(run, tasks, plan.workers if many else plan.workers or 1):
-            done.append(item)
-            if advance is not None:
-                advance(1)
-    return [run for _, run in sorted(done, key=lambda item: item[0])]
+def _run(plan: Plan, case: Case, motion: GroundMotion, scale: float, *, timed: bool) -> Run:
+    model = case.model.label
+    start = perf_counter()
+    try:
+        response = case.run(motion, scale)
+    except (SolverError, WorkLimitError) as error:
+        lost: dict[str, float | None] = {} if plan.friction is None else dict.fromkeys(SLIDING, None)
+        refused = isinstance(error, WorkLimitError)
+        return Run(motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost, refused=refused)
+    elapsed = perf_counter() - start if timed else None
+    peaks = {name: getattr(response, name) for name in COLUMNS}
+    kept = response if plan.history else None
+    return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, _friction(plan, response))
 
 
 def _friction(plan: Plan, response: Response) -> dict[str, float | None]:
@@ -167,48 +161,3 @@ def _friction(plan: Plan, response: Response) -> dict[str, float | None]:
         response.sliding_time(plan.friction),
     )
     return dict(zip(SLIDING, values, strict=True))
-
-
-def _in_batches(plan: Plan) -> list[Run]:
-    step = max(1, BATCH // (len(plan.scales) * len(plan.models)))
-    runs: list[Run] = []
-    with progress("Simulating", plan.size) as advance:
-        for first in range(0, len(plan.motions), step):
-            motions = plan.motions[first : first + step]
-            found: dict[tuple[str, float, str], Run] = {}
-            # Elastic and yielding models differ in their options.
-            for _, group in groupby(sorted(plan.models, key=_yields), key=_yields):
-                models = list(group)
-                try:
-                    table = simulate_many(
-                        plan.properties,
-                        motions,
-                        models,
-                        scales=plan.scales,
-                        free_vibration=plan.free_vibration,
-                        workers=plan.workers,
-                        work_limit=plan.work_limit,
-                        **plan.assumptions.options(models[0]),
-                    )
-                    rows = list(_rows(table))
-                except WorkLimitError as error:  # all of these; others may be made
-                    said, places = str(error), product([motion.name for motion in motions], plan.scales, models)
-                    nothing = dict.fromkeys(COLUMNS)
-                    rows = [Run(*place, None, said, nothing, refused=True) for place in places]
-                found |= {(run.motion, run.scale, run.model): run for run in rows}
-            names = [motion.name for motion in motions]
-            runs += [found[place] for place in product(names, plan.scales, plan.models)]
-            advance(len(found))
-    return runs
-
-
-def _yields(model: str) -> bool:
-    return parse_model(model).yields
-
-
-def _rows(table: Any) -> Iterator[Run]:
-    for row in table.to_dict("records"):
-        error = row["error"] if isinstance(row["error"], str) else None
-        peaks = {name: row[name] if error is None else None for name in COLUMNS}
-        status = row["status"] if error is None else None
-        yield Run(row["motion"], float(row["scale"]), row["model"], status, error, peaks)

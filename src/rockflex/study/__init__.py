@@ -1,17 +1,19 @@
 """Studies: one run, the cross product of many, and spectra of what rocks."""
 
 from rockflex.study._arguments import WORK_LIMIT, Structure, properties_of
+from rockflex.study._case import Case
 from rockflex.study._conduct import Progress, estimate_time, run_study
 from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
 from rockflex.study._modal_combination import CombinedPeaks, SecondMode, modal_combination
 from rockflex.study._overturning import OverturningScales, overturning_scales, overturning_spectrum
 from rockflex.study._rocking_spectrum import rocking_spectrum
-from rockflex.study._simulate import make_engine, simulate
+from rockflex.study._simulate import simulate
 from rockflex.study._simulate_many import simulate_many
 
 __all__ = [
     "WORK_LIMIT",
+    "Case",
     "CombinedPeaks",
     "InitialState",
     "OverturningScales",
@@ -20,7 +22,6 @@ __all__ = [
     "Structure",
     "estimate_time",
     "frequency_ratios",
-    "make_engine",
     "modal_combination",
     "overturning_scales",
     "overturning_spectrum",

@@ -9,7 +9,7 @@ from rockflex._checks import finite_vector, one_of, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
+from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import GroundMotion
 from rockflex.study._initial import InitialState
 
@@ -120,15 +120,6 @@ def hysteresis_of(models: Sequence[Model], bouc_wen: BoucWen | None) -> list[Bou
     """The hysteresis of each model: of those whose label says that they yield (-BW), of all where none says so."""
     chosen = any(model.yields for model in models)
     return [bouc_wen if model.yields or not chosen else None for model in models]
-
-
-def check_settling(model: RockingModel, free_vibration: float | None) -> None:
-    """Raise an InputError where a run is to settle and no one can tell when a hysteretic spring has."""
-    if free_vibration is None and model.bouc_wen is not None:
-        raise InputError(
-            f'free_vibration="settle" cannot tell when the hysteretic spring of {model.label} is at rest. '
-            "Give the free vibration in seconds."
-        )
 
 
 def check_initial(initial: InitialState | None) -> None:

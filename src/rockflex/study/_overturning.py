@@ -16,7 +16,7 @@ from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
-from rockflex.response import Response, respond
+from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
     Structure,
@@ -26,8 +26,8 @@ from rockflex.study._arguments import (
     properties_of,
     work_limit_of,
 )
+from rockflex.study._case import Case
 from rockflex.study._runs import map_runs
-from rockflex.study._simulate import make_engine
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -197,13 +197,7 @@ def _runner(
     tied = parse_model(model).of(properties_of(structure), impact)
     if not tied.lifts:
         raise InputError(f"{tied.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks.")
-    engine = make_engine(tied, "peaks")
-
-    def run(motion: GroundMotion, scale: float) -> Response:
-        solution = engine.run(motion.acceleration * scale, motion.dt, free_vibration=None, work_limit=limit)
-        return respond(tied, motion.name, solution)
-
-    return run
+    return Case(tied, None, work_limit=limit).run
 
 
 def _search(run: Run, motion: GroundMotion, scales: list[float], width: float) -> OverturningScales:

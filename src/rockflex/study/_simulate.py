@@ -4,10 +4,9 @@ from typing import Literal
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
+from rockflex.models import BoucWen, ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
-from rockflex.response import Response, asked_of, respond
-from rockflex.solve import Engine, preparing
+from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
     Output,
@@ -15,12 +14,12 @@ from rockflex.study._arguments import (
     check_initial,
     check_options,
     check_output,
-    check_settling,
     described,
     free_vibration_time,
     properties_of,
     work_limit_of,
 )
+from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
 
 
@@ -92,21 +91,5 @@ def simulate(
         raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
     check_horizontal(motion)
     check_initial(initial)
-    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
-    check_settling(tied, free)
-    engine = make_engine(tied, output)
-    solution = engine.run(
-        motion.acceleration,
-        motion.dt,
-        free_vibration=free,
-        state=None if initial is None else initial.state(tied),
-        history=output == "history",
-        work_limit=limit,
-    )
-    return respond(tied, motion.name, solution, floors=output == "history")
-
-
-def make_engine(model: RockingModel, output: Output) -> Engine:
-    """Engine that tracks the global peaks and, for histories, those of the floors."""
-    with preparing(model):
-        return Engine(model, asked_of(model, floors=output == "history"))
+    free, limit, whole = free_vibration_time(free_vibration), work_limit_of(work_limit), output == "history"
+    return Case(tied, free, initial, limit, history=whole, floors=whole).run(motion)

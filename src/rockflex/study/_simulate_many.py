@@ -4,35 +4,29 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 from rockflex._errors import InputError, SolverError
-from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
+from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import check_horizontal
-from rockflex.response import respond
-from rockflex.solve import Engine, WorkLimitError
+from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
     Output,
-    Structure,
     check_initial,
     check_options,
     check_output,
-    check_settling,
     factors_of,
     free_vibration_time,
     hysteresis_of,
     properties_of,
     work_limit_of,
 )
+from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
 from rockflex.study._runs import map_runs
-from rockflex.study._simulate import make_engine
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._table import Table
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Prepared = tuple[RockingModel, Engine]
 
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
 
@@ -106,62 +100,40 @@ def simulate_many(
     each = len(records) * inner
     table = Table(len(everything) * each, keep=output == "history")
 
-    def tasks() -> Iterator[tuple[int, int, int, list[Prepared | str | None]]]:
-        for index in range(len(everything)):
-            engines: list[Prepared | str | None] = [None] * len(chosen)
-            for first in range(0, each, CHUNK):
-                yield index, first, min(first + CHUNK, each), engines
+    whole = output == "history"
 
-    def work(task: tuple[int, int, int, list[Prepared | str | None]]) -> None:
-        index, first, last, engines = task
+    def case_of(index: int, which: int) -> Case | str:
+        """The case of a structure and a model, or why there is none."""
+        try:
+            tied = chosen[which].of(properties_of(everything[index]), impact, yielding[which])
+            return Case(tied, free, initial, limit, history=whole, floors=whole)
+        except InputError as error:
+            return str(error)
+
+    def tasks() -> Iterator[tuple[int, int, int, list[Case | str | None]]]:
+        for index in range(len(everything)):
+            cases: list[Case | str | None] = [None] * len(chosen)
+            for first in range(0, each, CHUNK):
+                yield index, first, min(first + CHUNK, each), cases
+
+    def work(task: tuple[int, int, int, list[Case | str | None]]) -> None:
+        index, first, last, cases = task
         for place in range(first, last):
             row = index * each + place
             motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
-            prepared = engines[which]
-            if prepared is None:
-                prepared = engines[which] = _prepare(
-                    everything[index], chosen[which], output, free, impact, yielding[which]
-                )
-            if isinstance(prepared, str):
-                table.errors[row] = prepared
+            case = cases[which] = cases[which] or case_of(index, which)
+            if isinstance(case, str):
+                table.errors[row] = case
                 continue
-            model, engine = prepared
             try:
-                state = None if initial is None else initial.state(model)
-                solution = engine.run(
-                    motion.acceleration * factors[factor],
-                    motion.dt,
-                    free_vibration=free,
-                    state=state,
-                    history=output == "history",
-                    work_limit=limit,
-                )
+                table.enter(row, case.run(motion, factors[factor]))
             except (SolverError, InputError) as error:
                 table.errors[row] = str(error)
                 if isinstance(error, WorkLimitError):
                     refused.append(error)
-                continue
-            table.enter(row, respond(model, motion.name, solution, floors=output == "history"))
 
     for _ in map_runs(work, tasks(), workers):
         pass
     if len(refused) == table.status.size:
         raise refused[0]
     return table.frame(shape, names, [motion.name for motion in records], factors, [model.label for model in chosen])
-
-
-def _prepare(
-    structure: Structure | RockingProperties,
-    model: Model,
-    output: Output,
-    free_vibration: float | None,
-    impact: ImpactLaw | None,
-    bouc_wen: BoucWen | None,
-) -> Prepared | str:
-    """A model tied to a structure and its engine, or why there is none."""
-    try:
-        tied = model.of(properties_of(structure), impact, bouc_wen)
-        check_settling(tied, free_vibration)
-        return tied, make_engine(tied, output)
-    except InputError as error:
-        return str(error)

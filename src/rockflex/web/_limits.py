@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import RockingModel, parse_model
+from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.solve import Task
-from rockflex.study import make_engine
+from rockflex.study import Case
 from rockflex.web._refusal import Refusal
 
 if TYPE_CHECKING:
@@ -118,12 +118,9 @@ def check_motion(motion: GroundMotion, path: str) -> None:
         raise Refusal({path: message})
 
 
-def check_together(models: Sequence[RockingModel], motion: GroundMotion, free: float) -> None:
-    """Refuse runs with their histories that take too long, one by one or together."""
-    together = 0.0
-    for model in models:
-        task = make_engine(model, "history").task(motion.acceleration, motion.dt, free, history=True)
-        together += _checked_work(task, "models")
+def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
+    """Refuse runs that take too long, one by one or together."""
+    together = sum(_checked_work(case.task(motion), "models") for case in cases)
     if together > TOGETHER:
         message = "these models take too long together for a page. Choose fewer of them, or a shorter record."
         raise Refusal({"models": message})

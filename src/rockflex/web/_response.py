@@ -1,5 +1,7 @@
 """The Response tab: models side by side, thinned to what a screen can show; the peaks are the true ones."""
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -7,11 +9,11 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
-from rockflex.models import RockingModel, parse_model
+from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
 from rockflex.solve import pace_of
-from rockflex.study import simulate
+from rockflex.study import Case
 from rockflex.web._limits import STOP, check_together
 from rockflex.web._packing import envelope, pack, plain
 from rockflex.web._records import motion_of
@@ -37,23 +39,26 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     """
     built = build(state.structure)
     motion = motion_of(state.record, uploads).scaled(state.scale)
-    found: list[Response] = []
-    free, law = state.free_vibration, state.law()
-    yielding = {label: state.hysteresis() if parse_model(label).yields else None for label in state.models}
-    tied: list[RockingModel] = []
-    for label, spring in yielding.items():
-        try:
-            tied.append(parse_model(label).of(built.properties, law, spring))
-        except InputError as error:
-            raise Refusal({"models": f"{label}: {error}"}) from error
-    check_together(tied, motion, free)
-    for label, spring in yielding.items():
-        options: dict[str, Any] = {"free_vibration": free, "bouc_wen": spring, "impact": law, "work_limit": STOP}
-        try:
-            found.append(simulate(built.structure, motion, label, **options))
-        except (InputError, SolverError) as error:
-            raise Refusal({"models": f"{label}: {error}"}) from error
+    law, cases, found = state.law(), dict[str, Case](), list[Response]()
+    for label in state.models:
+        with _refusing(label):
+            model = parse_model(label)
+            tied = model.of(built.properties, law, state.hysteresis() if model.yields else None)
+            cases[label] = Case(tied, state.free_vibration, work_limit=STOP, history=True, floors=True)
+    check_together(list(cases.values()), motion)
+    for label, case in cases.items():
+        with _refusing(label):
+            found.append(case.run(motion))
     return built, motion, found
+
+
+@contextmanager
+def _refusing(label: str) -> Generator[None]:
+    """Refuse what a model cannot do."""
+    try:
+        yield
+    except (InputError, SolverError) as error:
+        raise Refusal({"models": f"{label}: {error}"}) from error
 
 
 def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[str, Any]:

@@ -8,10 +8,10 @@ from rockflex._checks import instance
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel
+from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import Suite
-from rockflex.response import Response, respond
-from rockflex.solve import Engine, Task, WorkLimitError
+from rockflex.response import Response
+from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
     check_options,
@@ -20,7 +20,7 @@ from rockflex.study._arguments import (
     properties_of,
     work_limit_of,
 )
-from rockflex.study._simulate import make_engine
+from rockflex.study._case import Case
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study.plans._intensity import MEASURES, intensity_measures, scaled_measures
 from rockflex.study.plans._records import record_group
@@ -61,11 +61,11 @@ class Bench:
             )
         self._facts = record_facts(motions)
         self._yielding = hysteresis_of(assumptions.models, assumptions.bouc_wen)
-        self._engines: dict[tuple[int, int], tuple[RockingModel, Engine] | str] = {}
+        self._cases: dict[tuple[int, int], Case | str] = {}
         self._measures: dict[tuple[int, int], dict[str, float]] = {}
 
     def __getstate__(self) -> dict[str, Any]:
-        return vars(self) | {"_engines": {}, "_measures": {}}
+        return vars(self) | {"_cases": {}, "_measures": {}}
 
     def limited(self, work_limit: float | None) -> "Bench":
         """Return the same with another limit of the work of each run."""
@@ -96,34 +96,24 @@ class Bench:
         """Simulate one run; of one that cannot be solved the row holds the message, and no result."""
         row: Row = {"structure": structure, **self._facts[record], "model": model, "scale": scale}
         row |= scaled_measures(self.measures(structure, record), scale)
-        prepared = self._prepared(structure, model)
-        if isinstance(prepared, str):
-            return row | {"error": prepared}
-        tied, engine = prepared
-        motion, friction = self.motions[record], self.assumptions.friction
+        case = self._case(structure, model)
+        if isinstance(case, str):
+            return row | {"error": case}
         try:
-            solution = engine.run(
-                motion.acceleration * scale,
-                motion.dt,
-                free_vibration=self.assumptions.free_vibration,
-                history=friction,
-                work_limit=self.assumptions.work_limit,
-            )
+            response = case.run(self.motions[record], scale)
         except (SolverError, InputError) as error:
             return row | {"error": str(error)}
-        response = respond(tied, motion.name, solution)
         row |= {"status": response.status, **peaks_of(response)}
-        row["nominal_limit"] = tied.properties.nominal_overturning_rotation
-        return row | _friction(response) if friction else row
+        row["nominal_limit"] = case.model.properties.nominal_overturning_rotation
+        return row | _friction(response) if self.assumptions.friction else row
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """What a run is asked, to estimate its work by; None if there is no such model."""
-        prepared = self._prepared(structure, model)
-        if isinstance(prepared, str):
+        case = self._case(structure, model)
+        try:
+            return None if isinstance(case, str) else case.task(self.motions[record], scale)
+        except InputError:
             return None
-        given, motion = self.assumptions, self.motions[record]
-        acceleration = motion.acceleration * scale
-        return prepared[1].task(acceleration, motion.dt, given.free_vibration, history=given.friction)
 
     def check_work(self, runs: Iterable[tuple[int, int, int, float]]) -> None:
         """Raise the error of the first of these runs if every one of them is more work than it may be."""
@@ -141,18 +131,18 @@ class Bench:
         if first is not None:
             raise first
 
-    def _prepared(self, structure: int, model: int) -> tuple[RockingModel, Engine] | str:
-        """A model tied to a structure and its engine, made once, or why there is none."""
-        found = self._engines.get((structure, model))
+    def _case(self, structure: int, model: int) -> Case | str:
+        """The case of a structure and a model, made once, or why there is none."""
+        found = self._cases.get((structure, model))
         if found is None:
-            found = self._engines[structure, model] = self._prepare(structure, model)
+            found = self._cases[structure, model] = self._new_case(structure, model)
         return found
 
-    def _prepare(self, structure: int, model: int) -> tuple[RockingModel, Engine] | str:
+    def _new_case(self, structure: int, model: int) -> Case | str:
         given = self.assumptions
         try:
             tied = given.models[model].of(self.structures[structure], given.impact, self._yielding[model])
-            return tied, make_engine(tied, "peaks")
+            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.friction)
         except InputError as error:
             return str(error)
 

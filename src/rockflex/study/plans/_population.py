@@ -1,7 +1,6 @@
 """Random structures under random records: one mode against all of them (Sections 3.3 and 3.4)."""
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 from pydantic import Field, field_validator
@@ -12,9 +11,9 @@ from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
 from rockflex.models import LinearModel, modal_displacement
 from rockflex.motion import GroundMotion, Suite
-from rockflex.response import Response, asked_of, respond
-from rockflex.solve import Engine
+from rockflex.response import Response, respond
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
+from rockflex.study._case import Case
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study._subjects import Motions, motions_of
 from rockflex.study.plans._bench import record_columns, record_facts
@@ -131,12 +130,9 @@ class PopulationPlan(ChunkedPlan):
     def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
         """Response, and the peak of the last of the model's first two modes."""
         mode = min(model.properties.n_modes, 2) - 1
-        engine = Engine(model, asked_of(model) + modal_displacement(model, mode))
-        solution = engine.run(
-            motion.acceleration, motion.dt, free_vibration=self.free_vibration, work_limit=self.work_limit
-        )
-        usual = replace(solution, peaks=solution.peaks[:-1], peak_times=solution.peak_times[:-1])
-        return respond(model, motion.name, usual), float(solution.peaks[-1])
+        extra = modal_displacement(model, mode)
+        solution = Case(model, self.free_vibration, work_limit=self.work_limit, extra=extra).solve(motion)
+        return respond(model, motion.name, solution), float(solution.peaks[-1])
 
 
 def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
