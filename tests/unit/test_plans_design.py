@@ -171,7 +171,7 @@ def test_a_specification_that_is_wrong(changes, message):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"models": ["3DOF-fixed"]}, "models: 3DOF-fixed has a base that cannot lift, so its width is nothing."),
+        ({"models": ["3DOF-fixed"]}, "models: 3DOF-fixed has a fixed base, so the base width has no effect."),
         ({"tendons": [{}, {}]}, "tendons: 'no tendon' occurs more than once. Give each once."),
         (
             {"structures": [{"frame": FRAME, "tendons": [{"initial_force": 1e5, "stiffness": 1e6}]}]},

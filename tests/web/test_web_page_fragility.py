@@ -19,13 +19,13 @@ def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
     (fit,) = rf.fit_clouds(runs, "pgv")
     assert visitor.value('#fits [data-name="median"]') == pytest.approx(fit.outcomes.initiation.median)
     page.get_by_label("Intensity measure").select_option("sa_t1")
-    page.get_by_label("What is asked: that").select_option("nominal")
+    page.get_by_label("Limit state").select_option("nominal")
     (fit,) = rf.fit_clouds(runs, "sa_t1", nominal=True)
     page.wait_for_function(
         "m => Math.abs(document.querySelector('#fits [data-name=median]').dataset.value / m - 1) < 1e-9",
         arg=fit.outcomes.overturning.median,
     )
-    page.get_by_label("What is asked: that").select_option("rotation")
+    page.get_by_label("Limit state").select_option("rotation")
     visitor.fill("cloud.rotation", "7")
     assert "a rotation in rad, from 0.0001 to 1.5, but 7 was given" in visitor.error("cloud.rotation")
     visitor.fill("cloud.rotation", "0.02")
@@ -73,7 +73,7 @@ def test_a_cloud_that_yields(visitor, frame) -> None:
     visitor.run_study()
     suite, labels = rf.load_suite("fema-p695-far-field"), ["MDOF-S", "2DOF-S-BW"]
     runs = rf.run_cloud(frame, suite, labels, [1.0], free_vibration=10.0, bouc_wen=rf.BoucWen(0.05))
-    page.get_by_label("What is asked: that").select_option("rotation")
+    page.get_by_label("Limit state").select_option("rotation")
     visitor.fill("cloud.rotation", "0.02")
     beyond = (runs["status"] == "overturned") | (runs["max_rotation"] > 0.02)
     assert beyond[runs["model"] == "MDOF-S"].sum() != beyond[runs["model"] == "2DOF-S-BW"].sum()

@@ -140,7 +140,7 @@ def adequacy(
 
     A simplified model with k modes is enough if they carry the base moment of the fixed base, which decides when the
     base lifts, and have the frequencies of the uplifted structure: the first with one mode, the first two with more.
-    How many the base shear needs is told apart, since it takes more.
+    The number needed for base shear is reported separately, because it is larger.
 
     Parameters
     ----------

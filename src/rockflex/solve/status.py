@@ -22,8 +22,8 @@ class Status(IntEnum):
     ENDED = 0
     OVERTURNED = 1
     SETTLED = 2
-    PAUSED = 3  # the slice of work is used up, or the history is full: to be gone on with
-    LACKS_PHASE = 4  # a phase that was not met before comes next: to be gone on with
+    PAUSED = 3  # the slice of work is used up, or the history is full; the run continues at the next call
+    LACKS_PHASE = 4  # the run enters a phase that is not compiled yet; it continues once it is
     BROKEN = -1, "The impact law {law} failed", ""
     CHATTER = (
         -2,

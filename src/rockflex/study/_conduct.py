@@ -56,14 +56,14 @@ def run_study(
     study
         A `CloudStudy`, an `IncrementalStudy` or another, or the path of its TOML file.
     folder
-        Where the study is kept, as ``spec.json``, ``manifest.json`` and ``parts/*.parquet``. A folder in which this
-        very study was begun is gone on with, and nothing in it is computed twice. None keeps nothing.
+        Where the study is stored, as ``spec.json``, ``manifest.json`` and ``parts/*.parquet``. An existing folder of
+        this study is resumed; completed parts are skipped. With None nothing is stored.
     workers
         Number of threads here; None for one a core.
     dask
         Address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``, whose workers are to do the runs.
     any_version
-        Go on with a study that was begun with other versions of the libraries.
+        Resume a study that was started with other versions of the libraries.
     progress
         Called at the start and after every part.
 

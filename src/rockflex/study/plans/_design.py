@@ -144,7 +144,7 @@ class DesignPlan(CloudPlan):
         for model in bench.assumptions.models:
             if not model.lifts:
                 raise InputError(
-                    f"models: {model.label} has a base that cannot lift, so its width is nothing. Leave it out."
+                    f"models: {model.label} has a fixed base, so the base width has no effect. Leave it out."
                 )
         self._tendons = list(dict.fromkeys(design.tendon for design in designs))
         self._facts = [self._facts_of(design) for design in designs]

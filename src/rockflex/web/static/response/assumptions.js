@@ -1,4 +1,4 @@
-// What is assumed of impacts, and of a superstructure that yields.
+// Assumptions about impacts and yielding of the superstructure.
 
 import { h } from "../dom.js";
 import { select, slider, tableField, trouble } from "../form.js";

@@ -29,7 +29,7 @@ export default function fragilityTab(app) {
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
   const measures = ALL_MEASURES.map(([name, title]) => [name, title]);
   const measure = select("cloud.measure", "Intensity measure", measures, choice().measure, (value) => put({ measure: value }));
-  const limit = select("cloud.limit", "What is asked: that", LIMITS, choice().limit, (value) => put({ limit: value }));
+  const limit = select("cloud.limit", "Limit state", LIMITS, choice().limit, (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
     { unit: "rad", hint: "0.0001 to 1.5" });
   const offered = LEVELS.some(([value]) => value === choice().level) ? LEVELS

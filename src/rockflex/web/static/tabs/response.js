@@ -72,7 +72,7 @@ export default function responseTab(app) {
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       player.element,
       h("fieldset", {}, h("legend", {}, "What to compare"), scale, labels, free, h("p", { class: "error foot", role: "alert" })),
-      h("fieldset", {}, h("legend", {}, "What is assumed"), assumed.element)),
+      h("fieldset", {}, h("legend", {}, "Assumptions"), assumed.element)),
     results);
   results.append(app.downloads(element, FILES));
 
