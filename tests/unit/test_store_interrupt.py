@@ -1,5 +1,6 @@
 """Ctrl-C ends a study soon: the running chunks end, no further one begins, and the folder is free and whole."""
 
+import functools
 import os
 import signal
 import subprocess
@@ -21,7 +22,9 @@ PLAN = ToyPlan(n_chunks=30, delay=0.3)
 @pytest.mark.parametrize("wait", [0.0, 0.2])
 def test_an_interrupted_study_ends_soon(tmp_path: Path, wait: float) -> None:
     command = [sys.executable, toy_study.__file__, str(tmp_path), str(PLAN.n_chunks), str(PLAN.delay)]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+    # A shell lets its background jobs ignore Ctrl-C, and so would the study's process.
+    heed = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=heed) as process:
         while not (tmp_path / "parts" / "part-00000.parquet").exists():
             time.sleep(0.01)
         time.sleep(wait)
