@@ -138,6 +138,51 @@ def test_errors_of_building_stand_beside_the_field_that_they_name() -> None:
     assert caught.value.errors["structure.eccentricity"].startswith("eccentricity must be smaller than half_width, 1.0")
 
 
+LUMPED = {"stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": [3.0, 6.0], "base_mass": 1.0, "half_width": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("structure", "path", "text"),
+    [
+        # The message names stiffness and heights, too, and says mass where the field is masses.
+        (
+            {"lumped": LUMPED | {"masses": [0.0, 1.0], "damping_ratio": 0.0}},
+            "structure.lumped.masses",
+            "mass must be positive, but mass[0] = 0 kg was given.",
+        ),
+        (
+            {"lumped": LUMPED | {"masses": [1.0], "damping_ratio": 0.0}},
+            "structure.lumped.masses",
+            "mass must hold one mass for each of the 2 heights, but 1 were given.",
+        ),
+        (
+            {"lumped": LUMPED | {"masses": [1.0, 1.0], "damping_ratio": [0.5, 0.98, 0.0]}},
+            "structure.lumped.damping_ratio",
+            "damping_ratio must be one number, or one for each of the 2 modes",
+        ),
+        (
+            {"fish_bone": {"story_heights": [], "masses": 1.0, "column_stiffness": 1.0, "beam_stiffness": 1.0}
+             | {"base_mass": 1.0, "half_width": 1.0, "damping_ratio": 0.0}},
+            "structure.fish_bone.story_heights",
+            "story_heights must hold at least one height in m, but none was given.",
+        ),
+    ],
+)  # fmt: skip
+def test_the_field_of_an_error_is_that_of_the_form(structure, path, text) -> None:
+    with pytest.raises(Refusal) as caught:
+        structure_view(parse_state({"structure": structure}).structure)
+    (found,) = caught.value.errors.items()
+    assert found[0] == path
+    assert found[1].startswith(text)
+
+
+def test_errors_of_the_hysteresis_stand_beside_their_field() -> None:
+    yields = {"yield_displacement": 0.05, "gamma": 0.1, "beta": 0.4}
+    (found,) = errors({"structure": FRAME, "bouc_wen": yields}).items()
+    assert found[0] == "bouc_wen.gamma"
+    assert found[1].startswith("gamma must be positive and -gamma < beta <= gamma")
+
+
 def test_the_parameters_of_both_edges_are_shown() -> None:
     state = parse_state({"structure": PRESETS[-1]["structure"]})
     p = build(state.structure).properties

@@ -174,7 +174,10 @@ def adequacy(
     """
     p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
-        raise InputError("properties must have at least one mode, but a rigid structure was given: it needs none.")
+        raise InputError(
+            "properties must have at least one mode, but a rigid structure was given: it needs none.",
+            field="properties",
+        )
     limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= _SLACK * p.translational_inertia
@@ -210,7 +213,8 @@ def _mass_above(p: RockingProperties, base_mass: float) -> float:
     if mass < modal * (1.0 - _SLACK):
         raise InputError(
             f"base_mass must leave the {modal:.6g} kg that the modes move, but {base_mass:g} kg of m_tot = "
-            f"{p.m_tot:.6g} kg was given."
+            f"{p.m_tot:.6g} kg was given.",
+            field="base_mass",
         )
     return mass
 

@@ -182,8 +182,7 @@ def _check_assumed(state: State) -> None:
     try:
         state.hysteresis()
     except InputError as error:
-        said = str(error)
-        raise Refusal({f"bouc_wen.{said.split()[0]}": said}) from error
+        raise Refusal({f"bouc_wen.{error.field}": str(error)}) from error
 
 
 def _size(value: Any) -> int:

@@ -60,11 +60,13 @@ class BeamTable(StructureTable):
         lists = [name for name in _PROFILES if isinstance(given.get(name), list)]
         if z is None and lists:
             raise InputError(
-                f"{lists[0]} is a list, but its heights are not known. Add z, a list of as many heights in m."
+                f"{lists[0]} is a list, but its heights are not known. Add z, a list of as many heights in m.",
+                field=lists[0],
             )
         if z is not None and not lists:
             raise InputError(
-                "z holds heights, but nothing varies along them. Give a list of as many values, or leave z out."
+                "z holds heights, but nothing varies along them. Give a list of as many values, or leave z out.",
+                field="z",
             )
         given |= {name: (z, given[name]) for name in lists}
         if self.lumped_masses is not None:

@@ -128,7 +128,7 @@ class StructureEntry(Table):
         try:
             built = self.table.build(Path(folder))
         except InputError as error:
-            raise InputError(f"[{self.kind}]: {error}") from error
+            raise InputError(str(error), place=f"[{self.kind}]", field=error.field) from error
         if self.eccentricity:
             if isinstance(built, RockingProperties):
                 built = replace(built, eccentricity=self.eccentricity)
@@ -142,7 +142,7 @@ class StructureEntry(Table):
                 return replace(built, tendons=tendons)
             return Restrained(built, tendons)
         except InputError as error:
-            raise InputError(f"[[tendons]]: {error}") from error
+            raise InputError(str(error), place="[[tendons]]", field="tendons") from error
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is made from, by its key, such as "matrices.mass".
