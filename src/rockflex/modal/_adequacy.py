@@ -246,12 +246,11 @@ def _account(a: Adequacy, k: int, *, short: bool = False) -> str:
         (a.base_moment_left[k - 1], t.base_moment, "{} of the base moment is left out"),
         (bound[0], t.first_frequency, f"the first uplifted frequency is {at_most}{{}} too high"),
     ]
-    if k > 1:
-        named.append((bound[1], t.second_frequency, f"the second is {at_most}{{}} too high"))
     if short:
         named = [each for each in named if each[0] > each[1]]
-    if named[0][2].startswith("the second"):
-        named[0] = (*named[0][:2], named[0][2].replace("second", "second uplifted frequency", 1))
+    if k > 1 and (not short or bound[1] > t.second_frequency):
+        second = "the second" if named else "the second uplifted frequency"
+        named.append((bound[1], t.second_frequency, f"{second} is {at_most}{{}} too high"))
     said = [text.format(_percent(value)) + f" (allowed: {_percent(limit)})" for value, limit, text in named]
     *others, last = said
     return f"{', '.join(others)} and {last}" if others else last
