@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import Field
 
 import rockflex as rf
-from rockflex.structure.file import KINDS
-from rockflex.web._forms import forms
+from rockflex.structure.file import KINDS, Table
+from rockflex.web._forms import _fields, forms
 from rockflex.web._packing import envelope, plain
 from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
@@ -236,6 +237,23 @@ values = st.recursive(
 def test_any_value_is_a_state_or_a_refusal(value) -> None:
     with suppress(Refusal):
         assert isinstance(parse_state(value), State)
+
+
+def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
+    class Plate(Table):
+        depth: float = Field(description="how deep, in m below, it lies", json_schema_extra={"unit": "ft"})
+        area: float = Field(description="its area in m", json_schema_extra={"form": "a table of {}, a number in s"})
+
+    depth, area = _fields(Plate)
+    assert (depth["unit"], depth["help"]) == ("ft", "How deep, in m below, it lies.")
+    assert (area["unit"], area["help"]) == ("", "Its area in m.")
+    kinds = forms()["kinds"]
+    units = {(kind, each["name"]): each["unit"] for kind, table in kinds.items() for each in table["fields"]}
+    assert units["frame", "period"] == "s"
+    assert units["fish_bone", "beam_stiffness"] == "N m/rad"
+    assert units["properties", "top_height"] == "m"
+    assert units["modes", "omega"] == "rad/s"
+    assert units["frame", "aspect_ratio"] == ""
 
 
 FIELDS = [(kind, name) for kind, table in KINDS.items() for name in table.model_fields]
