@@ -239,6 +239,14 @@ def test_any_value_is_a_state_or_a_refusal(value) -> None:
         assert isinstance(parse_state(value), State)
 
 
+def test_what_has_no_balance_says_why() -> None:
+    held = FRAME | {"tendons": [{"initial_force": 1e5, "stiffness": 1e12}]}
+    for structure, none in ((FRAME, None), (held, "the tendons always bring it back")):
+        properties = structure_view(parse_state({"structure": structure}).structure)["properties"]
+        (alpha,) = (each for each in properties if each["symbol"] == "α")
+        assert ((alpha["value"] is None), alpha.get("none")) == (none is not None, none)
+
+
 def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
     class Plate(Table):
         depth: float = Field(description="how deep, in m below, it lies", json_schema_extra={"unit": "ft"})

@@ -158,7 +158,9 @@ def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, 
         ("θ_nom", nominal, "rad", limit),
     ]
     return [
-        {"symbol": symbol, "value": value, "unit": unit, "help": about + text} for symbol, value, unit, text in said
+        {"symbol": symbol, "value": value, "unit": unit, "help": about + text}
+        | ({"none": "the tendons always bring it back"} if value is None else {})
+        for symbol, value, unit, text in said
     ]
 
 
