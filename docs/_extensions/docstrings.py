@@ -16,6 +16,7 @@ from sphinx.application import Sphinx
 from sphinx.util.nodes import make_refnode
 
 import rockflex
+from rockflex.structure.file import expected
 from rockflex.study import plans
 
 SPANS = re.compile(r"(``.*?``|`[^`]*`|\*[A-Z][A-Za-z ]+\*)", re.DOTALL)  # literals, links, titles of books
@@ -35,7 +36,7 @@ def escape(app: Sphinx, what: str, name: str, obj: object, options: object, line
             default = (
                 "" if field.is_required() else f"; ``{field.get_default(call_default_factory=True)!r}`` by default"
             )
-            lines += [key, f"    {field.description or ''}{default}"]
+            lines += [key, f"    {expected(field)}{default}"]
     # Literals may run over the end of a line, so that the text is split as a whole.
     parts = SPANS.split("\n".join(lines))
     parts = [f"`{part}`" if part.startswith("`.") else part for part in parts]  # an attribute of what was just named

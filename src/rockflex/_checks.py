@@ -29,31 +29,33 @@ def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite
     if not low_enough or math.isnan(number) or (math.isinf(number) and not infinite):
         kind = "zero or positive" if zero else "positive"
         kind += "" if infinite else ", finite"
-        raise InputError(f"{name} must be a {kind} number in {unit}, but {shown(value)} was given.")
+        raise InputError(f"{name} must be a {kind} number in {unit}, but {shown(value)} was given.", field=name)
     return number
 
 
-def in_range(name: str, value: float, low: float, high: float, *, hint: str = "") -> float:
-    """Return `value` as a float in [low, high)."""
+def in_range(name: str, value: float, low: float, high: float, *, hint: str = "", field: str | None = None) -> float:
+    """Return `value` as a float in [low, high); `field` is the argument that a `name` such as zeta[1] is a part of."""
     number = _number(name, value, "")
     if not low <= number < high:
         message = f"{name} must lie in [{low:g}, {high:g}), but {shown(value)} was given."
-        raise InputError(f"{message} {hint}".rstrip())
+        raise InputError(f"{message} {hint}".rstrip(), field=field or name)
     return number
 
 
-def finite_vector(name: str, values: ArrayLike, unit: str) -> Float:
-    """Return `values` as a read-only one-dimensional float64 array of finite numbers."""
+def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None = None) -> Float:
+    """Return `values` as a read-only one-dimensional float64 array of finite numbers; `field` as in `in_range`."""
+    field = field or name
     array = float_array(values)
     if array is None:
-        raise InputError(f"{name} must be a sequence of numbers in {unit}, but {_kind(values)} was given.")
+        raise InputError(f"{name} must be a sequence of numbers in {unit}, but {_kind(values)} was given.", field=field)
     if array.ndim != 1:
-        raise InputError(f"{name} must be one-dimensional, but an array of shape {array.shape} was given.")
+        raise InputError(f"{name} must be one-dimensional, but an array of shape {array.shape} was given.", field=field)
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
         raise InputError(
             f"{name} must be finite, but {bad.size} of {array.size} values are not, the first "
-            f"({array[bad[0]]}) at index {bad[0]}. Remove or repair them before use."
+            f"({array[bad[0]]}) at index {bad[0]}. Remove or repair them before use.",
+            field=field,
         )
     array.setflags(write=False)
     return array
@@ -63,7 +65,9 @@ def finite(name: str, value: float, unit: str) -> float:
     """Return `value` as a finite float."""
     number = _float_or_none(value)
     if number is None or not math.isfinite(number):
-        raise InputError(f"{name} must be a finite number{unit and f' in {unit}'}, but {shown(value)} was given.")
+        raise InputError(
+            f"{name} must be a finite number{unit and f' in {unit}'}, but {shown(value)} was given.", field=name
+        )
     return number
 
 
@@ -82,23 +86,29 @@ def within(name: str, value: float, limit: float, unit: str) -> float:
     number = real_or_nan(value)
     if not abs(number) < limit:
         raise InputError(
-            f"{name} must be a number between {-limit:g} and {limit:g} {unit}, but {shown(value)} was given."
+            f"{name} must be a number between {-limit:g} and {limit:g} {unit}, but {shown(value)} was given.",
+            field=name,
         )
     return number
 
 
-def whole_number(name: str, value: SupportsIndex, low: int, high: int | None = None) -> int:
-    """Return `value` as an int of at least `low` and at most `high`; booleans and floats are refused."""
+def whole_number(
+    name: str, value: SupportsIndex, low: int, high: int | None = None, *, field: str | None = None
+) -> int:
+    """Return `value` as an int of at least `low` and at most `high`; booleans and floats are refused.
+
+    `field` as in `in_range`.
+    """
     span = f"of at least {low}" if high is None else f"from {low} to {high}"
     message = f"{name} must be a whole number {span}, but {shown(value)} was given."
     if isinstance(value, bool | np.bool_):
-        raise InputError(message)
+        raise InputError(message, field=field or name)
     try:
         number = operator.index(value)
     except TypeError as error:
-        raise InputError(message) from error
+        raise InputError(message, field=field or name) from error
     if number < low or (high is not None and number > high):
-        raise InputError(message)
+        raise InputError(message, field=field or name)
     return number
 
 
@@ -117,12 +127,13 @@ def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Float:
     ratios = finite_vector(name, values, "fractions of critical damping")
     if ratios.size != n_modes:
         raise InputError(
-            f"{name} must be one number, or one for each of the {n_modes} modes, but {ratios.size} were given."
+            f"{name} must be one number, or one for each of the {n_modes} modes, but {ratios.size} were given.",
+            field=name,
         )
     outside = np.flatnonzero((ratios < 0.0) | (ratios >= 1.0))
     if outside.size:
         first = int(outside[0])
-        in_range(f"{name}[{first}]", float(ratios[first]), 0.0, 1.0, hint=_DAMPING_HINT)
+        in_range(f"{name}[{first}]", float(ratios[first]), 0.0, 1.0, hint=_DAMPING_HINT, field=name)
     return ratios
 
 
@@ -134,16 +145,23 @@ def dimensions(values: ArrayLike) -> int:
         return 1
 
 
-def finite_matrix(name: str, values: ArrayLike, unit: str, shape: tuple[int, int]) -> Float:
-    """Return a float64 copy of `values` that has the given shape and finite entries only."""
+def finite_matrix(
+    name: str, values: ArrayLike, unit: str, shape: tuple[int, int], *, field: str | None = None
+) -> Float:
+    """Return a float64 copy of `values` that has the given shape and finite entries only; `field` as in `in_range`."""
+    field = field or name
     array = float_array(values)
     if array is None:
-        raise InputError(f"{name} must be a matrix of numbers in {unit}, but {_kind(values)} was given.")
+        raise InputError(f"{name} must be a matrix of numbers in {unit}, but {_kind(values)} was given.", field=field)
     if array.shape != shape:
-        raise InputError(f"{name} must have the shape {shape}, but an array of shape {array.shape} was given.")
+        raise InputError(
+            f"{name} must have the shape {shape}, but an array of shape {array.shape} was given.", field=field
+        )
     if not np.isfinite(array).all():
         row, column = (int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise InputError(f"{name} must be finite, but its entry [{row}, {column}] is {array[row, column]}.")
+        raise InputError(
+            f"{name} must be finite, but its entry [{row}, {column}] is {array[row, column]}.", field=field
+        )
     return array
 
 
@@ -168,7 +186,7 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
     """Return `value` if it is a `kind`."""
     if not isinstance(value, kind):
         given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
-        raise InputError(f"{name} must be of type {kind.__name__}, but {given} was given.")
+        raise InputError(f"{name} must be of type {kind.__name__}, but {given} was given.", field=name)
     return value
 
 
@@ -203,7 +221,7 @@ def _number(name: str, value: float, unit: str) -> float:
     number = _float_or_none(value)
     if number is None:
         of_unit = f" in {unit}" if unit else ""
-        raise InputError(f"{name} must be a number{of_unit}, but {shown(value)} was given.")
+        raise InputError(f"{name} must be a number{of_unit}, but {shown(value)} was given.", field=name)
     return number
 
 

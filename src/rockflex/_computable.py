@@ -9,13 +9,15 @@ from rockflex._errors import InputError
 
 
 @contextmanager
-def computable(what: str | Callable[[], str]) -> Generator[None]:
+def computable(what: str | Callable[[], str], field: str | None = None) -> Generator[None]:
     """Turn a failure of arithmetic into an error that says what cannot be computed; a block or a decorator.
 
     Parameters
     ----------
     what
         What is computed and from what, as the subject of a sentence; or a function that says so.
+    field
+        The argument that it depends on, where it is one.
 
     Raises
     ------
@@ -29,6 +31,8 @@ def computable(what: str | Callable[[], str]) -> Generator[None]:
         words = error.args[-1] if error.args else type(error).__name__
         subject = what if isinstance(what, str) else what()
         raise InputError(
-            f"{subject} cannot be computed: numbers arise that double precision cannot hold ({words}). Check the units "
-            "(kg, m, s, N, rad throughout), and whether values that belong together are many orders of magnitude apart."
+            f"{subject} cannot be computed: numbers arise that double precision cannot hold ({words}). Check the "
+            "units (kg, m, s, N, rad throughout), and whether values that belong together are many orders of magnitude "
+            "apart.",
+            field=field,
         ) from error

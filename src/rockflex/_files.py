@@ -26,7 +26,7 @@ def path_of(name: str, given: object) -> Path:
         If it is no path, or none that a file can have.
     """
     if not isinstance(given, str | Path):
-        raise InputError(f"{name} must be a path, but {type(given).__name__} was given.")
+        raise InputError(f"{name} must be a path, but {type(given).__name__} was given.", field=name)
     path = Path(given)
     try:
         os.fsencode(path)
@@ -37,7 +37,7 @@ def path_of(name: str, given: object) -> Path:
     except OSError as error:
         reason = error.strerror
     if reason:
-        raise InputError(f"{name} must be that of a file, but {shown(str(path))} was given: {reason}.")
+        raise InputError(f"{name} must be that of a file, but {shown(str(path))} was given: {reason}.", field=name)
     return path
 
 
@@ -61,7 +61,10 @@ def check_regular(path: Path, name: str = "") -> None:
     kind = irregular(path)
     if kind:
         remedy = "Give a file in it." if kind == "a folder" else "Write what it gives to a file, and give that."
-        raise InputError(f"{name}{': ' * bool(name)}{path} is {kind}, but a regular file is expected. {remedy}")
+        raise InputError(
+            f"{name}{': ' * bool(name)}{path} is {kind}, but a regular file is expected. {remedy}",
+            field=name or None,
+        )
 
 
 def write_whole(path: Path, content: bytes) -> Path:

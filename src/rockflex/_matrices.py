@@ -17,11 +17,12 @@ def checked_heights(heights: ArrayLike) -> Float:
     """Return the heights of the masses above the base (N,) in m, read-only: positive, strictly rising."""
     h = finite_vector("heights", heights, "m")
     if h.size == 0:
-        raise InputError("heights must hold at least one height in m, but none was given.")
+        raise InputError("heights must hold at least one height in m, but none was given.", field="heights")
     if h[0] <= 0.0:
         raise InputError(
             f"heights must be positive, in m above the base, but heights[0] = {h[0]:g} was given. "
-            "A mass at the base belongs to base_mass."
+            "A mass at the base belongs to base_mass.",
+            field="heights",
         )
     falls = np.flatnonzero(h[1:] <= h[:-1])
     if falls.size:
@@ -29,33 +30,39 @@ def checked_heights(heights: ArrayLike) -> Float:
         raise InputError(
             f"heights must rise from the base to the top, but heights[{i + 1}] = {h[i + 1]:g} m is not above "
             f"heights[{i}] = {h[i]:g} m. Sort the masses by height, with the rows and columns of the "
-            "matrices, and join masses at equal height."
+            "matrices, and join masses at equal height.",
+            field="heights",
         )
     return h
 
 
-def checked_mass(mass: ArrayLike, size: int) -> Float:
-    """Return the masses (N,), or the mass matrix (N, N), in kg, read-only: positive (definite)."""
+def checked_mass(mass: ArrayLike, size: int, *, field: str = "mass") -> Float:
+    """Return the masses (N,), or the mass matrix (N, N), in kg, read-only: positive (definite).
+
+    `field` is the argument that they were given as.
+    """
     if dimensions(mass) == 2:
-        return _symmetric_positive_definite("mass", mass, "kg", size)
-    m = finite_vector("mass", mass, "kg")
+        return _symmetric_positive_definite("mass", mass, "kg", size, field)
+    m = finite_vector("mass", mass, "kg", field=field)
     if m.size != size:
         raise InputError(
             f"mass must hold one mass for each of the {size} heights, but {m.size} were given. "
-            "The mass of the base goes to base_mass."
+            "The mass of the base goes to base_mass.",
+            field=field,
         )
     if m.min() <= 0.0:
         i = int(np.argmin(m))
         raise InputError(
             f"mass must be positive, but mass[{i}] = {m[i]:g} kg was given. "
-            "Condense massless floors out of the stiffness matrix first."
+            "Condense massless floors out of the stiffness matrix first.",
+            field=field,
         )
     return m
 
 
 def checked_stiffness(stiffness: ArrayLike, size: int) -> Float:
     """Return the stiffness matrix (N, N) in N/m, read-only: symmetric and positive definite."""
-    return _symmetric_positive_definite("stiffness", stiffness, "N/m", size)
+    return _symmetric_positive_definite("stiffness", stiffness, "N/m", size, "stiffness")
 
 
 def mass_times(mass: Float, vectors: Float) -> Float:
@@ -66,15 +73,16 @@ def mass_times(mass: Float, vectors: Float) -> Float:
 
 
 @computable("Whether a matrix is positive definite")
-def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: int) -> Float:
-    matrix = finite_matrix(name, values, unit, (size, size))
+def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: int, field: str) -> Float:
+    matrix = finite_matrix(name, values, unit, (size, size), field=field)
     asymmetry = np.abs(matrix - matrix.T)
     if asymmetry.max() > _SYMMETRY_TOLERANCE * np.abs(matrix).max():
         i, j = sorted(int(k) for k in np.unravel_index(np.argmax(asymmetry), asymmetry.shape))
         raise InputError(
             f"{name} must be symmetric, but {name}[{i}, {j}] = {matrix[i, j]:.9g} and "
             f"{name}[{j}, {i}] = {matrix[j, i]:.9g} {unit}. "
-            "Check the assembly; a result of condensation that is not symmetric hints at an error in it."
+            "Check the assembly; a result of condensation that is not symmetric hints at an error in it.",
+            field=field,
         )
     matrix = 0.5 * (matrix + matrix.T)
     eigenvalues = np.linalg.eigvalsh(matrix)
@@ -82,7 +90,8 @@ def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: 
     if eigenvalues[0] <= size * np.finfo(float).eps * abs(eigenvalues[-1]):
         raise InputError(
             f"{name} must be positive definite, but its smallest eigenvalue is {eigenvalues[0]:.3g} {unit} "
-            f"(the largest is {eigenvalues[-1]:.3g}). {_MEND[name]}"
+            f"(the largest is {eigenvalues[-1]:.3g}). {_MEND[name]}",
+            field=field,
         )
     matrix.setflags(write=False)
     return matrix

@@ -96,10 +96,19 @@ def test_missing_unit_and_step_name_the_options(record):
 
 
 def test_other_faults_of_a_file_are_told_as_they_are(tmp_path):
-    path = tmp_path / "empty.csv"
-    path.touch()
-    with pytest.raises(InputError, match=r"empty\.csv is empty\.$"):
-        find_motions([str(path)])
+    for name in ("empty.csv", "units=g, dt=0.01.csv"):
+        path = tmp_path / name
+        path.touch()
+        with pytest.raises(InputError, match=r"\.csv is empty\.$"):
+            find_motions([str(path)])
+
+
+def test_options_are_named_where_one_of_several_files_lacks_its_unit(tmp_path, record):
+    (tmp_path / "empty.csv").touch()
+    told = r"2 of 2 files .*is empty\. .*unit of its acceleration.* On the command line these are --units and --dt\.$"
+    with pytest.raises(InputError, match=told) as caught:
+        find_motions([str(tmp_path / "empty.csv"), str(record)], dt=0.01)
+    assert caught.value.field == "units"
 
 
 def at2(folder, name, component):

@@ -1,16 +1,19 @@
 """``rockflex run``: what is printed and written agrees with the library."""
 
 import csv
+import io
 import json
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 import rockflex as rf
 from rockflex.cli import _run_output, _simulations, app
+from rockflex.cli._console import Styled, grid
 from rockflex.response import PEAKS
 from rockflex.study import Case
 
@@ -157,6 +160,13 @@ def test_narrow_terminal_gets_a_table_a_motion_and_nothing_is_cut():
         assert "…" not in text
         for word in ("overturned †", "no uplift", "t(θ_max)", "19.159", "0.7 atan(B/h*_1)"):
             assert word in text
+
+
+def test_colours_are_of_statuses_and_not_of_whatever_reads_like_one():
+    written = io.StringIO()
+    table = grid(["motion", "status"], [["overturned", Styled("rocking †", "yellow")]], 2)
+    Console(file=written, force_terminal=True, color_system="standard", width=60).print(table)
+    assert "\noverturned  \x1b[33mrocking †\x1b[0m" in written.getvalue()
 
 
 def test_times_are_those_of_the_peaks():

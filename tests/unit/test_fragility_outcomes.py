@@ -1,6 +1,7 @@
 """Three outcomes: their parts against single fits, the total probability, and groups that are empty or small."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -95,6 +96,10 @@ def test_two_rocking_runs_are_told_and_give_nan_where_they_count():
     assert any("Only 2 of 40 runs rock and stand" in note for note in fit.notes)
     assert any(note.startswith("rotation: A cloud needs at least 3 runs") for note in fit.notes)
     assert any(note.startswith("rocking: Separated between") for note in fit.notes)
+    kinds = [note.kind for note in fit.notes]
+    assert set(kinds) == {"runs", "overturning", "rocking", "initiation", "rotation"}
+    assert all(kind == "runs" or note.startswith(f"{kind}: ") for kind, note in zip(kinds, fit.notes, strict=True))
+    assert [note.kind for note in pickle.loads(pickle.dumps(fit)).notes] == kinds
 
 
 def test_standing_runs_of_one_measure_leave_their_part_out():

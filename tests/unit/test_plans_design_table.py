@@ -163,6 +163,7 @@ def test_what_a_row_says_of_itself(runs):
     assert (quiet["rate"] == 0.0).all()
     assert quiet["low"].isna().all()
     assert quiet["note"].str.contains("rocking: none of 88 runs").all()
+    assert not quiet["note"].str.contains("initiation").any()  # of a fit that the answer does not use
     alone = rf.design_table(altered(runs, group="one"), 0.02, at=0.6)
     assert alone["note"].str.contains("No band: all runs belong to one recording.").all()
     few = runs[(runs["half_width"] == 1.6) & runs["motion"].isin(["FF-1-a", "FF-2-a", "FF-3-a"])]

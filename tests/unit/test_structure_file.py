@@ -8,7 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 import rockflex as rf
-from rockflex.structure.file import KINDS, StructureEntry, Table, checked
+from rockflex.structure.file import KINDS, StructureEntry, Table, beside, checked, expected
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
@@ -384,6 +384,9 @@ def test_every_key_is_described(model):
     for name, field in model.model_fields.items():
         assert field.description, name
         assert not field.description.endswith(".")
+        form, unit = beside(field, "form"), beside(field, "unit")
+        assert expected(field) == (form.format(field.description) if form else field.description)
+        assert (" a number in " not in form) or form == f"{{}}, a number in {unit}"
 
 
 @pytest.mark.parametrize("text", ["x = " + "[" * 5000 + "]" * 5000, "x = " + "{a = " * 5000 + "1" + "}" * 5000])

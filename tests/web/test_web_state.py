@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import Field
 
 import rockflex as rf
-from rockflex.structure.file import KINDS
-from rockflex.web._forms import forms
+from rockflex.structure.file import KINDS, Table
+from rockflex.web._forms import _fields, forms
 from rockflex.web._packing import envelope, plain
 from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
@@ -138,6 +139,51 @@ def test_errors_of_building_stand_beside_the_field_that_they_name() -> None:
     assert caught.value.errors["structure.eccentricity"].startswith("eccentricity must be smaller than half_width, 1.0")
 
 
+LUMPED = {"stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": [3.0, 6.0], "base_mass": 1.0, "half_width": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("structure", "path", "text"),
+    [
+        # The message names stiffness and heights, too, and says mass where the field is masses.
+        (
+            {"lumped": LUMPED | {"masses": [0.0, 1.0], "damping_ratio": 0.0}},
+            "structure.lumped.masses",
+            "mass must be positive, but mass[0] = 0 kg was given.",
+        ),
+        (
+            {"lumped": LUMPED | {"masses": [1.0], "damping_ratio": 0.0}},
+            "structure.lumped.masses",
+            "mass must hold one mass for each of the 2 heights, but 1 were given.",
+        ),
+        (
+            {"lumped": LUMPED | {"masses": [1.0, 1.0], "damping_ratio": [0.5, 0.98, 0.0]}},
+            "structure.lumped.damping_ratio",
+            "damping_ratio must be one number, or one for each of the 2 modes",
+        ),
+        (
+            {"fish_bone": {"story_heights": [], "masses": 1.0, "column_stiffness": 1.0, "beam_stiffness": 1.0}
+             | {"base_mass": 1.0, "half_width": 1.0, "damping_ratio": 0.0}},
+            "structure.fish_bone.story_heights",
+            "story_heights must hold at least one height in m, but none was given.",
+        ),
+    ],
+)  # fmt: skip
+def test_the_field_of_an_error_is_that_of_the_form(structure, path, text) -> None:
+    with pytest.raises(Refusal) as caught:
+        structure_view(parse_state({"structure": structure}).structure)
+    (found,) = caught.value.errors.items()
+    assert found[0] == path
+    assert found[1].startswith(text)
+
+
+def test_errors_of_the_hysteresis_stand_beside_their_field() -> None:
+    yields = {"yield_displacement": 0.05, "gamma": 0.1, "beta": 0.4}
+    (found,) = errors({"structure": FRAME, "bouc_wen": yields}).items()
+    assert found[0] == "bouc_wen.gamma"
+    assert found[1].startswith("gamma must be positive and -gamma < beta <= gamma")
+
+
 def test_the_parameters_of_both_edges_are_shown() -> None:
     state = parse_state({"structure": PRESETS[-1]["structure"]})
     p = build(state.structure).properties
@@ -191,6 +237,31 @@ values = st.recursive(
 def test_any_value_is_a_state_or_a_refusal(value) -> None:
     with suppress(Refusal):
         assert isinstance(parse_state(value), State)
+
+
+def test_what_has_no_balance_says_why() -> None:
+    held = FRAME | {"tendons": [{"initial_force": 1e5, "stiffness": 1e12}]}
+    for structure, none in ((FRAME, None), (held, "the tendons always bring it back")):
+        properties = structure_view(parse_state({"structure": structure}).structure)["properties"]
+        (alpha,) = (each for each in properties if each["symbol"] == "α")
+        assert ((alpha["value"] is None), alpha.get("none")) == (none is not None, none)
+
+
+def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
+    class Plate(Table):
+        depth: float = Field(description="how deep, in m below, it lies", json_schema_extra={"unit": "ft"})
+        area: float = Field(description="its area in m", json_schema_extra={"form": "a table of {}, a number in s"})
+
+    depth, area = _fields(Plate)
+    assert (depth["unit"], depth["help"]) == ("ft", "How deep, in m below, it lies.")
+    assert (area["unit"], area["help"]) == ("", "Its area in m.")
+    kinds = forms()["kinds"]
+    units = {(kind, each["name"]): each["unit"] for kind, table in kinds.items() for each in table["fields"]}
+    assert units["frame", "period"] == "s"
+    assert units["fish_bone", "beam_stiffness"] == "N m/rad"
+    assert units["properties", "top_height"] == "m"
+    assert units["modes", "omega"] == "rad/s"
+    assert units["frame", "aspect_ratio"] == ""
 
 
 FIELDS = [(kind, name) for kind, table in KINDS.items() for name in table.model_fields]

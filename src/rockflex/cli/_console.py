@@ -4,7 +4,7 @@ import math
 import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from rockflex._errors import RecordWarning
 
@@ -50,6 +50,18 @@ def output() -> "Console":
     return Console(highlight=False)
 
 
+class Styled(str):
+    """A cell of a table, and the style that it is written in."""
+
+    __slots__ = ("style",)
+    style: str
+
+    def __new__(cls, text: str, style: str) -> Self:
+        cell = super().__new__(cls, text)
+        cell.style = style
+        return cell
+
+
 def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
     """Return a table whose first `n_left` columns are words, aligned to the left, and the others numbers."""
     from rich import box
@@ -63,11 +75,8 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
         text = Text(heading.replace(" [", "\n[").replace("u_top ", "u_top\n"))
         table.add_column(text, justify="left" if place < n_left else "right", no_wrap=True, vertical="bottom")
     for row in rows:
-        table.add_row(*(Text(cell, style=STYLES.get(cell.rstrip(" †"), "")) for cell in row))
+        table.add_row(*(Text(cell, style=getattr(cell, "style", "")) for cell in row))
     return table
-
-
-STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no uplift": "green"}
 
 
 @contextmanager

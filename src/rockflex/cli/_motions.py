@@ -132,9 +132,9 @@ def _files(name: str) -> list[Path]:
 
 def _read(files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError) -> dict[Path, GroundMotion]:
     try:
-        return read_files(files, units, dt, on_error)
+        return read_files(files, units, dt, on_error, skip="--on-error skip")
     except InputError as error:
-        text = str(error).replace('on_error="skip"', "--on-error skip")
-        if "units=" in text or "dt=" in text:
-            text += " On the command line these are --units and --dt."
-        raise InputError(text, longest=len(text)) from error
+        if error.field not in ("units", "dt"):
+            raise
+        text = f"{error} On the command line these are --units and --dt."
+        raise InputError(text, longest=len(text), field=error.field) from error

@@ -113,6 +113,7 @@ def run(
     from rockflex.cli._run_tables import print_failures, print_runs, print_warnings
     from rockflex.cli._simulations import Plan, perform, warm_up
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
+    from rockflex.models import parse_model
 
     check_folder(out, force=force)
     file, names = split_arguments(structure, arguments or [])
@@ -129,7 +130,7 @@ def run(
     assumptions = make_assumptions(file, loaded.assumed, flags, initial_rotation)
     by_flag = any(value is not None for value in hysteresis.values())
     models = choose_models(model, loaded.properties, assumptions, by_flag=by_flag)
-    if assumptions.bouc_wen is not None and not any("-BW" in label for label in models):
+    if assumptions.bouc_wen is not None and not any(parse_model(label).yields for label in models):
         note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was asked for")
     free = parse_free_vibration(free_vibration, models)
     names += motion or []

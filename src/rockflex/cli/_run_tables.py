@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rockflex.cli._console import fits, grid, moment_unit, note, number, output, show
+from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
 from rockflex.cli._simulations import SLIDING, Plan, Run
 from rockflex.response import IMPACT_WINDOW
 
@@ -22,6 +22,7 @@ FRICTION = (
     "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
     "the base slides where it passes {mu:g}"
 )
+STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no_uplift": "green"}
 Columns = list[tuple[str, list[str]]]
 
 
@@ -153,6 +154,5 @@ def _column(runs: Sequence[Run], name: str, size: float = 1.0, digits: int = 4) 
 
 
 def _status(run: Run) -> str:
-    if run.status is None:
-        return "failed"
-    return run.status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else "")
+    status = run.status or "failed"
+    return Styled(status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else ""), STYLES[status])

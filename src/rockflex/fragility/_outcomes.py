@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import overload
+from typing import Self, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,18 @@ from rockflex.fragility._unanimous import UnanimousOutcome
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 FEW = 10  # runs below which a note is left
+
+
+class Note(str):
+    """A text to know before fits are used, and its `kind`: "runs", or the fit that it is about, such as "rocking"."""
+
+    __slots__ = ("kind",)
+    kind: str
+
+    def __new__(cls, text: str, kind: str = "runs") -> Self:
+        note = super().__new__(cls, text)
+        note.kind = kind
+        return note
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +76,8 @@ class OutcomeFragility(Value):
     n_no_rocking, n_rocking, n_overturned : int
         Runs of each outcome.
     notes : tuple of str
-        What to know before the fits are used: parts that rest on few runs, or could not be fitted.
+        What to know before the fits are used: parts that rest on few runs, or could not be fitted. The `kind` of each
+        is ``"runs"`` or the attribute above that it is about.
     """
 
     overturning: LogisticFit | UnanimousOutcome
@@ -76,7 +89,7 @@ class OutcomeFragility(Value):
     n_no_rocking: int
     n_rocking: int
     n_overturned: int
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
     def probabilities(self, im: ArrayLike) -> OutcomeProbabilities:
         """Probabilities of no rocking, rocking, and overturning, each of the shape of `im`."""
@@ -143,7 +156,7 @@ def fit_outcomes(
     rocked = stands & moves
     counts = int((~moves).sum()), int(rocked.sum()), int(falls.sum())
     notes = [
-        f"Only {count} of {falls.size} runs {what}: what rests on them is uncertain, see bootstrap_band."
+        Note(f"Only {count} of {falls.size} runs {what}: what rests on them is uncertain, see bootstrap_band.")
         for count, what in zip(counts, ("do not rock", "rock and stand", "overturn"), strict=True)
         if 0 < count < FEW
     ]
@@ -176,29 +189,29 @@ def _check(rotations: Float, falls: Bool, threshold: float) -> None:
         )
 
 
-def _curve(name: str, im: Float, outcome: Bool, notes: list[str]) -> LogisticFit | UnanimousOutcome | None:
+def _curve(name: str, im: Float, outcome: Bool, notes: list[Note]) -> LogisticFit | UnanimousOutcome | None:
     if outcome.size == 0:
-        notes.append(f"{name}: no run stands, so there is nothing to fit.")
+        notes.append(Note(f"{name}: no run stands, so there is nothing to fit.", name))
         return None
     if outcome.all() or not outcome.any():
         alike = UnanimousOutcome(bool(outcome[0]), outcome.size)
-        notes.append(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}")
+        notes.append(Note(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name))
         return alike
     try:
         fit = fit_logistic(im, outcome)
     except (InputError, SolverError) as error:
-        notes.append(f"{name}: {error}")
+        notes.append(Note(f"{name}: {error}", name))
         return None
     if fit.note:
-        notes.append(f"{name}: {fit.note}")
+        notes.append(Note(f"{name}: {fit.note}", name))
     return fit
 
 
-def _cloud(im: Float, rotation: Float, notes: list[str]) -> CloudFit | None:
+def _cloud(im: Float, rotation: Float, notes: list[Note]) -> CloudFit | None:
     try:
         return fit_cloud(im, rotation)
     except InputError as error:
-        notes.append(f"rotation: {error}")
+        notes.append(Note(f"rotation: {error}", "rotation"))
         return None
 
 

@@ -174,7 +174,10 @@ def adequacy(
     """
     p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
-        raise InputError("properties must have at least one mode, but a rigid structure was given: it needs none.")
+        raise InputError(
+            "properties must have at least one mode, but a rigid structure was given: it needs none.",
+            field="properties",
+        )
     limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= _SLACK * p.translational_inertia
@@ -210,7 +213,8 @@ def _mass_above(p: RockingProperties, base_mass: float) -> float:
     if mass < modal * (1.0 - _SLACK):
         raise InputError(
             f"base_mass must leave the {modal:.6g} kg that the modes move, but {base_mass:g} kg of m_tot = "
-            f"{p.m_tot:.6g} kg was given."
+            f"{p.m_tot:.6g} kg was given.",
+            field="base_mass",
         )
     return mass
 
@@ -242,12 +246,11 @@ def _account(a: Adequacy, k: int, *, short: bool = False) -> str:
         (a.base_moment_left[k - 1], t.base_moment, "{} of the base moment is left out"),
         (bound[0], t.first_frequency, f"the first uplifted frequency is {at_most}{{}} too high"),
     ]
-    if k > 1:
-        named.append((bound[1], t.second_frequency, f"the second is {at_most}{{}} too high"))
     if short:
         named = [each for each in named if each[0] > each[1]]
-    if named[0][2].startswith("the second"):
-        named[0] = (*named[0][:2], named[0][2].replace("second", "second uplifted frequency", 1))
+    if k > 1 and (not short or bound[1] > t.second_frequency):
+        second = "the second" if named else "the second uplifted frequency"
+        named.append((bound[1], t.second_frequency, f"{second} is {at_most}{{}} too high"))
     said = [text.format(_percent(value)) + f" (allowed: {_percent(limit)})" for value, limit, text in named]
     *others, last = said
     return f"{', '.join(others)} and {last}" if others else last

@@ -69,7 +69,8 @@ def rocking_properties(
     if not np.array_equal(h, instance("modal", modal, ModalProperties).heights):
         raise InputError(
             f"heights must be those of the modal analysis, {modal.heights}, but {h} was given. "
-            "Run modal_properties anew for other heights."
+            "Run modal_properties anew for other heights.",
+            field="heights",
         )
     m = checked_mass(mass, h.size)
     base = positive("base_mass", base_mass, "kg", zero=True)

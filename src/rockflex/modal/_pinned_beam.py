@@ -63,7 +63,9 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     The limit k_r → 0 is that of Wiebe & Christopoulos, cited in Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
     """
     if not one_of(behaviour, ("flexure", "shear")):
-        raise InputError(f'behaviour must be "flexure" or "shear", but {shown(behaviour)} was given.')
+        raise InputError(
+            f'behaviour must be "flexure" or "shear", but {shown(behaviour)} was given.', field="behaviour"
+        )
     k = positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
     n = whole_number("n_modes", n_modes, 1, MOST_MODES)
     flexure = behaviour == "flexure"

@@ -76,7 +76,8 @@ def checked_side(side: int) -> int:
     """
     if real_or_nan(side) not in (1.0, -1.0):
         raise InputError(
-            f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given."
+            f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given.",
+            field="side",
         )
     return int(side)
 

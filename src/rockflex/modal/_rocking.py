@@ -133,7 +133,9 @@ class RockingProperties(Value):
         n_modes = modes["omega"].size
         inertia = checked_inertia(modes, scalars, translational_inertia)
         if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
-            raise InputError(f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.")
+            raise InputError(
+                f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.", field="floors"
+            )
         damping = damping_ratios("zeta", zeta, n_modes)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
         held = tendons_within(tendon_set(tendons), scalars["half_width"], e)

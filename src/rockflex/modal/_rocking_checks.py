@@ -21,21 +21,24 @@ def check_modes(modes: dict[str, Float]) -> None:
     for name, values in modes.items():
         if values.size != omega.size:
             raise InputError(
-                f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given."
+                f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given.",
+                field=name,
             )
     for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
         if values.min(initial=np.inf) <= 0.0:
             i = int(np.argmin(values))
             raise InputError(
                 f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. "
-                "Leave out modes that do not take part."
+                "Leave out modes that do not take part.",
+                field=name,
             )
     falls = np.flatnonzero(omega[1:] < omega[:-1])
     if falls.size:
         i = int(falls[0])
         raise InputError(
             f"omega must rise from mode to mode, but omega[{i + 1}] = {omega[i + 1]:g} rad/s is below "
-            f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency."
+            f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency.",
+            field="omega",
         )
 
 
@@ -45,7 +48,8 @@ def checked_eccentricity(modes: dict[str, Float], scalars: dict[str, float], ine
     if not abs(e) < b:
         raise InputError(
             f"eccentricity must be smaller than half_width, {b:g} m, to either side, but {e:g} m was given. It is how "
-            "far the axis of the masses stands to the right of the middle of the base; check the units too."
+            "far the axis of the masses stands to the right of the middle of the base; check the units too.",
+            field="eccentricity",
         )
     modal_inertia = float(modes["effective_mass"] @ modes["effective_height"] ** 2)
     nearer = pivot_inertia(abs(e), b, scalars["i_theta"], inertia, scalars["m_tot"])
@@ -53,7 +57,8 @@ def checked_eccentricity(modes: dict[str, Float], scalars: dict[str, float], ine
         raise InputError(
             f"eccentricity must leave inertia to rotate about the nearer pivot, but with {e:.9g} m of half_width = "
             f"{b:.9g} m only the {modal_inertia:.9g} kg m² of the modes are left. Move the axis of the masses further "
-            "from the edge of the base."
+            "from the edge of the base.",
+            field="eccentricity",
         )
     return e
 
@@ -87,7 +92,8 @@ def checked_base_mass(modes: dict[str, Float], m_tot: float, inertia: float, giv
         if m_tot - base < modal_mass - SLACK * m_tot:
             raise InputError(
                 f"base_mass must leave the {modal_mass:.9g} kg that the modes move, but {base:.9g} kg of m_tot = "
-                f"{m_tot:.9g} kg was given."
+                f"{m_tot:.9g} kg was given.",
+                field="base_mass",
             )
         return base
     complete = mass.size > 0 and float(mass @ modes["effective_height"] ** 2) >= (1.0 - SLACK) * inertia
@@ -103,13 +109,15 @@ def checked_inertia(modes: dict[str, Float], scalars: dict[str, float], given: f
     if m_tot < modal_mass * (1.0 - SLACK):
         raise InputError(
             f"m_tot must be at least the sum of effective_mass, {modal_mass:.9g} kg, but {m_tot:.9g} kg was "
-            "given. It is the mass of the whole structure with its base; check the units too."
+            "given. It is the mass of the whole structure with its base; check the units too.",
+            field="m_tot",
         )
     if i_theta <= modal_inertia:
         raise InputError(
             "i_theta must exceed the sum of effective_mass * effective_height**2, "
             f"{modal_inertia:.9g} kg m², but {i_theta:.9g} kg m² was given: no inertia is left to rotate. "
-            "It is taken about a pivot, with the base; check the units too."
+            "It is taken about a pivot, with the base; check the units too.",
+            field="i_theta",
         )
     source = "i_theta - m_tot * half_width**2, its default," if given is None else "what was given"
     if given is None:
@@ -120,13 +128,15 @@ def checked_inertia(modes: dict[str, Float], scalars: dict[str, float], given: f
         raise InputError(
             "translational_inertia must be at least the sum of effective_mass * effective_height**2, "
             f"{modal_inertia:.9g} kg m², and below i_theta, {i_theta:.9g} kg m², but {source} is "
-            f"{inertia:.9g} kg m². Give the sum of m_i h_i² over the masses above the base."
+            f"{inertia:.9g} kg m². Give the sum of m_i h_i² over the masses above the base.",
+            field="translational_inertia",
         )
     least = inertia + m_tot * scalars["half_width"] ** 2
     if i_theta < least * (1.0 - PRINTED):
         raise InputError(
             "i_theta must be at least translational_inertia + m_tot * half_width**2, "
             f"{least:.9g} kg m², but {i_theta:.9g} kg m² was given. It is taken about a pivot, so it changes with the "
-            "base: properties.with_half_width(B) is the same structure on another one."
+            "base: properties.with_half_width(B) is the same structure on another one.",
+            field="i_theta",
         )
     return max(inertia, modal_inertia)

@@ -53,7 +53,8 @@ class Tendon:
             if self.initial_force > limit:
                 raise InputError(
                     f"initial_force must not exceed yield_force, {limit:g} N, but {self.initial_force:g} N was given. "
-                    "A tendon that has yielded is not elastic; check the units too."
+                    "A tendon that has yielded is not elastic; check the units too.",
+                    field="initial_force",
                 )
 
 
@@ -69,7 +70,8 @@ def tendon_set(given: Any) -> tuple[Tendon, ...]:
     for item in items:
         if not isinstance(item, Tendon):
             raise InputError(
-                f"tendons must be Tendon objects, but {shown(item)} was given. Write Tendon(initial_force, stiffness)."
+                f"tendons must be Tendon objects, but {shown(item)} was given. Write Tendon(initial_force, stiffness).",
+                field="tendons",
             )
     return items
 

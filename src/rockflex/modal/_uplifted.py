@@ -197,7 +197,9 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     pivot = _pivot(instance("properties", properties, RockingProperties), side)
     frequencies = float_array(omega)
     if frequencies is None or not (np.abs(frequencies) < HIGHEST).all():
-        raise InputError(f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given.")
+        raise InputError(
+            f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given.", field="omega"
+        )
     square = frequencies[..., None] ** 2
     inertia = properties.effective_mass * properties.effective_height**2
     gap = properties.omega**2 - square

@@ -49,15 +49,19 @@ class BoucWen:
         if not 0.0 <= self.post_yield_ratio < 1.0:
             raise InputError(
                 f"post_yield_ratio must lie in [0, 1), but {shown(self.post_yield_ratio)} was given. "
-                "Give the stiffness after yielding over the elastic one; for an elastic structure leave bouc_wen out."
+                "Give the stiffness after yielding over the elastic one; for an elastic structure leave bouc_wen out.",
+                field="post_yield_ratio",
             )
         if self.exponent < 1.0:
             raise InputError(
-                f"exponent must be at least 1, but {shown(self.exponent)} was given. 8 is a sharp yield, 1 a round one."
+                f"exponent must be at least 1, but {shown(self.exponent)} was given. 8 is a sharp yield, 1 a round "
+                "one.",
+                field="exponent",
             )
         if not (self.gamma > 0.0 and abs(self.beta) <= self.gamma and self.gamma + self.beta > 0.0):
             raise InputError(
                 f"gamma must be positive and -gamma < beta <= gamma, but gamma={shown(self.gamma)} and "
                 f"beta={shown(self.beta)} were given: the spring would give back more energy than it takes. The paper "
-                "has 0.5 for both."
+                "has 0.5 for both.",
+                field="gamma",
             )

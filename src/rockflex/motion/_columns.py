@@ -43,7 +43,9 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
     values = np.array([number(cells[column], file, line) for line, cells in rows])
     if time_column is None:
         if dt is None:
-            raise InputError(f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01).")
+            raise InputError(
+                f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01).", field="dt"
+            )
         step = dt
     else:
         if labels:
@@ -140,13 +142,15 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
         )
     if stated and units and stated != units:
         raise InputError(
-            f"{file}: the column header says {stated}, but units={shown(units)} was given. Leave units out."
+            f"{file}: the column header says {stated}, but units={shown(units)} was given. Leave units out.",
+            field="units",
         )
     if stated or units:
         return stated or str(units)
     raise InputError(
         f"{file} does not say the unit of its acceleration. Declare it: "
-        'read_motion(path, units="g"), "m/s2" or "cm/s2"; or head the column "acc (g)".'
+        'read_motion(path, units="g"), "m/s2" or "cm/s2"; or head the column "acc (g)".',
+        field="units",
     )
 
 
@@ -175,7 +179,8 @@ def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float
             k = int(np.argmax(away))
             raise InputError(
                 f"{file}, line {lines[k]}: the time {times[k]:g} s does not fit dt={shown(dt)} s. "
-                "Leave dt out, or remove the column of times."
+                "Leave dt out, or remove the column of times.",
+                field="dt",
             )
         return dt
     uneven = np.abs(steps - steps[0]) > 1e-3 * steps[0]
@@ -184,7 +189,8 @@ def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float
         raise InputError(
             f"{file}, line {lines[k + 1]}: the time step is {steps[k]:.6g} s, but {steps[0]:.6g} s before. "
             "Equal steps are expected: resample the record, for example with numpy.interp, or, where the "
-            "times are only rounded in print, give the step: read_motion(path, dt=...)."
+            "times are only rounded in print, give the step: read_motion(path, dt=...).",
+            field="dt",
         )
     # The mean is better than one printed difference; twelve digits drop the rounding of the subtraction.
     return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")

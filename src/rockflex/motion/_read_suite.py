@@ -69,25 +69,31 @@ def read_suite(
 
 
 def read_files(
-    files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError
+    files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError, skip: str = 'on_error="skip"'
 ) -> dict[Path, GroundMotion]:
-    """Read the horizontal components among record files, by their file; see `read_suite`."""
+    """Read the horizontal components among record files, by their file; see `read_suite`.
+
+    `skip` is how a message says what goes on with the other files.
+    """
     if on_error not in get_args(OnError):
         raise InputError(f'on_error must be "raise" or "skip", but {shown(on_error)} was given.')
     motions: dict[Path, GroundMotion] = {}
     faults: dict[Path, str] = {}
+    fields: list[str | None] = []
     for file in files:
         try:
             motions[file] = read_motion(file, units=units, dt=dt)
         except InputError as error:
             faults[file] = str(error)
+            fields.append(error.field)
     vertical = [file for file, motion in motions.items() if is_vertical(motion)]
     horizontal = {file: motion for file, motion in motions.items() if not is_vertical(motion)}
     if faults:
         told = _told(faults, len(files))
         if on_error == "raise" or not motions:
-            told += ' on_error="skip" goes on with the other files.' if motions else ""
-            raise InputError(told, longest=NAMES)
+            told += f" {skip} goes on with the other files." if motions else ""
+            field = next((name for name in fields[:TOLD] if name in ("units", "dt")), None)
+            raise InputError(told, longest=NAMES, field=field)
         warnings.warn(f"Left out: {told}", RecordWarning, stacklevel=3)
     if vertical:
         names = ", ".join(file.name for file in vertical)

@@ -43,7 +43,9 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
         or the peak exceeds 5 g, which only a wrong unit explains. Nothing is read in part.
     """
     if units is not None and not one_of(units, UNITS):
-        raise InputError(f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.")
+        raise InputError(
+            f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.", field="units"
+        )
     if dt is not None:
         dt = positive("dt", dt, "s")
     file = path_of("path", path)
@@ -53,8 +55,9 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
     motion = parse_at2(file, lines)
     if units not in (None, "g"):
         raise InputError(
-            f"{file} is an AT2 file, in g by definition, but units={shown(units)} was given. Leave units out."
+            f"{file} is an AT2 file, in g by definition, but units={shown(units)} was given. Leave units out.",
+            field="units",
         )
     if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
-        raise InputError(f"{file} says DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.")
+        raise InputError(f"{file} says DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
     return motion

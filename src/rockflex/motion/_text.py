@@ -74,7 +74,8 @@ def build_motion(
         raise InputError(
             f"{file}: the peak acceleration is {peak:g} {units}, above {LIMIT:g} g. "
             f"It looks like {smaller} where {units} was declared. {remedy} If the values are meant, "
-            "build GroundMotion(acceleration, dt) from the array; scaling a motion is free."
+            "build GroundMotion(acceleration, dt) from the array; scaling a motion is free.",
+            field="units",
         )
     return motion
 

@@ -147,7 +147,7 @@ def _answer(axes: Axes, found: "pd.DataFrame", looks: dict[str, tuple[Look, str]
     for row in found.to_dict("records"):
         look, _ = looks[str(row["tendon"])]
         width = float(row["half_width"])
-        met = str(row["outcome"]).startswith("met")
+        met = row["outcome"] in ("met", "met more than once")
         if met:
             axes.plot(
                 [width], [target], "o", color=look.color, markersize=7.0, markerfacecolor="none", markeredgewidth=1.2,

@@ -90,7 +90,10 @@ class Beam(Value):
     def __post_init__(self) -> None:
         height = positive("height", self.height, "m")
         if not isinstance(self.rotary_in_modes, bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise InputError(f"rotary_in_modes must be True or False, but {shown(self.rotary_in_modes)} was given.")
+            raise InputError(
+                f"rotary_in_modes must be True or False, but {shown(self.rotary_in_modes)} was given.",
+                field="rotary_in_modes",
+            )
         n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
             height=height,
@@ -155,19 +158,22 @@ class Beam(Value):
 
     def _check_method(self) -> None:
         if not one_of(self.method, ("fe", "ritz")):
-            raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.')
+            raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.', field="method")
         lacking = {"fe": {"shapes": "ritz"}, "ritz": {"n_elements": "fe", "shear_stiffness": "fe"}}
         for name, other in lacking[self.method].items():
             if getattr(self, name) is not None:
                 raise InputError(
-                    f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".'
+                    f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".',
+                    field=name,
                 )
         if self.n_elements is not None:
             vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, _MOST_ELEMENTS))
         if self.shapes is not None:
             found = instance("shapes", self.shapes, RitzShapes).check(self.height)
             if found < self.n_modes:
-                raise InputError(f"shapes must hold at least n_modes = {self.n_modes} shapes, but it holds {found}.")
+                raise InputError(
+                    f"shapes must hold at least n_modes = {self.n_modes} shapes, but it holds {found}.", field="shapes"
+                )
 
 
 def _optional(name: str, given: Along | None, height: float, unit: str, *, zero: bool = False) -> Profile | None:

@@ -32,7 +32,10 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
     """
     alpha = within("slenderness", slenderness, 0.5 * math.pi, "rad")
     if alpha <= 0.0:
-        raise InputError(f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.")
+        raise InputError(
+            f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.",
+            field="slenderness",
+        )
     r, m = positive("half_diagonal", half_diagonal, "m"), positive("mass", mass, "kg")
     return RockingProperties(
         omega=(),

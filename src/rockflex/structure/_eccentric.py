@@ -40,7 +40,8 @@ class Eccentric:
         if not is_structure(structure):
             raise InputError(
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
-                "take their eccentricity themselves: RockingProperties(..., eccentricity=...)."
+                "take their eccentricity themselves: RockingProperties(..., eccentricity=...).",
+                field="structure",
             )
         vars(self).update(structure=structure, eccentricity=finite("eccentricity", eccentricity, "m"))
         self.rocking(1)  # whether the axis stands within the base, and tendons do

@@ -77,7 +77,9 @@ class FishBone(Value):
         n = lengths.size
         _check_signs("story_heights", lengths, "m")
         if n == 0:
-            raise InputError("story_heights must hold at least one height in m, but none was given.")
+            raise InputError(
+                "story_heights must hold at least one height in m, but none was given.", field="story_heights"
+            )
         vars(self).update(
             story_heights=lengths,
             masses=_one_a_story("masses", masses, n, "kg"),
@@ -151,7 +153,9 @@ def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:
         return filled
     array = finite_vector(name, values, unit)
     if array.size != n:
-        raise InputError(f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given.")
+        raise InputError(
+            f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given.", field=name
+        )
     _check_signs(name, array, unit)
     return array
 
@@ -159,7 +163,7 @@ def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:
 def _check_signs(name: str, array: Float, unit: str) -> None:
     if array.min(initial=np.inf) <= 0.0:
         i = int(np.argmin(array))
-        raise InputError(f"{name} must be positive, but {name}[{i}] = {array[i]:g} {unit} was given.")
+        raise InputError(f"{name} must be positive, but {name}[{i}] = {array[i]:g} {unit} was given.", field=name)
 
 
 def _beams(values: ArrayLike, n: int) -> Float:
@@ -170,7 +174,8 @@ def _beams(values: ArrayLike, n: int) -> Float:
     if array.shape != (n,) or not (array >= 0.0).all():
         raise InputError(
             f"beam_stiffness must be one number, or one for each of the {n} stories, from 0 (no beams) to float('inf') "
-            f"(rigid beams) in N m/rad, but {shown(values)} was given."
+            f"(rigid beams) in N m/rad, but {shown(values)} was given.",
+            field="beam_stiffness",
         )
     array.setflags(write=False)
     return array

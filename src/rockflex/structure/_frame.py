@@ -139,7 +139,7 @@ class Frame:
 
 
 @lru_cache(maxsize=128)
-@computable("The modes of the frame with this stiffness_ratio")
+@computable("The modes of the frame with this stiffness_ratio", field="stiffness_ratio")
 def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Float, ModalProperties]:
     """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
     one = np.ones(n_stories)
@@ -153,6 +153,7 @@ def _checked_stiffness_ratio(value: float) -> float:
     if not ratio >= 0.0:
         raise InputError(
             f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
-            f"but {shown(value)} was given."
+            f"but {shown(value)} was given.",
+            field="stiffness_ratio",
         )
     return ratio

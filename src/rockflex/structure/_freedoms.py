@@ -48,7 +48,7 @@ class Freedoms:
             If a height is missing or not positive, or an index is out of range or named twice.
         """
         if isinstance(heights, Mapping):
-            where = [whole_number("heights, index", i, 0, size - 1) for i in heights]
+            where = [whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
             values = finite_vector("heights", list(heights.values()), "m")
         else:
             values = finite_vector("heights", numbers("heights", heights), "m")
@@ -56,24 +56,28 @@ class Freedoms:
             if values.size != size:
                 raise InputError(
                     f"heights must hold one height for each of the {size} freedoms, but {values.size} were given. "
-                    "Where some do not translate horizontally, give a map {index: height} of those that do."
+                    "Where some do not translate horizontally, give a map {index: height} of those that do.",
+                    field="heights",
                 )
         if not isinstance(rotations, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
-                f"rotations must be a sequence of indices of freedoms, but {type(rotations).__name__} was given."
+                f"rotations must be a sequence of indices of freedoms, but {type(rotations).__name__} was given.",
+                field="rotations",
             )
-        turning = [whole_number("rotations, index", i, 0, size - 1) for i in rotations]
+        turning = [whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
         twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
         if twice:
             raise InputError(
                 f"rotations must name each freedom once, and none that has a height, but {twice[0]} is named twice. "
-                "Give heights as a map {index: height} of the freedoms that translate horizontally."
+                "Give heights as a map {index: height} of the freedoms that translate horizontally.",
+                field="rotations",
             )
         if values.min(initial=np.inf) <= 0.0 or values.size == 0:
             lowest = f"{values.min():g} m" if values.size else "none"
             raise InputError(
                 f"heights must be positive, in m above the base, at least one of them, but {lowest} was given. "
-                "A mass at the base belongs to base_mass."
+                "A mass at the base belongs to base_mass.",
+                field="heights",
             )
         order = np.argsort(values, kind="stable")
         return cls(np.array(where, dtype=np.intp)[order], values[order], np.array(turning, dtype=np.intp), size)
@@ -90,7 +94,8 @@ class Freedoms:
         moves, turns = keep[self.translates], keep[self.rotates]
         if not moves.any():
             raise InputError(
-                "mass must move with at least one freedom that translates horizontally, but all have none."
+                "mass must move with at least one freedom that translates horizontally, but all have none.",
+                field="mass",
             )
         return Freedoms(
             number[self.translates[moves]], self.heights[moves], number[self.rotates[turns]], int(keep.sum())

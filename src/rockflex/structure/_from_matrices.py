@@ -171,7 +171,8 @@ def from_modes(
     falls = np.flatnonzero(np.diff(w, prepend=0.0) < 0.0)
     if w.size == 0 or w[0] <= 0.0 or falls.size:
         raise InputError(
-            f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes."
+            f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes.",
+            field="omega",
         )
     given = numbers("shapes", shapes)
     columns = finite_vector("shapes", given, "any unit")[:, None] if dimensions(given) == 1 else given
@@ -184,7 +185,8 @@ def from_modes(
     if not (own > 0.0).all():
         i = int(np.argmin(own))
         raise InputError(
-            f"Mode shape {i + 1} moves no mass (φ^T M φ = {own[i]:.3g}). Check the order of the freedoms in both."
+            f"Mode shape {i + 1} moves no mass (φ^T M φ = {own[i]:.3g}). Check the order of the freedoms in both.",
+            field="mass",
         )
     cosines = products / np.sqrt(np.outer(own, own)) - np.eye(w.size)
     if np.abs(cosines).max() > _ORTHOGONAL:
@@ -192,7 +194,8 @@ def from_modes(
         raise InputError(
             f"The mode shapes must be orthogonal with respect to the mass, but φ_{i + 1}^T M φ_{j + 1} is "
             f"{cosines[i, j]:.3g} of what their norms allow. Give the mass that the modes were computed with, freedoms "
-            "in the same order, and shapes with enough digits."
+            "in the same order, and shapes with enough digits.",
+            field="shapes",
         )
     return _structure(freedoms.modes(w, phi / np.sqrt(own), m), base_mass, half_width, damping_ratio, n_modes)
 
@@ -227,12 +230,14 @@ def _mass_matrix(given: ArrayLike, size: int) -> Float:
     else:
         values = finite_vector("mass", given, "kg")
         if values.size != size:
-            raise InputError(f"mass must hold one mass for each of the {size} freedoms, but {values.size} were given.")
+            raise InputError(
+                f"mass must hold one mass for each of the {size} freedoms, but {values.size} were given.", field="mass"
+            )
         m = np.diag(values)
     own = np.diag(m)
     if own.min() < 0.0:
         i = int(np.argmin(own))
-        raise InputError(f"mass must not be negative, but that of freedom {i} is {own[i]:g}.")
+        raise InputError(f"mass must not be negative, but that of freedom {i} is {own[i]:g}.", field="mass")
     return m
 
 

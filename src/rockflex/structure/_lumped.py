@@ -64,7 +64,7 @@ class LumpedStructure(Value):
     ) -> None:
         h = checked_heights(heights)
         vars(self).update(
-            masses=checked_mass(masses, h.size),
+            masses=checked_mass(masses, h.size, field="masses"),
             stiffness=checked_stiffness(stiffness, h.size),
             heights=h,
             base_mass=positive("base_mass", base_mass, "kg", zero=True),

@@ -34,16 +34,18 @@ def numbers(name: str, given: Given) -> ArrayLike:
         return given
     path = path_of(name, given)
     if path.suffix.lower() not in _SUFFIXES:
-        raise InputError(f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix.")
+        raise InputError(f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix.", field=name)
     check_regular(path, name)
     if not path.exists():
-        raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).")
+        raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).", field=name)
     try:
         array = _READERS[path.suffix.lower()](name, path)
     except InputError:
         raise
     except Exception as error:  # the readers of damaged files raise many kinds
-        raise InputError(f"{name}: {path} does not hold a matrix of numbers that can be read: {error}.") from error
+        raise InputError(
+            f"{name}: {path} does not hold a matrix of numbers that can be read: {error}.", field=name
+        ) from error
     return array.ravel() if 1 in array.shape and array.shape != (1, 1) else array
 
 
@@ -63,7 +65,9 @@ def _from_npz(name: str, path: Path) -> Float:
 
             return _dense(name, path, load_npz(path))
         if name not in keys and len(keys) != 1:
-            raise InputError(f'{name}: {path} must hold an array "{name}", or one array alone, but it holds {keys}.')
+            raise InputError(
+                f'{name}: {path} must hold an array "{name}", or one array alone, but it holds {keys}.', field=name
+            )
         return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
 
 
@@ -75,7 +79,8 @@ def _dense(name: str, path: Path, matrix: Any) -> Float:
     if max(matrix.shape) > MOST:
         raise InputError(
             f"{name}: {path} holds a sparse matrix of the shape {matrix.shape}, but matrices are taken as dense, with "
-            f"{MOST} freedoms at most. Condense it to the freedoms that carry mass, or give its modes to from_modes."
+            f"{MOST} freedoms at most. Condense it to the freedoms that carry mass, or give its modes to from_modes.",
+            field=name,
         )
     return np.asarray(matrix.toarray(), dtype=np.float64)
 

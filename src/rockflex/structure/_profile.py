@@ -87,7 +87,8 @@ class Profile(Value):
         except (TypeError, ValueError) as error:
             raise InputError(
                 f"{self.name} must return one number for each of the heights it is given, an array of shape "
-                f"{flat.shape}, but it did not: {error}."
+                f"{flat.shape}, but it did not: {error}.",
+                field=self.name,
             ) from error
         allowed = (values >= 0.0) if self.zero else (values > 0.0)
         bad = np.flatnonzero(~(allowed & np.isfinite(values)))
@@ -96,7 +97,8 @@ class Profile(Value):
             kind = "zero or positive" if self.zero else "positive"
             raise InputError(
                 f"{self.name} must be {kind} and finite along the whole height, but it is {values[i]:g} "
-                f"{self.unit} at {flat[i]:.6g} m."
+                f"{self.unit} at {flat[i]:.6g} m.",
+                field=self.name,
             )
         return values.reshape(z.shape)
 
@@ -122,30 +124,33 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
 
 def _table(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool) -> Profile:
     if len(given) != 2:  # pyright: ignore[reportUnnecessaryComparison]
-        raise InputError(f"{name} must be a table (heights, values), but {len(given)} columns were given.")
-    z = finite_vector(f"{name}, heights", given[0], "m")
-    values = finite_vector(f"{name}, values", given[1], unit)
+        raise InputError(f"{name} must be a table (heights, values), but {len(given)} columns were given.", field=name)
+    z = finite_vector(f"{name}, heights", given[0], "m", field=name)
+    values = finite_vector(f"{name}, values", given[1], unit, field=name)
     if z.size != values.size or z.size < 2:
         raise InputError(
             f"{name} must hold one value for each height of its table, and two rows or more, but {z.size} heights and "
-            f"{values.size} values were given."
+            f"{values.size} values were given.",
+            field=name,
         )
     falls = np.flatnonzero(z[1:] < z[:-1])
     if falls.size:
         i = int(falls[0])
         raise InputError(
             f"{name}: the heights of a table must not fall, but {z[i + 1]:g} m follows {z[i]:g} m. Sort the rows; "
-            "two rows at one height are a jump."
+            "two rows at one height are a jump.",
+            field=name,
         )
     if z[0] > _ROOM * height or z[-1] < height * (1.0 - _ROOM):
         raise InputError(
             f"{name}: a table must run from the base (0 m) to the top ({height:g} m), but it runs from {z[0]:g} m to "
-            f"{z[-1]:g} m. Add the rows that are missing."
+            f"{z[-1]:g} m. Add the rows that are missing.",
+            field=name,
         )
     low = values < 0.0 if zero else values <= 0.0
     if low.any():
         i = int(np.flatnonzero(low)[0])
         kind = "zero or positive" if zero else "positive"
-        raise InputError(f"{name} must be {kind}, but its table holds {values[i]:g} {unit} at {z[i]:g} m.")
+        raise InputError(f"{name} must be {kind}, but its table holds {values[i]:g} {unit} at {z[i]:g} m.", field=name)
     inside = z[(z > 0.0) & (z < height)]
     return Profile(name, unit, Interpolated(z, values), np.unique(inside), zero)

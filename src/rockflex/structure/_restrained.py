@@ -38,7 +38,8 @@ class Restrained:
         if not is_structure(structure):
             raise InputError(
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
-                "take their tendons themselves: RockingProperties(..., tendons=...)."
+                "take their tendons themselves: RockingProperties(..., tendons=...).",
+                field="structure",
             )
         vars(self).update(structure=structure, tendons=tendon_set(tendons))
         self.rocking(1)  # whether they stand within the base

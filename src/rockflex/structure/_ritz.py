@@ -56,10 +56,11 @@ class RitzShapes(Value):
                 expected = rows[0].shape if rows else f"({z.size}, n_shapes)"
                 raise InputError(
                     f"shapes.{name} must return one row a height and one column a shape, {expected}, but it returned "
-                    f"an array of shape {array.shape}."
+                    f"an array of shape {array.shape}.",
+                    field="shapes",
                 )
             if not np.isfinite(array).all():
-                raise InputError(f"shapes.{name} must be finite along the height, but it is not.")
+                raise InputError(f"shapes.{name} must be finite along the height, but it is not.", field="shapes")
             rows.append(array)
         return rows[0], rows[1], rows[2]
 

@@ -38,13 +38,15 @@ class LumpedMasses(Value):
     rotary: Float
 
     def __init__(self, heights: ArrayLike, masses: ArrayLike, rotary: ArrayLike | None = None) -> None:
-        z = finite_vector("lumped_masses.heights", heights, "m")
-        m = finite_vector("lumped_masses.masses", masses, "kg")
-        j = finite_vector("lumped_masses.rotary", np.zeros(z.size) if rotary is None else rotary, "kg m²")
+        z = finite_vector("lumped_masses.heights", heights, "m", field="lumped_masses")
+        m = finite_vector("lumped_masses.masses", masses, "kg", field="lumped_masses")
+        j = np.zeros(z.size) if rotary is None else rotary
+        j = finite_vector("lumped_masses.rotary", j, "kg m²", field="lumped_masses")
         if not z.size == m.size == j.size:
             raise InputError(
                 f"lumped_masses must hold one mass, and one rotary inertia, for each of its {z.size} heights, but "
-                f"{m.size} and {j.size} were given."
+                f"{m.size} and {j.size} were given.",
+                field="lumped_masses",
             )
         for name, values, bad, kind, unit in (
             ("heights", z, z <= 0.0, "positive", "m"),
@@ -55,7 +57,8 @@ class LumpedMasses(Value):
                 i = int(np.flatnonzero(bad)[0])
                 hint = " A mass at the base belongs to base_mass." if name == "heights" else ""
                 raise InputError(
-                    f"lumped_masses.{name} must be {kind}, but {name}[{i}] = {values[i]:g} {unit} was given.{hint}"
+                    f"lumped_masses.{name} must be {kind}, but {name}[{i}] = {values[i]:g} {unit} was given.{hint}",
+                    field="lumped_masses",
                 )
         vars(self).update(heights=z, masses=m, rotary=j)
 
@@ -111,10 +114,14 @@ def on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
     """
     bodies: Any = LumpedMasses([], []) if given is None else given
     if not isinstance(bodies, LumpedMasses):
-        raise InputError(f"lumped_masses must be LumpedMasses(heights, masses), but {type(bodies).__name__} was given.")
+        raise InputError(
+            f"lumped_masses must be LumpedMasses(heights, masses), but {type(bodies).__name__} was given.",
+            field="lumped_masses",
+        )
     if bodies.heights.max(initial=0.0) > height * (1.0 + 1e-12):
         raise InputError(
             f"lumped_masses must lie on the beam, at most {height:g} m above the base, but one lies at "
-            f"{bodies.heights.max():g} m."
+            f"{bodies.heights.max():g} m.",
+            field="lumped_masses",
         )
     return bodies

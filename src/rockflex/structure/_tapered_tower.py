@@ -66,7 +66,7 @@ class TaperedTower(Value):
 
     def __post_init__(self) -> None:
         if not one_of(self.method, ("fe", "ritz")):
-            raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.')
+            raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.', field="method")
         vars(self).update(
             height=positive("height", self.height, "m"),
             base_radius=positive("base_radius", self.base_radius, "m"),
@@ -79,7 +79,8 @@ class TaperedTower(Value):
         if self.wall > radius:
             raise InputError(
                 f"wall must be at most the smaller radius, {name} = {radius:g} m, but {self.wall:g} m was given. "
-                "It is the thickness of the wall, not a diameter; a solid tower has a wall of its radius."
+                "It is the thickness of the wall, not a diameter; a solid tower has a wall of its radius.",
+                field="wall",
             )
         vars(self).update(n_modes=self.beam.n_modes, damping_ratio=self.beam.damping_ratio)
 

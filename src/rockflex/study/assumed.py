@@ -6,7 +6,7 @@ from pydantic import Field, InstanceOf, field_validator
 
 from rockflex._errors import InputError
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified
-from rockflex.structure.file import Table
+from rockflex.structure.file import NUMBER, Table, number
 from rockflex.study._arguments import check_options
 
 LAWS = ("simplified", "complete", "restitution")
@@ -15,10 +15,12 @@ LAWS = ("simplified", "complete", "restitution")
 class BoucWenTable(Table):
     """The arguments of `BoucWen`."""
 
-    yield_displacement: float = Field(description="D_y of the first mode, a number in m")
-    post_yield_ratio: float = Field(0.01, description="stiffness after yielding over that before, a number")
-    gamma: float = Field(0.5, description="γ of the hysteresis, a number")
-    beta: float = Field(0.5, description="β of the hysteresis, a number")
+    yield_displacement: float = Field(description="D_y of the first mode", json_schema_extra=number("m"))
+    post_yield_ratio: float = Field(
+        0.01, description="stiffness after yielding over that before", json_schema_extra=NUMBER
+    )
+    gamma: float = Field(0.5, description="γ of the hysteresis", json_schema_extra=NUMBER)
+    beta: float = Field(0.5, description="β of the hysteresis", json_schema_extra=NUMBER)
     exponent: float = Field(8.0, description="n of the hysteresis, a number of at least 1")
 
 

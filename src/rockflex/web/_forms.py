@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex.structure.file import KINDS, StructureEntry, Table, TendonTable
+from rockflex.structure.file import KINDS, StructureEntry, Table, TendonTable, beside
 from rockflex.study.assumed import BoucWenTable
 from rockflex.web._limits import INFINITE, RANGES
 from rockflex.web._packing import plain
@@ -43,8 +43,6 @@ SYMBOLS = {
     "exponent": "Exponent n",
     "z": "Heights z",
 }
-_UNIT = re.compile(r"\bin (kg m²|kg/m³|kg/m|kg m|kg|N m²|N m/rad|N/m²|N/m|N|rad/s|rad|m|s)(?=[\s,;:(]|$)")
-_TAIL = re.compile(r",? an? (whole )?number( or one for each \w+)?( from 0 to inf| such as [\d.]+)?( in [^,()]+)?$")
 
 
 def forms() -> dict[str, Any]:
@@ -65,15 +63,13 @@ def _fields(table: type[Table]) -> list[dict[str, Any]]:
 
 
 def _field(name: str, field: FieldInfo) -> dict[str, Any]:
-    description = field.description or ""
-    unit = _UNIT.search(description) or _UNIT.search(" in " + description.split(" in ")[0])
     low, high = RANGES.get(name, (None, None))
     default = None if field.is_required() else field.get_default(call_default_factory=True)
     return {
         "name": name,
         "label": SYMBOLS.get(name, name.replace("_", " ").capitalize()),
-        "unit": unit[1] if unit else "",
-        "help": _help(description),
+        "unit": beside(field, "unit"),
+        "help": _sentence(field.description or ""),
         "type": _type(field.annotation),
         "choices": _choices(field.annotation),
         "required": field.is_required(),
@@ -85,12 +81,9 @@ def _field(name: str, field: FieldInfo) -> dict[str, Any]:
     }
 
 
-def _help(description: str) -> str:
-    """What a field is, without what it is written as."""
-    text = _TAIL.sub("", description).strip()
-    text = re.sub(r", or the path of a .*$|^true or false: |^a table of ", "", text)
-    begins = text[:1].upper() if re.match("a |[a-z]{2}", text) else text[:1]  # not γ, n or h*_1
-    return f"{begins}{text[1:]}."
+def _sentence(description: str) -> str:
+    begins = description[:1].upper() if re.match("a |[a-z]{2}", description) else description[:1]  # not γ, n or h*_1
+    return f"{begins}{description[1:]}."
 
 
 def _parts(annotation: Any) -> list[Any]:

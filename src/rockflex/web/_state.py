@@ -8,7 +8,7 @@ from pydantic import Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
 from rockflex.models import parse_model
-from rockflex.structure.file import StructureEntry, Table
+from rockflex.structure.file import StructureEntry, Table, expected
 from rockflex.study.assumed import Assumed
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._refusal import Refusal
@@ -182,8 +182,7 @@ def _check_assumed(state: State) -> None:
     try:
         state.hysteresis()
     except InputError as error:
-        said = str(error)
-        raise Refusal({f"bouc_wen.{said.split()[0]}": said}) from error
+        raise Refusal({f"bouc_wen.{error.field}": str(error)}) from error
 
 
 def _size(value: Any) -> int:
@@ -238,7 +237,7 @@ def _place(location: tuple[int | str, ...], content: Any) -> tuple[str, str, Any
         field = table.model_fields.get(key)
         if field is None:
             break
-        description = field.description or "something else"
+        description = expected(field) or "something else"
         table = _table_in(field.annotation)
     return ".".join(path), description, given
 

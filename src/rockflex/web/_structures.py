@@ -2,7 +2,6 @@
 
 import json
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -51,12 +50,12 @@ def build(entry: StructureEntry) -> Built:
     Raises
     ------
     Refusal
-        If it cannot be built, with the message beside the field that it names.
+        If it cannot be built, with the message beside the field at fault.
     """
     try:
         return _build(json.dumps(entry.model_dump(exclude_none=True)))
     except InputError as error:
-        raise Refusal(_beside(entry, str(error))) from error
+        raise Refusal({_place(entry, error.field): error.said}) from error
     except (ArithmeticError, MemoryError, RuntimeError, ValueError) as error:  # of linear algebra, at absurd numbers
         message = "the modes cannot be computed from these numbers; check their sizes and units."
         raise Refusal({"structure": message}) from error
@@ -159,7 +158,9 @@ def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, 
         ("θ_nom", nominal, "rad", limit),
     ]
     return [
-        {"symbol": symbol, "value": value, "unit": unit, "help": about + text} for symbol, value, unit, text in said
+        {"symbol": symbol, "value": value, "unit": unit, "help": about + text}
+        | ({"none": "the tendons always bring it back"} if value is None else {})
+        for symbol, value, unit, text in said
     ]
 
 
@@ -187,19 +188,8 @@ def _modes(built: Built) -> list[dict[str, Any]]:
     ]
 
 
-def _beside(entry: StructureEntry, message: str) -> Mapping[str, str]:
-    """Put a message beside the field that it names, or under the form."""
-    said = message.removeprefix(f"[{entry.kind}]: ").removeprefix("[[tendons]]: ")
-    if message.startswith("[[tendons]]"):
-        return {"structure.tendons": said}
-    if message.startswith("eccentricity "):
-        return {"structure.eccentricity": said}
-    names = list(type(entry.table).model_fields)
-    spots = {name: said.find(name) for name in names if name in said}
-    if not spots:
-        return {"structure": said}
-    # Of names within each other, such as mass in story_mass, the longer one is meant.
-    first = min(
-        spots, key=lambda name: (spots[name] if said[spots[name] - 1 : spots[name]] != "_" else 1e9, -len(name))
-    )
-    return {f"structure.{entry.kind}.{first}": said}
+def _place(entry: StructureEntry, name: str | None) -> str:
+    """Path of a field of the form, or of the whole form if it has no such field."""
+    if name in type(entry.table).model_fields:
+        return f"structure.{entry.kind}.{name}"
+    return f"structure.{name}" if name in type(entry).model_fields else "structure"

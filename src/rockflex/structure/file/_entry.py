@@ -12,7 +12,7 @@ from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._matrix_files import checksum
 from rockflex.structure.file._beam_table import BeamTable
 from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
-from rockflex.structure.file._table import Table
+from rockflex.structure.file._table import Table, number
 from rockflex.structure.file._tables import (
     BlockTable,
     Built,
@@ -47,10 +47,16 @@ KINDS: dict[str, type[StructureTable]] = {
 class TendonTable(Table):
     """The arguments of `Tendon`."""
 
-    position: float = Field(0.0, description="the distance to the right of the axis of the masses, a number in m")
-    initial_force: float = Field(description="the force while the base stands on the ground, a number in N")
-    stiffness: float = Field(description="EA/L over the unbonded length, a number in N/m")
-    yield_force: float | None = Field(None, description="the force at which the tendon yields, a number in N")
+    position: float = Field(
+        0.0, description="the distance to the right of the axis of the masses", json_schema_extra=number("m")
+    )
+    initial_force: float = Field(
+        description="the force while the base stands on the ground", json_schema_extra=number("N")
+    )
+    stiffness: float = Field(description="EA/L over the unbonded length", json_schema_extra=number("N/m"))
+    yield_force: float | None = Field(
+        None, description="the force at which the tendon yields", json_schema_extra=number("N")
+    )
 
 
 class StructureEntry(Table):
@@ -81,7 +87,9 @@ class StructureEntry(Table):
     properties: PropertiesTable | None = Field(None, description=_A_TABLE)
     block: BlockTable | None = Field(None, description=_A_TABLE)
     eccentricity: float | None = Field(
-        None, description="how far the masses stand to the right of the middle of the base, a number in m"
+        None,
+        description="how far the masses stand to the right of the middle of the base",
+        json_schema_extra=number("m"),
     )
     tendons: list[TendonTable] = Field(
         default_factory=list[TendonTable], description="a list of tables, each under a heading [[tendons]]"
@@ -128,7 +136,7 @@ class StructureEntry(Table):
         try:
             built = self.table.build(Path(folder))
         except InputError as error:
-            raise InputError(f"[{self.kind}]: {error}") from error
+            raise InputError(str(error), place=f"[{self.kind}]", field=error.field) from error
         if self.eccentricity:
             if isinstance(built, RockingProperties):
                 built = replace(built, eccentricity=self.eccentricity)
@@ -142,7 +150,7 @@ class StructureEntry(Table):
                 return replace(built, tendons=tendons)
             return Restrained(built, tendons)
         except InputError as error:
-            raise InputError(f"[[tendons]]: {error}") from error
+            raise InputError(str(error), place="[[tendons]]", field="tendons") from error
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is made from, by its key, such as "matrices.mass".

@@ -6,21 +6,25 @@ from typing import Annotated, Any
 from pydantic import Field, StringConstraints
 
 from rockflex.structure import from_matrices, from_modes
+from rockflex.structure.file._table import WHOLE, written
 from rockflex.structure.file._tables import BaseMass, Damping, HalfWidth, StructureTable, Vector
 
 Matrix = list[list[float]]
 Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
 
-_FILE = "or the path of a .npz, .mtx or .csv file"
+_OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
 
 
 class _FromFiles(StructureTable):
     """What both kinds have: freedoms above a base."""
 
-    mass: Vector | Matrix | str = Field(description=f"a list of masses in kg, or the mass matrix, {_FILE}")
+    mass: Vector | Matrix | str = Field(
+        description="a list of masses in kg, or the mass matrix", json_schema_extra=written(_OR_FILE, "kg")
+    )
     heights: Vector | dict[Index, float] | str = Field(
         description="a list of the heights of all freedoms in m, or a table { index = height } of those that move "
-        f"sideways, counted from 0, {_FILE}"
+        "sideways, counted from 0",
+        json_schema_extra=written(_OR_FILE, "m"),
     )
     rotations: list[int] = Field(
         default_factory=list[int], description="a list of the indices of rotations in the plane, counted from 0"
@@ -28,7 +32,7 @@ class _FromFiles(StructureTable):
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
-    n_modes: int | None = Field(None, description="how many modes to take (default: all), a whole number")
+    n_modes: int | None = Field(None, description="how many modes to take (default: all)", json_schema_extra=WHOLE)
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with paths from `folder`, and indices as numbers."""
@@ -47,7 +51,9 @@ class MatricesTable(_FromFiles):
 
     makes = from_matrices
 
-    stiffness: Matrix | str = Field(description=f"the stiffness matrix in N/m, a list of rows, {_FILE}")
+    stiffness: Matrix | str = Field(
+        description="the stiffness matrix in N/m, a list of rows", json_schema_extra=written(_OR_FILE, "N/m")
+    )
 
 
 class ModesTable(_FromFiles):
@@ -55,7 +61,10 @@ class ModesTable(_FromFiles):
 
     makes = from_modes
 
-    omega: Vector | str = Field(description=f"a list of circular frequencies in rad/s, one a mode, {_FILE}")
+    omega: Vector | str = Field(
+        description="a list of circular frequencies in rad/s, one a mode", json_schema_extra=written(_OR_FILE, "rad/s")
+    )
     shapes: Matrix | str = Field(
-        description=f"the mode shapes, a list of rows, one a freedom with a column for each mode, {_FILE}"
+        description="the mode shapes, a list of rows, one a freedom with a column for each mode",
+        json_schema_extra=written(_OR_FILE),
     )

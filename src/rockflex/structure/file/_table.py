@@ -7,7 +7,8 @@ from difflib import get_close_matches
 from types import GenericAlias
 from typing import Any, TypeVar, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
+from pydantic.fields import FieldInfo
 
 from rockflex._errors import InputError
 
@@ -17,10 +18,39 @@ AnyTable = TypeVar("AnyTable", bound="Table")
 class Table(BaseModel):
     """A table of a file: known keys only, and no silent conversion.
 
-    The description of each key completes the sentence "it must be ...".
+    The description of each key completes the sentence "it must be ...", in the form that it may have beside it.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=True)
+
+
+def written(form: str, unit: str = "") -> dict[str, JsonValue]:
+    """Return what a key has beside its description: how it is written, the description in place of {}, and its unit."""
+    return {"form": form, "unit": unit}
+
+
+def number(unit: str) -> dict[str, JsonValue]:
+    """Return what a number with a unit has beside its description."""
+    return written(f"{{}}, a number in {unit}", unit)
+
+
+def each(what: str, unit: str = "") -> dict[str, JsonValue]:
+    """Return what a number, or one for each of many, has beside its description."""
+    return written(f"{{}}, a number or one for each {what}", unit)
+
+
+NUMBER, WHOLE = written("{}, a number"), written("{}, a whole number")
+
+
+def beside(field: FieldInfo, key: str) -> str:
+    """Return the form or the unit of a field; empty where it has none."""
+    extra = field.json_schema_extra
+    return str(extra.get(key, "")) if isinstance(extra, dict) else ""
+
+
+def expected(field: FieldInfo) -> str:
+    """Say what a field must be, and how it is written."""
+    return (beside(field, "form") or "{}").format(field.description or "")
 
 
 def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") -> AnyTable:
@@ -52,10 +82,9 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
         elif problem["type"] == "value_error":  # raised by a check of the whole table
             said = ": ".join(filter(None, (label, str(problem["ctx"]["error"]) if "ctx" in problem else "")))
         elif problem["type"] == "missing":
-            said = f"{label} is missing: {known[spot.key].description}."
+            said = f"{label} is missing: {expected(known[spot.key])}."
         elif spot.key:
-            expected = known[spot.key].description
-            said = f"{label} must be {expected}, but {reprlib.repr(spot.value)} was given."
+            said = f"{label} must be {expected(known[spot.key])}, but {reprlib.repr(spot.value)} was given."
         else:
             said = f"{spot.header or 'It'} must be a table, but {reprlib.repr(spot.value)} was given."
         sentences[spot.header, spot.key] = said

@@ -139,7 +139,7 @@ def _answers(runs: Runs, question: Question, band: Band | None) -> dict[str, Any
     try:
         fit = fit_outcomes(runs.im, runs.rotation, runs.fallen, threshold=THRESHOLD)
         found["overturning"] = question.answer(fit.overturning.probability)[0]
-        notes = [note for note in fit.notes if not note.startswith("initiation")]
+        notes: list[str] = [note for note in fit.notes if note.kind != "initiation"]
         if question.hazard is None and not runs.im.min() <= question.nodes[0] <= runs.im.max():
             ends = f"{runs.im.min():.3g} to {runs.im.max():.3g}"
             notes.append(f"The level lies outside the measures of the runs, {ends}: it is extrapolated to.")

@@ -1,17 +1,18 @@
 // Intensity measures and suites, as the studies offer them.
 
+// Name, title, unit and what stands at an axis.
 const MEASURES = [
-  ["pgv", "PGV, peak ground velocity", "m/s"],
-  ["pga", "PGA, peak ground acceleration", "m/s²"],
-  ["pgd", "PGD, peak ground displacement", "m"],
-  ["sa_t1", "Sa(T₁), spectral acceleration", "m/s²"],
-  ["sd_t1", "Sd(T₁), spectral displacement", "m"],
-  ["arias", "Arias intensity", "m/s"],
-  ["cav", "CAV, cumulative absolute velocity", "m/s"],
+  ["pgv", "PGV, peak ground velocity", "m/s", "PGV"],
+  ["pga", "PGA, peak ground acceleration", "m/s²", "PGA"],
+  ["pgd", "PGD, peak ground displacement", "m", "PGD"],
+  ["sa_t1", "Sa(T₁), spectral acceleration", "m/s²", "Sa(T₁)"],
+  ["sd_t1", "Sd(T₁), spectral displacement", "m", "Sd(T₁)"],
+  ["arias", "Arias intensity", "m/s", "Arias intensity"],
+  ["cav", "CAV, cumulative absolute velocity", "m/s", "CAV"],
 ];
 const RELATIVE = [
-  ["relative_pga", "PGA/(g tan α)", ""],
-  ["relative_pgv", "p PGV/(g tan α)", ""],
+  ["relative_pga", "PGA/(g tan α)", "", "PGA/(g tan α)"],
+  ["relative_pgv", "p PGV/(g tan α)", "", "p PGV/(g tan α)"],
 ];
 
 export { MEASURES };
@@ -21,9 +22,8 @@ export const unitOf = (measure) => ALL_MEASURES.find(([name]) => name === measur
 
 // Short name of a measure with its unit, for an axis.
 export function axisOf(measure) {
-  const [, title, unit] = ALL_MEASURES.find(([name]) => name === measure);
-  const name = title.split(",")[0];
-  return unit ? `${name} [${unit}]` : name;
+  const [, , unit, short] = ALL_MEASURES.find(([name]) => name === measure);
+  return unit ? `${short} [${unit}]` : short;
 }
 
 // Suites of many records, with short names.

@@ -83,7 +83,7 @@ export default function designTab(app) {
     drawing.hidden = !answer.curves.length;
     const curves = answer.curves.map((curve, i) => ({ ...curve, look: look(i) }));
     const met = answer.answers.map((each, i) => ({ ...each, color: look(i).color }))
-      .filter((each) => Number.isFinite(each.half_width) && each.outcome.startsWith("met"));
+      .filter((each) => Number.isFinite(each.half_width) && ["met", "met more than once"].includes(each.outcome));
     chart.set({
       yRange: [-0.02, 1.02],
       series: [

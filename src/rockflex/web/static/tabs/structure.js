@@ -134,7 +134,7 @@ export default function structureTab(app) {
 }
 
 function parameter(p) {
-  const value = p.symbol === "α" && p.value === null ? "none: the tendons always bring it back" : number(p.value);
+  const value = p.none ? `none: ${p.none}` : number(p.value);
   return h("div", {}, h("dt", {}, symbol(p.symbol), p.unit ? ` [${p.unit}]` : ""),
     h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.help));
 }
