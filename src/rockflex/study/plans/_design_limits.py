@@ -5,11 +5,10 @@ import math
 from rockflex._checks import real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.study.plans._intensity import check_measure
+from rockflex.motion import intensity
 
 OVERTURNED = 0.5 * math.pi
 THRESHOLD = 1e-4  # rad up to which a run counts as one without rocking
-RELATIVE = ("relative_pga", "relative_pgv")  # to the base, so of another motion for each width
 
 
 def check_limit(limit: float | str) -> None:
@@ -19,8 +18,7 @@ def check_limit(limit: float | str) -> None:
 
 def check_same_for_all(measure: str) -> None:
     """Raise an InputError unless there is such a measure, and a level of it is the same motion for every base."""
-    check_measure(measure)
-    if measure in RELATIVE:
+    if intensity(measure).of_what == "base":
         raise InputError(f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1.")
 
 

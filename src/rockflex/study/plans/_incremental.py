@@ -9,11 +9,11 @@ from rockflex._checks import in_range, one_of, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.models import BoucWen, ImpactLaw
+from rockflex.motion import intensity
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._cross import CrossPlan
-from rockflex.study.plans._intensity import check_measure
 from rockflex.study.plans._ladder import Ladder, rungs, steps_between, steps_from_rest
 from rockflex.study.plans._plan import run_plan
 from rockflex.study.plans._spec import StructuresSpec
@@ -213,7 +213,7 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
     InputError
         If there is no such measure.
     """
-    check_measure(measure)
+    intensity(measure)
     import pandas as pd
 
     rows = []

@@ -9,10 +9,10 @@ from pydantic import Field
 from rockflex._checks import positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.motion import intensity
 from rockflex.study._arguments import positive_numbers
 from rockflex.study.plans._bench import Bench
 from rockflex.study.plans._cross import CrossPlan
-from rockflex.study.plans._intensity import check_measure, factor_to
 from rockflex.study.plans._spec import StructuresSpec
 from rockflex.study.plans._tables import Columns, Row
 
@@ -46,12 +46,12 @@ class StripePlan(CrossPlan):
     """The cross product of structures, records, models and levels, cut into chunks."""
 
     def __init__(self, bench: Bench, measure: str, levels: Sequence[float], per_chunk: int) -> None:
-        check_measure(measure)
-        self.measure = measure
+        asked = intensity(measure)
+        self.measure = measure  # by its name, which a pickle can hold
         self.levels = positive_numbers("levels", levels, "")
         for structure, name in enumerate(bench.names):
             for record, motion in enumerate(bench.motions):
-                if not math.isfinite(factor_to(bench.measures(structure, record), measure, 1.0)):
+                if not math.isfinite(asked.factor(bench.measures(structure, record)[measure], 1.0)):
                     raise InputError(
                         f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
                     )
@@ -59,7 +59,8 @@ class StripePlan(CrossPlan):
 
     def scale(self, structure: int, record: int, level: int) -> float:
         """Factor that takes a record to a level of the measure."""
-        return factor_to(self.bench.measures(structure, record), self.measure, self.levels[level])
+        value = self.bench.measures(structure, record)[self.measure]
+        return intensity(self.measure).factor(value, self.levels[level])
 
     @property
     def columns(self) -> Columns:
