@@ -10,6 +10,7 @@ import typer
 from rockflex._errors import InputError, SolverError
 from rockflex.cli._console import duration, grid, note, number, output, show
 from rockflex.cli._output import to_json, versions
+from rockflex.motion import MEASURES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from rockflex.study.plans import Study
 
 Rows = list[dict[str, Any]]
-PEAK_VELOCITY, PEAK_ACCELERATION = "pgv", "pga"
+PEAK_VELOCITY, PEAK_ACCELERATION = MEASURES["pgv"], MEASURES["pga"]
 ROCKING = 1e-4  # rad; up to it a run counts as one without rocking
 
 
@@ -82,7 +83,7 @@ def _cell(value: Any) -> str:
 def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
     from rockflex.fragility import LogisticFit, fit_each_cloud
 
-    found, reasons = fit_each_cloud(runs, PEAK_VELOCITY, threshold=ROCKING)
+    found, reasons = fit_each_cloud(runs, PEAK_VELOCITY.name, threshold=ROCKING)
     unfitted += [f"{structure} with {model}: {reason}" for (structure, model), reason in reasons.items()]
     fits_of = {(fits.structure, fits.model): fits for fits in found}
     outcomes: Rows = []
@@ -102,7 +103,7 @@ def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tu
                 "rocking": int(rocked.sum()),
                 "overturned": int(fallen.sum()),
                 "failed": int((~solved).sum()),
-                "PGV of P(rocking)=½ [m/s]": curve.median if fitted else None,
+                PEAK_VELOCITY.with_unit(f"{PEAK_VELOCITY.label} of P(rocking)=½"): curve.median if fitted else None,
                 "spread [-]": curve.dispersion if fitted else None,
                 "fit": curve.method if fitted else "all alike" if curve else "none",
             }
@@ -111,8 +112,14 @@ def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tu
         relative, total = (fits.top_displacement, fits.total_top_displacement) if fits else (None, None)
         quantities = (("θ_max", rotation), ("u_top relative to the base", relative), ("u_top in total", total))
         lines += [{**name, "y": quantity, **_line(fit)} for quantity, fit in quantities]
-    yield "Outcomes, and P(θ_max > 1e-4 rad) by logistic regression on log PGV", _words_first(outcomes)
-    yield "log y = c1 + c2 log PGV of runs that rocked and stand (rad, m, m/s)", lines
+    yield (
+        f"Outcomes, and P(θ_max > 1e-4 rad) by logistic regression on log {PEAK_VELOCITY.label}",
+        _words_first(outcomes),
+    )
+    yield (
+        f"log y = c1 + c2 log {PEAK_VELOCITY.label} of runs that rocked and stand (rad, m, {PEAK_VELOCITY.unit})",
+        lines,
+    )
 
 
 def _line(fit: "CloudFit | None") -> dict[str, Any]:
@@ -130,15 +137,15 @@ def _incremental(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Itera
 
     rows: Rows = []
     for measure in (PEAK_ACCELERATION, PEAK_VELOCITY):
-        capacities = incremental_capacities(runs, measure).dropna(subset=["capacity"])
+        capacities = incremental_capacities(runs, measure.name).dropna(subset=["capacity"])
         for (structure, model), each in capacities.groupby(["structure", "model"], observed=True, sort=False):
-            what = f"{structure} with {model}, {measure.upper()}"
+            what = f"{structure} with {model}, {measure.label}"
             fit = _fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]), what, unfitted)
             rows.append(
                 {
                     "structure": str(structure),
                     "model": str(model),
-                    "measure": measure.upper(),
+                    "measure": measure.label,
                     "records": len(each),
                     "never overturned": int(each["censored"].sum()),
                     "resurrections": int(each["resurrections"].sum()),
