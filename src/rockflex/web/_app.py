@@ -28,6 +28,7 @@ from rockflex.web._forms import forms
 from rockflex.web._headers import Headers
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
+from rockflex.web._measures import measures
 from rockflex.web._packing import plain
 from rockflex.web._presets import PRESETS
 from rockflex.web._records import PULSES, record_view, suite_view, suites
@@ -252,6 +253,7 @@ def _about() -> dict[str, Any]:
     first = State.model_validate({"structure": PRESETS[0]["structure"]})
     return forms() | {
         "suites": suites(),
+        "measures": measures(),
         "pulses": pulses,
         "limits": limits,
         "state": plain(first.model_dump(exclude_none=True)),

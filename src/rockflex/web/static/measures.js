@@ -1,30 +1,17 @@
 // Intensity measures and suites, as the studies offer them.
 
-const MEASURES = [
-  ["pgv", "PGV, peak ground velocity", "m/s"],
-  ["pga", "PGA, peak ground acceleration", "m/s²"],
-  ["pgd", "PGD, peak ground displacement", "m"],
-  ["sa_t1", "Sa(T₁), spectral acceleration", "m/s²"],
-  ["sd_t1", "Sd(T₁), spectral displacement", "m"],
-  ["arias", "Arias intensity", "m/s"],
-  ["cav", "CAV, cumulative absolute velocity", "m/s"],
-];
-const RELATIVE = [
-  ["relative_pga", "PGA/(g tan α)", ""],
-  ["relative_pgv", "p PGV/(g tan α)", ""],
-];
+// Values and titles for a list; the search for a width takes none of the base.
+export function measuresOf(about, ofBase) {
+  const offered = about.measures.filter((each) => ofBase || !each.of_base);
+  return offered.map((each) => [each.name, each.title]);
+}
 
-export { MEASURES };
-export const ALL_MEASURES = [...MEASURES, ...RELATIVE];
+const named = (about, name) => about.measures.find((each) => each.name === name);
 
-export const unitOf = (measure) => ALL_MEASURES.find(([name]) => name === measure)[2];
+export const unitOf = (about, name) => named(about, name).unit;
 
 // Short name of a measure with its unit, for an axis.
-export function axisOf(measure) {
-  const [, title, unit] = ALL_MEASURES.find(([name]) => name === measure);
-  const name = title.split(",")[0];
-  return unit ? `${name} [${unit}]` : name;
-}
+export const axisOf = (about, name) => named(about, name).axis;
 
 // Suites of many records, with short names.
 export function suitesOf(about) {

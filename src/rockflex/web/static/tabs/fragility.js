@@ -5,7 +5,7 @@ import { h, number } from "../dom.js";
 import { box, chips, select } from "../form.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
-import { ALL_MEASURES, axisOf, suitesOf } from "../measures.js";
+import { axisOf, measuresOf, suitesOf } from "../measures.js";
 import { models } from "../models.js";
 import { assumed, Study } from "../study.js";
 
@@ -27,7 +27,7 @@ export default function fragilityTab(app) {
   const scales = box("cloud.scales", "Scale factors", choice().scales, (value) => put({ scales: value }),
     { many: true, hint: "up to twenty, each from 0.01 to 20" });
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
-  const measures = ALL_MEASURES.map(([name, title]) => [name, title]);
+  const measures = measuresOf(app.about, true);
   const measure = select("cloud.measure", "Intensity measure", measures, choice().measure, (value) => put({ measure: value }));
   const limit = select("cloud.limit", "What is asked: that", LIMITS, choice().limit, (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
@@ -70,7 +70,7 @@ export default function fragilityTab(app) {
     [["cloud-study", "Study (TOML)"], ["cloud-python", "Python lines"]]));
 
   function show(answer) {
-    const label = axisOf(choice().measure);
+    const label = axisOf(app.about, choice().measure);
     drawing.hidden = !answer.curves.length;
     empty.hidden = !drawing.hidden;
     curves.options.xLabel = cloud.options.xLabel = label;
