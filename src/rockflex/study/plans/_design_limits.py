@@ -5,10 +5,8 @@ import math
 from rockflex._checks import real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.fragility import NOMINAL, OVERTURNED, OVERTURNING, ROCKED
 from rockflex.motion import intensity
-
-OVERTURNED = 0.5 * math.pi
-THRESHOLD = 1e-4  # rad up to which a run counts as one without rocking
 
 
 def check_limit(limit: float | str) -> None:
@@ -31,18 +29,18 @@ def rotation_of(limit: float | str, nominal: float) -> float:
         If it is no limit, or not from 1e-4 rad to below π/2.
     """
     words = limit.split() if isinstance(limit, str) else []
-    if words == ["overturning"]:
+    if words == [OVERTURNING.name]:
         return OVERTURNED
     rotation = real_or_nan(limit)
-    if words and words[-1] == "nominal" and len(words) <= 2:
+    if words and words[-1] == NOMINAL.name and len(words) <= 2:
         try:
             rotation = nominal * float(words[0] if len(words) == 2 else 1.0)
         except ValueError:
             rotation = math.nan
-    if not THRESHOLD <= rotation < OVERTURNED:
+    if not ROCKED <= rotation < OVERTURNED:
         is_of = f" ({rotation:.3g} rad)" if words and math.isfinite(rotation) else ""
         raise InputError(
-            f"limit must be a rotation from {THRESHOLD:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
+            f"limit must be a rotation from {ROCKED:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
             f'"nominal" or "0.5 nominal" in the same range, or "overturning", but {shown(limit)}{is_of} was given.'
         )
     return rotation

@@ -9,6 +9,7 @@ from pydantic import Field
 from rockflex._checks import positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, beyond
 from rockflex.motion import intensity
 from rockflex.study._arguments import positive_numbers
 from rockflex.study.plans._bench import Bench
@@ -18,6 +19,8 @@ from rockflex.study.plans._tables import Columns, Row
 
 if TYPE_CHECKING:
     import pandas as pd
+
+COUNTED = (OVERTURNING, NOMINAL, UPLIFT)
 
 
 class StripeStudy(StructuresSpec):
@@ -97,17 +100,14 @@ def stripe_counts(
         If the limit is another word, or not positive.
     """
     solved = runs[runs["status"].notna()]
-    if limit == "overturning":
-        exceeds = solved["status"] == "overturned"
-    elif limit == "nominal":
-        exceeds = solved["nominal_overturning"]
-    elif limit == "uplift":
-        exceeds = solved["status"] != "no_uplift"
-    elif isinstance(limit, str):
-        raise InputError(
-            f'limit must be "overturning", "nominal", "uplift" or a rotation in rad, but {shown(limit)} was given.'
-        )
+    if isinstance(limit, str):
+        state = next((each for each in COUNTED if each.name == limit), None)
     else:
-        exceeds = solved["max_rotation"] > positive("limit", limit, "rad")
-    counted = solved.assign(exceeds=exceeds.astype(bool)).groupby(["structure", "model", "level"], observed=True)
+        state = beyond(positive("limit", limit, "rad"))
+    if state is None:
+        words = ", ".join(f'"{each.name}"' for each in COUNTED)
+        raise InputError(f"limit must be {words} or a rotation in rad, but {shown(limit)} was given.")
+    counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
+        ["structure", "model", "level"], observed=True
+    )
     return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()
