@@ -8,18 +8,18 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import (
-    LIMIT_STATES,
     NOMINAL,
     OVERTURNING,
+    ROCKING,
     CloudFits,
     OutcomeFragility,
-    beyond,
     bootstrap_band,
     fit_each_cloud,
     fit_outcomes,
 )
 from rockflex.study.plans import CloudPlan, CloudStudy, pivot_lifts
 from rockflex.web._jobs import Job
+from rockflex.web._limit_states import ROTATION, limit_state
 from rockflex.web._packing import plain
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
@@ -91,8 +91,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
 def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
     fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
-    limit = beyond(choice.rotation) if choice.limit == "rotation" else LIMIT_STATES[choice.limit]
-    over = limit.exceeded(part).to_numpy(dtype=bool)
+    over = limit_state(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
     found: dict[str, Any] = {
         "model": fit.model,
         "n": len(part),
@@ -108,7 +107,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         "high": None,
     }
     notes += [f"{fit.model}: {note}" for note in fit.outcomes.notes]
-    if choice.limit == "rotation":
+    if choice.limit == ROTATION:
         try:
             found["p"] = fit.outcomes.exceedance(grid, choice.rotation)
             found["median"] = _median(grid, found["p"])
@@ -117,7 +116,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found
-    curve = fit.outcomes.initiation if choice.limit == "rocking" else fit.outcomes.overturning
+    curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
     low, high = curve.band(grid, choice.level)
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")

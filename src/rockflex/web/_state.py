@@ -10,6 +10,7 @@ from rockflex._errors import InputError
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table
 from rockflex.study.assumed import Assumed
+from rockflex.web._limit_states import DesignLimit, LimitName
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._measures import MeasureName, SameForAll
 from rockflex.web._refusal import Refusal
@@ -59,7 +60,7 @@ class CloudChoice(Table):
     )
     models: Labels = Field(["MDOF-S"], description="a list of one to four models")
     measure: MeasureName = Field("pgv", description="an intensity measure")
-    limit: Literal["rocking", "rotation", "nominal", "overturning"] = Field("rocking", description="a limit state")
+    limit: LimitName = Field("rocking", description="a limit state")
     rotation: float = Field(0.01, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
     level: float = Field(0.9, ge=0.5, le=0.99, description="the confidence of the bands, from 0.5 to 0.99")
 
@@ -81,7 +82,7 @@ class DesignChoice(Table):
     stiffness: float = Field(0.5, ge=0.0, le=100.0, description="the tendon's stiffness over L_0^r g/B², from 0 to 100")
     measure: SameForAll = Field("pgv", description="an intensity measure")
     at: float = Field(0.6, gt=0.0, le=1e4, description="the intensity in its SI unit, above 0")
-    limit: Literal["rotation", "nominal", "overturning"] = Field("rotation", description="a limit state")
+    limit: DesignLimit = Field("rotation", description="a limit state")
     rotation: float = Field(0.02, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 

@@ -8,11 +8,6 @@ import { legend } from "../marks.js";
 import { measuresOf, suitesOf, unitOf } from "../measures.js";
 import { assumed, Study } from "../study.js";
 
-const LIMITS = [
-  ["rotation", "a rotation"],
-  ["nominal", "the nominal limit 0.7 atan(B/h*₁)"],
-  ["overturning", "overturning"],
-];
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
 const RUNS = ["suites", "scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
@@ -28,7 +23,8 @@ export default function designTab(app) {
   const list = (name, label, options) =>
     select(`design.${name}`, label, options, choice()[name], (value) => put({ [name]: value }));
 
-  const limit = list("limit", "What is not to be exceeded", LIMITS);
+  const asked = app.about.limit_states.filter((each) => each.noun);
+  const limit = list("limit", "What is not to be exceeded", asked.map((each) => [each.name, each.noun]));
   const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
   const target = entry("target", "Probability that is accepted", { hint: "0.0001 to 0.99" });
   const measure = list("measure", "Strength of the earthquake, by", measuresOf(app.about, false));

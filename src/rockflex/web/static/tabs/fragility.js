@@ -9,12 +9,6 @@ import { axisOf, measuresOf, suitesOf } from "../measures.js";
 import { models } from "../models.js";
 import { assumed, Study } from "../study.js";
 
-const LIMITS = [
-  ["rocking", "it rocks (θ > 0.1 mrad)"],
-  ["rotation", "the rotation exceeds …"],
-  ["nominal", "the nominal limit 0.7 atan(B/h*₁)"],
-  ["overturning", "it overturns"],
-];
 const LEVELS = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation stand
 
@@ -29,7 +23,9 @@ export default function fragilityTab(app) {
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
   const measures = measuresOf(app.about, true);
   const measure = select("cloud.measure", "Intensity measure", measures, choice().measure, (value) => put({ measure: value }));
-  const limit = select("cloud.limit", "What is asked: that", LIMITS, choice().limit, (value) => put({ limit: value }));
+  const asked = app.about.limit_states;
+  const limit = select("cloud.limit", "What is asked: that", asked.map((each) => [each.name, each.clause]), choice().limit,
+    (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
     { unit: "rad", hint: "0.0001 to 1.5" });
   const offered = LEVELS.some(([value]) => value === choice().level) ? LEVELS
@@ -88,7 +84,8 @@ export default function fragilityTab(app) {
         })),
       ],
     });
-    const at = { rocking: 1e-4, rotation: choice().rotation }[choice().limit];
+    const at = choice().limit === "rotation" ? choice().rotation
+      : asked.find((each) => each.name === choice().limit).line;
     cloud.set({
       yRange: [1e-5, 2],
       series: all.map((c) => ({

@@ -1,4 +1,4 @@
-"""The measures that the page offers are those of the library."""
+"""The measures and the limits that the page offers are those of the library."""
 
 import dataclasses
 import json
@@ -69,3 +69,26 @@ def test_another_is_refused(part, name) -> None:
     with pytest.raises(Refusal) as caught:
         parse_state(STRUCTURE | {part: {"measure": name}})
     assert caught.value.errors == {f"{part}.measure": f"it must be an intensity measure, but {name!r} was given."}
+
+
+def test_the_limits_of_its_lists(client) -> None:
+    listed = json.loads(client.request("/api/about")[2])["limit_states"]
+    assert [(each["name"], each["clause"], each["line"]) for each in listed] == [
+        ("rocking", "it rocks (θ > 0.1 mrad)", 1e-4),
+        ("rotation", "the rotation exceeds …", None),
+        ("nominal", "the nominal limit 0.7 atan(B/h*₁)", None),
+        ("overturning", "it overturns", None),
+    ]
+    assert {each["name"]: each["noun"] for each in listed if each["noun"]} == {
+        "rotation": "a rotation",
+        "nominal": "the nominal limit 0.7 atan(B/h*₁)",
+        "overturning": "overturning",
+    }
+
+
+@pytest.mark.parametrize("path", ["cloud.uplift", "design.uplift", "design.rocking"])
+def test_another_limit_is_refused(path) -> None:
+    part, name = path.split(".")
+    with pytest.raises(Refusal) as caught:
+        parse_state(STRUCTURE | {part: {"limit": name}})
+    assert caught.value.errors == {f"{part}.limit": f"it must be a limit state, but {name!r} was given."}
