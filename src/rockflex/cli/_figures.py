@@ -105,10 +105,11 @@ def _figures(
         yield "agreement", lambda: plot.plot_agreement(table)
         yield "modal_combination", lambda: plot.plot_modal_combination(table)
     elif study == "design":
+        from rockflex.fragility import limit_label
         from rockflex.study.plans import design_tables
 
         for limit, designs in design_tables(table, spec):
-            word = limit if isinstance(limit, str) else f"{limit:g} rad"
+            word = limit_label(limit)
             target = spec.get("target")
             yield f"design_{'_'.join(word.split())}", lambda each=designs, target=target: plot.plot_design(each, target)
     else:

@@ -23,20 +23,7 @@ rockflex motion fema-p695-far-field/FF-12-a --out record
 
 rockflex motion record.csv --units g --dt 0.01 --json"""
 
-UNITS = {
-    "dt": "s",
-    "duration": "s",
-    "pga": "m/s²",
-    "pgv": "m/s",
-    "pgd": "m",
-    "arias": "m/s",
-    "cav": "m/s",
-    "d5_95": "s",
-    "sa_*": "m/s², at the period in s",
-    "metadata.distance_km": "km",
-    "metadata.vs30": "m/s",
-}
-MEASURES = ("pga", "pgv", "pgd", "arias", "cav", "d5_95")
+PLAIN = str.maketrans("₀₁₂₃₄₅₆₇₈₉₋", "0123456789-")  # a terminal may lack what stands below the line
 
 
 def motion(
@@ -83,7 +70,7 @@ def motion(
     document: dict[str, Any] = {
         "versions": versions(),
         "options": {"periods": periods, "damping_ratio": damping},
-        "units": UNITS,
+        "units": _units(),
         "motions": rows,
     }
     if out is not None:
@@ -94,10 +81,26 @@ def motion(
         _print(rows, periods, damping)
 
 
+def _units() -> dict[str, str]:
+    from rockflex.motion import record_measures
+
+    return {
+        "dt": "s",
+        "duration": "s",
+        **{measure.name: measure.unit for measure in record_measures()},
+        "sa_*": "m/s², at the period in s",
+        "metadata.distance_km": "km",
+        "metadata.vs30": "m/s",
+    }
+
+
 def _measures(item: "FoundMotion", periods: Sequence[float], damping: float) -> dict[str, float]:
+    from rockflex.motion import Shaking, record_measures
+
+    shaking = Shaking(item.motion)
     sa = item.motion.spectrum(periods, damping).sa
     spectral = {f"sa_{period:g}": float(value) for period, value in zip(periods, sa, strict=True)}
-    return {**{name: getattr(item.motion, name) for name in MEASURES}, **spectral}
+    return {**{measure.name: measure.of(shaking) for measure in record_measures()}, **spectral}
 
 
 def _print_suites(suites: Sequence[dict[str, Any]]) -> None:
@@ -113,8 +116,10 @@ def _print_suites(suites: Sequence[dict[str, Any]]) -> None:
 def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
     from rockflex._constants import GRAVITY
     from rockflex.cli._console import fits, grid, number, output, show
+    from rockflex.motion import record_measures
 
     console = output()
+    chosen = [(measure, measure.unit == "m/s²") for measure in record_measures()]
     records: list[list[str]] = []
     measures: list[list[str]] = []
     for row in rows:
@@ -124,16 +129,17 @@ def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: fl
         samples = [f"{row['dt']:g}", str(row["npts"]), number(row["duration"])]
         records.append([row["name"], *words, *("-" if fact is None else f"{fact:g}" for fact in facts), *samples])
         spectral = [number(row[f"sa_{period:g}"] / GRAVITY) for period in periods]
-        others = [number(row[name]) for name in MEASURES[1:]]
-        measures.append([row["name"], number(row["pga"] / GRAVITY), *others, *spectral])
+        own = [number(row[measure.name] / (GRAVITY if in_g else 1.0)) for measure, in_g in chosen]
+        measures.append([row["name"], *own, *spectral])
     head = ("name", "event", "year", "M", "R [km]", "Vs30 [m/s]", "dt [s]", "npts", "length [s]")
     table = grid(head, records, 2)
     if not fits(console, table):
         table = grid(head, [[name, fill(event, 12), *rest] for name, event, *rest in records], 2)
     show(console, table)
     console.print()
-    head = ("name", "PGA [g]", "PGV [m/s]", "PGD [m]", "Arias [m/s]", "CAV [m/s]", "D5-95 [s]")
-    show(console, grid((*head, *(f"Sa({period:g} s) [g]" for period in periods)), measures))
+    heads = [f"{measure.head} [g]" if in_g else measure.with_unit(measure.head) for measure, in_g in chosen]
+    spectral = (f"Sa({period:g} s) [g]" for period in periods)
+    show(console, grid(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures))
     console.print(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²", markup=False)
 
 

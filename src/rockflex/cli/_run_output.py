@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rockflex.cli._console import note
 from rockflex.cli._output import file_stems, staged
 from rockflex.cli._simulations import Plan, Run
+from rockflex.motion import MEASURES
 from rockflex.response import Response
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 UNITS = {
     "dt": "s",
     "duration": "s",
-    "pga": "m/s²",
+    "pga": MEASURES["pga"].unit,
     "elapsed": "s",
     "run_time": "s",
     "end_time": "s",

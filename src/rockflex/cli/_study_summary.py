@@ -10,6 +10,7 @@ import typer
 from rockflex._errors import InputError, SolverError
 from rockflex.cli._console import duration, grid, note, number, output, show
 from rockflex.cli._output import to_json, versions
+from rockflex.motion import MEASURES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
     from rockflex.study.plans import Study
 
 Rows = list[dict[str, Any]]
-PEAK_VELOCITY, PEAK_ACCELERATION = "pgv", "pga"
-ROCKING = 1e-4  # rad; up to it a run counts as one without rocking
+PEAK_VELOCITY, PEAK_ACCELERATION = MEASURES["pgv"], MEASURES["pga"]
 
 
 def summarise(study: "Study", table: "pd.DataFrame", seconds: float, *, json: bool) -> tuple[int, int]:
@@ -80,9 +80,9 @@ def _cell(value: Any) -> str:
 
 
 def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
-    from rockflex.fragility import LogisticFit, fit_each_cloud
+    from rockflex.fragility import OVERTURNING, ROCKED, ROCKING, LogisticFit, fit_each_cloud
 
-    found, reasons = fit_each_cloud(runs, PEAK_VELOCITY, threshold=ROCKING)
+    found, reasons = fit_each_cloud(runs, PEAK_VELOCITY.name, threshold=ROCKED)
     unfitted += [f"{structure} with {model}: {reason}" for (structure, model), reason in reasons.items()]
     fits_of = {(fits.structure, fits.model): fits for fits in found}
     outcomes: Rows = []
@@ -90,8 +90,8 @@ def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tu
     for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
         name = {"structure": str(structure), "model": str(model)}
         solved = group["status"].notna()
-        fallen = group["status"] == "overturned"
-        rocked = solved & ~fallen & (group["max_rotation"] > ROCKING)
+        fallen = OVERTURNING.exceeded(group)
+        rocked = solved & ~fallen & (group["max_rotation"] > ROCKED)
         fits = fits_of.get((str(structure), str(model)))
         curve = fits and fits.outcomes.initiation
         fitted = isinstance(curve, LogisticFit)
@@ -102,7 +102,7 @@ def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tu
                 "rocking": int(rocked.sum()),
                 "overturned": int(fallen.sum()),
                 "failed": int((~solved).sum()),
-                "PGV of P(rocking)=½ [m/s]": curve.median if fitted else None,
+                PEAK_VELOCITY.with_unit(f"{PEAK_VELOCITY.label} of P(rocking)=½"): curve.median if fitted else None,
                 "spread [-]": curve.dispersion if fitted else None,
                 "fit": curve.method if fitted else "all alike" if curve else "none",
             }
@@ -111,8 +111,14 @@ def _cloud(_: "Study", runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tu
         relative, total = (fits.top_displacement, fits.total_top_displacement) if fits else (None, None)
         quantities = (("θ_max", rotation), ("u_top relative to the base", relative), ("u_top in total", total))
         lines += [{**name, "y": quantity, **_line(fit)} for quantity, fit in quantities]
-    yield "Outcomes, and P(θ_max > 1e-4 rad) by logistic regression on log PGV", _words_first(outcomes)
-    yield "log y = c1 + c2 log PGV of runs that rocked and stand (rad, m, m/s)", lines
+    yield (
+        f"Outcomes, and P({ROCKING.label}) by logistic regression on log {PEAK_VELOCITY.label}",
+        _words_first(outcomes),
+    )
+    yield (
+        f"log y = c1 + c2 log {PEAK_VELOCITY.label} of runs that rocked and stand (rad, m, {PEAK_VELOCITY.unit})",
+        lines,
+    )
 
 
 def _line(fit: "CloudFit | None") -> dict[str, Any]:
@@ -125,20 +131,20 @@ def _words_first(rows: Rows) -> Rows:
 
 
 def _incremental(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
-    from rockflex.fragility import fit_capacities
+    from rockflex.fragility import LIMIT_STATES, fit_capacities
     from rockflex.study.plans import incremental_capacities
 
     rows: Rows = []
     for measure in (PEAK_ACCELERATION, PEAK_VELOCITY):
-        capacities = incremental_capacities(runs, measure).dropna(subset=["capacity"])
+        capacities = incremental_capacities(runs, measure.name).dropna(subset=["capacity"])
         for (structure, model), each in capacities.groupby(["structure", "model"], observed=True, sort=False):
-            what = f"{structure} with {model}, {measure.upper()}"
+            what = f"{structure} with {model}, {measure.label}"
             fit = _fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]), what, unfitted)
             rows.append(
                 {
                     "structure": str(structure),
                     "model": str(model),
-                    "measure": measure.upper(),
+                    "measure": measure.label,
                     "records": len(each),
                     "never overturned": int(each["censored"].sum()),
                     "resurrections": int(each["resurrections"].sum()),
@@ -146,24 +152,23 @@ def _incremental(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Itera
                     "β": fit and fit.beta,
                 }
             )
-    limit = "|θ| = π/2" if study.limit == "overturning" else "0.7 atan(B/h*_1)"
-    yield f"Capacities to {limit}, lognormal", rows
+    yield f"Capacities to {LIMIT_STATES[study.limit].rotation}, lognormal", rows
 
 
 def _stripes(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
-    from rockflex.fragility import fit_stripes
+    from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, fit_stripes
     from rockflex.study.plans import stripe_counts
 
     fits: Rows = []
     counts: Rows = []
-    for limit, title in (("uplift", "uplift"), ("nominal", "0.7 atan(B/h*_1)"), ("overturning", "overturning")):
-        counted = stripe_counts(runs, limit)  # pyright: ignore[reportArgumentType]
+    for limit in (UPLIFT, NOMINAL, OVERTURNING):
+        counted = stripe_counts(runs, limit.name)  # pyright: ignore[reportArgumentType]
         for (structure, model), each in counted.groupby(["structure", "model"], observed=True, sort=False):
-            what = f"{structure} with {model}, {title}"
+            what = f"{structure} with {model}, {limit.label}"
             fit = _fitted(
                 lambda each=each: fit_stripes(each["level"], each["n_exceeding"], each["n_total"]), what, unfitted
             )
-            name = {"limit": title, "structure": str(structure), "model": str(model)}
+            name = {"limit": limit.label, "structure": str(structure), "model": str(model)}
             fits.append({**name, "median": fit and fit.median, "β": fit and fit.beta})
             levels = zip(each["level"], each["n_exceeding"], each["n_total"], strict=True)
             counts.append({**name, **{f"{level:g}": f"{n}/{total}" for level, n, total in levels}})
@@ -199,6 +204,7 @@ def _population(_: "Study", pairs: "pd.DataFrame", _unfitted: list[str]) -> Iter
 
 
 def _design(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[tuple[str, Rows]]:
+    from rockflex.fragility import limit_label
     from rockflex.study.plans import design_tables, smallest_width
 
     asked = "annual rate" if study.hazard else f"P at {study.measure} = {study.level:g}"
@@ -206,7 +212,7 @@ def _design(study: Any, runs: "pd.DataFrame", unfitted: list[str]) -> Iterator[t
     designs: dict[tuple[str, str, float], dict[str, Any]] = {}
     widths: Rows = []
     for limit, table in design_tables(runs, study.document()):
-        word = limit if isinstance(limit, str) else f"{limit:g} rad"
+        word = limit_label(limit)
         for reason, lost in table[table[value].isna()].groupby("note"):
             unfitted.append(f"{word}: no {value} of {len(lost)} of {len(table)} designs. {reason}")
         for each in table.to_dict("records"):

@@ -6,6 +6,19 @@ from rockflex.fragility._capacities import fit_capacities
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud
 from rockflex.fragility._hazard import HazardCurve
+from rockflex.fragility._limit_states import (
+    LIMIT_STATES,
+    NOMINAL,
+    OVERTURNED,
+    OVERTURNING,
+    ROCKED,
+    ROCKING,
+    UPLIFT,
+    LimitState,
+    beyond,
+    limit_label,
+    symbol_of_nominal,
+)
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._measures import compare_measures
@@ -14,17 +27,26 @@ from rockflex.fragility._stripes import fit_stripes
 from rockflex.fragility._unanimous import UnanimousOutcome
 
 __all__ = [
+    "LIMIT_STATES",
+    "NOMINAL",
+    "OVERTURNED",
+    "OVERTURNING",
+    "ROCKED",
+    "ROCKING",
+    "UPLIFT",
     "AnnualRate",
     "BootstrapBand",
     "CloudFit",
     "CloudFits",
     "HazardCurve",
+    "LimitState",
     "LogisticFit",
     "LognormalFragility",
     "OutcomeFragility",
     "OutcomeProbabilities",
     "UnanimousOutcome",
     "annual_rate",
+    "beyond",
     "bootstrap_band",
     "compare_measures",
     "fit_capacities",
@@ -34,5 +56,7 @@ __all__ = [
     "fit_logistic",
     "fit_outcomes",
     "fit_stripes",
+    "limit_label",
     "risk_targeted_median",
+    "symbol_of_nominal",
 ]

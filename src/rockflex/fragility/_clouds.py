@@ -11,6 +11,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ class CloudFits(Value):
 
 
 def fit_clouds(
-    runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = 1e-4, nominal: bool = False
+    runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = ROCKED, nominal: bool = False
 ) -> list[CloudFits]:
     """Fit the clouds of a study, in the order of its structures and models (Silva & Stojadinović 2024, Figs. 5-7).
 
@@ -78,7 +79,7 @@ def fit_clouds(
 
 
 def fit_each_cloud(
-    runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = 1e-4, nominal: bool = False
+    runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = ROCKED, nominal: bool = False
 ) -> tuple[list[CloudFits], dict[tuple[str, str], str]]:
     """Fit the clouds of a study as `fit_clouds` does, and beside them say why others cannot be fitted.
 
@@ -120,7 +121,7 @@ def _fits(
     solved = group[group["status"].notna()]
     if not len(solved):
         raise InputError(f"No run of {shown(structure)} with {model} was solved. See the column error of the table.")
-    fallen = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
+    fallen = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
     im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
     rocked = ~fallen & (rotation > threshold)
     outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)

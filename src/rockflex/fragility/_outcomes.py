@@ -14,6 +14,7 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import flags, log_at, log_measures, same_length
 from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._limit_states import ROCKED
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._unanimous import UnanimousOutcome
 
@@ -121,7 +122,7 @@ class OutcomeFragility(Value):
 
 
 def fit_outcomes(
-    im: ArrayLike, rotation: ArrayLike, overturned: ArrayLike, *, threshold: float = 1e-4
+    im: ArrayLike, rotation: ArrayLike, overturned: ArrayLike, *, threshold: float = ROCKED
 ) -> OutcomeFragility:
     """Fit the three outcomes of a cloud of runs, and the rotations of those that rocked.
 

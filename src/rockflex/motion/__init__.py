@@ -4,6 +4,8 @@ from rockflex.motion._at2 import read_at2
 from rockflex.motion._direction import check_horizontal, direction_of, is_vertical
 from rockflex.motion._embedded import load_suite, suite_names
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._measure import Measure
+from rockflex.motion._measures import MEASURES, intensities, intensity, record_measures
 from rockflex.motion._pulses import (
     half_sine_pulse,
     mavroeidis_papageorgiou_pulse,
@@ -16,17 +18,23 @@ from rockflex.motion._pulses import (
 from rockflex.motion._read_suite import OnError, folder_files, read_files, read_suite
 from rockflex.motion._readers import read_motion
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._shaking import Shaking
 from rockflex.motion._suite import Suite
 
 __all__ = [
+    "MEASURES",
     "GroundMotion",
+    "Measure",
     "OnError",
     "RecordInfo",
+    "Shaking",
     "Suite",
     "check_horizontal",
     "direction_of",
     "folder_files",
     "half_sine_pulse",
+    "intensities",
+    "intensity",
     "is_vertical",
     "load_suite",
     "mavroeidis_papageorgiou_pulse",
@@ -37,6 +45,7 @@ __all__ = [
     "read_files",
     "read_motion",
     "read_suite",
+    "record_measures",
     "rectangular_pulse",
     "ricker_pulse",
     "suite_names",

@@ -11,7 +11,7 @@ from rockflex._checks import finite, finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.motion import _measures, _processing
+from rockflex.motion import _integrals, _processing
 from rockflex.motion._record_info import RecordInfo
 
 if TYPE_CHECKING:
@@ -88,12 +88,12 @@ class GroundMotion(Value):
     @property
     def velocity(self) -> Float:
         """Ground velocity at the samples in m/s, shape (n,): the exact integral, from rest."""
-        return _measures.velocity(self.acceleration, self.dt)
+        return _integrals.velocity(self.acceleration, self.dt)
 
     @property
     def displacement(self) -> Float:
         """Ground displacement at the samples in m, shape (n,): the exact second integral, from rest."""
-        return _measures.displacement(self.acceleration, self.dt)
+        return _integrals.displacement(self.acceleration, self.dt)
 
     @cached_property
     def pga(self) -> float:
@@ -103,12 +103,12 @@ class GroundMotion(Value):
     @cached_property
     def pgv(self) -> float:
         """Peak ground velocity in m/s, also between samples."""
-        return _measures.peak_velocity(self.acceleration, self.dt)
+        return _integrals.peak_velocity(self.acceleration, self.dt)
 
     @cached_property
     def pgd(self) -> float:
         """Peak ground displacement in m, also between samples, up to the last sample."""
-        return _measures.peak_displacement(self.acceleration, self.dt)
+        return _integrals.peak_displacement(self.acceleration, self.dt)
 
     @cached_property
     def arias(self) -> float:
@@ -117,12 +117,12 @@ class GroundMotion(Value):
         The integral is exact. Databases often sum a² dt over the samples instead, which is larger, the more
         so the closer the content of the record is to its Nyquist frequency.
         """
-        return _measures.arias_intensity(self.acceleration, self.dt)
+        return _integrals.arias_intensity(self.acceleration, self.dt)
 
     @cached_property
     def cav(self) -> float:
         """Cumulative absolute velocity ∫|a| dt in m/s (EPRI 1988, without a threshold)."""
-        return _measures.cumulative_absolute_velocity(self.acceleration, self.dt)
+        return _integrals.cumulative_absolute_velocity(self.acceleration, self.dt)
 
     @cached_property
     def d5_95(self) -> float:
@@ -148,7 +148,7 @@ class GroundMotion(Value):
         InputError
             If the fractions are out of order or out of range.
         """
-        return _measures.significant_duration(self.acceleration, self.dt, low, high)
+        return _integrals.significant_duration(self.acceleration, self.dt, low, high)
 
     def scaled(self, factor: float) -> "GroundMotion":
         """Return the motion multiplied by `factor` (negative: mirrored), with the same name.

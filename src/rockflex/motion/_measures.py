@@ -1,97 +1,93 @@
-"""Exact integrals and intensity measures of an acceleration that is linear between its samples."""
+"""The intensity measures. One that is added here is known to files, the command line, figures and the page."""
 
-import math
-
-import numpy as np
-from numpy.typing import NDArray
-
-from rockflex._checks import real_or_nan
-from rockflex._constants import GRAVITY
+from rockflex._checks import one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.motion._measure import Measure
 
-Float = NDArray[np.float64]
+_ALL = (
+    Measure(name="pga", label="PGA", unit="m/s²", words="peak ground acceleration", of=lambda s: s.motion.pga),
+    Measure(name="pgv", label="PGV", unit="m/s", words="peak ground velocity", of=lambda s: s.motion.pgv),
+    Measure(name="pgd", label="PGD", unit="m", words="peak ground displacement", of=lambda s: s.motion.pgd),
+    Measure(
+        name="arias",
+        label="Arias intensity",
+        unit="m/s",
+        words="Arias intensity",
+        of=lambda s: s.motion.arias,
+        power=2,
+        short="Arias",
+        symbol="$I_a$",
+    ),
+    Measure(name="cav", label="CAV", unit="m/s", words="cumulative absolute velocity", of=lambda s: s.motion.cav),
+    Measure(
+        name="d5_95",
+        label="D₅₋₉₅",
+        unit="s",
+        words="duration between 5 % and 95 % of Arias",
+        of=lambda s: s.motion.d5_95,
+        power=0,
+        symbol="$D_{5–95}$",
+    ),
+    Measure(
+        name="sd_t1",
+        label="Sd(T₁)",
+        unit="m",
+        words="spectral displacement",
+        of=lambda s: s.sd,
+        of_what="mode",
+        symbol="$S_d(T_1)$",
+    ),
+    Measure(
+        name="sa_t1",
+        label="Sa(T₁)",
+        unit="m/s²",
+        words="spectral acceleration",
+        of=lambda s: s.omega**2 * s.sd,
+        of_what="mode",
+        symbol="$S_a(T_1)$",
+    ),
+    Measure(
+        name="relative_pga",
+        label="PGA/(g tan α)",
+        unit="",
+        of=lambda s: s.motion.pga / s.lifting,
+        of_what="base",
+        symbol=r"PGA/($g\,\tan α$)",
+    ),
+    Measure(
+        name="relative_pgv",
+        label="p PGV/(g tan α)",
+        unit="",
+        of=lambda s: s.rate * s.motion.pgv / s.lifting,
+        of_what="base",
+        symbol=r"$p$ PGV/($g\,\tan α$)",
+    ),
+)
 
-
-def velocity(a: Float, dt: float) -> Float:
-    """Velocity at the samples, from rest: the trapezoidal rule, exact for a linear acceleration."""
-    return _cumulative(0.5 * dt * (a[:-1] + a[1:]))
-
-
-def displacement(a: Float, dt: float) -> Float:
-    """Displacement at the samples, from rest: Δd = v₀ dt + (2 a₀ + a₁) dt²/6."""
-    v = velocity(a, dt)
-    return _cumulative(dt * v[:-1] + dt**2 / 6 * (2 * a[:-1] + a[1:]))
-
-
-def peak_velocity(a: Float, dt: float) -> float:
-    """Largest |v|; between samples v is extreme where a passes through zero."""
-    v = velocity(a, dt)
-    k = np.flatnonzero(np.sign(a[:-1]) * np.sign(a[1:]) < 0)
-    inside = v[k] + 0.5 * dt * a[k] * (a[k] / (a[k] - a[k + 1]))
-    return float(np.max(np.abs(np.concatenate((v, inside)))))
-
-
-def peak_displacement(a: Float, dt: float) -> float:
-    """Largest |d|; between samples d is extreme at the zeros of the quadratic v."""
-    v, d = velocity(a, dt), displacement(a, dt)
-    # With x = t/dt in [0, 1]: v = c + b x + q x².
-    c, b, q = v[:-1], dt * a[:-1], 0.5 * dt * np.diff(a)
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        w = -0.5 * (b + np.copysign(np.sqrt(b**2 - 4 * q * c), b))
-        roots = np.stack((w / q, c / w))
-        inside = (roots > 0) & (roots < 1)
-    x = np.where(inside, roots, 0.0)
-    extremes = d[:-1] + dt * x * (c + x * (b / 2 + x * q / 3))
-    return float(max(np.max(np.abs(d)), np.max(np.abs(extremes))))
-
-
-def arias_intensity(a: Float, dt: float) -> float:
-    """Return π/(2g) ∫a² dt over the record (Arias 1970)."""
-    return math.pi / (2 * GRAVITY) * float(np.sum(_energies(a, dt)))
-
-
-def cumulative_absolute_velocity(a: Float, dt: float) -> float:
-    """Return ∫|a| dt over the record; a sample in which `a` changes sign is split at the zero."""
-    left, right = a[:-1], a[1:]
-    total = np.abs(left) + np.abs(right)
-    crossing = np.sign(left) * np.sign(right) < 0
-    # Two triangles of heights |left|, |right| share the sample in proportion to them.
-    ratio = np.divide(left**2 + right**2, total, out=total.copy(), where=crossing)
-    return float(np.sum(0.5 * dt * ratio))
-
-
-def significant_duration(a: Float, dt: float, low: float, high: float) -> float:
-    """Time between the first instants at which the fractions `low` and `high` of ∫a² dt are reached."""
-    if not 0 <= real_or_nan(low) < real_or_nan(high) <= 1:
-        raise InputError(
-            f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and high={shown(high)} "
-            "were given. Significant duration D5-95 is low=0.05, high=0.95."
-        )
-    energy = _cumulative(_energies(a, dt))
-    if energy[-1] == 0:
-        return 0.0
-    return _time_of(high * energy[-1], energy, a, dt) - _time_of(low * energy[-1], energy, a, dt)
-
-
-def _time_of(target: float, energy: Float, a: Float, dt: float) -> float:
-    k = int(np.searchsorted(energy, target))
-    if k == 0:
-        return 0.0
-    left, right = float(a[k - 1]), float(a[k])
-    missing = target - float(energy[k - 1])
-    slope = (right - left) / dt
-    # ∫(left + slope τ)² dτ = (r³ - left³) / (3 slope) with r = a(τ).
-    # Solved for τ without dividing by the slope, which may be zero.
-    reached = math.cbrt(left**3 + 3 * slope * missing)
-    step = 3 * missing / (reached**2 + reached * left + left**2)
-    return (k - 1) * dt + min(step, dt)
+MEASURES: dict[str, Measure] = {each.name: each for each in _ALL}
+"""Every measure by its name, in the order of columns."""
 
 
-def _energies(a: Float, dt: float) -> Float:
-    left, right = a[:-1], a[1:]
-    return dt / 3 * (left**2 + left * right + right**2)
+def intensities() -> list[Measure]:
+    """Return the measures that a motion can be scaled to."""
+    return [each for each in MEASURES.values() if each.power]
 
 
-def _cumulative(increments: Float) -> Float:
-    return np.concatenate((np.zeros(1), np.cumsum(increments)))
+def record_measures() -> list[Measure]:
+    """Return the measures of a motion alone, whatever it shakes."""
+    return [each for each in MEASURES.values() if each.of_what == "motion"]
+
+
+def intensity(name: str) -> Measure:
+    """Return the measure of this name that a motion can be scaled to.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    names = [each.name for each in intensities()]
+    if not one_of(name, names):
+        raise InputError(f"measure must be one of {', '.join(names)}, but {shown(name)} was given.")
+    return MEASURES[name]

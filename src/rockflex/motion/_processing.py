@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from rockflex._checks import positive, real_or_nan, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion._measures import velocity
+from rockflex.motion._integrals import velocity
 
 Float = NDArray[np.float64]
 FINEST = 10_000  # new steps in an old one

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import CloudFits, fit_each_cloud
+from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFits, fit_each_cloud
 from rockflex.plot._study_tables import (
     check_columns,
     keys_of,
@@ -60,7 +60,7 @@ def plot_clouds(
     quantity: Literal["max_rotation", "max_top_displacement", "max_total_top_displacement"] = "max_rotation",
     measure: str = "pgv",
     *,
-    threshold: float = 1e-4,
+    threshold: float = ROCKED,
     nominal: bool = False,
 ) -> Figure:
     """Plot the response of every run that rocked and stands over an intensity measure, a panel a structure.
@@ -135,7 +135,7 @@ def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float,
     clouds: list[_Cloud] = []
     for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
         solved = group[group["status"].notna()]
-        fell = (solved["nominal_overturning"] if nominal else solved["status"] == "overturned").to_numpy(dtype=bool)
+        fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
         rocked = ~fell & (solved["max_rotation"].to_numpy(dtype=float) > threshold)
         fit = fit_of.get((str(structure), str(model)))
         line = fit and _LINES[quantity](fit)

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex.fragility import OVERTURNED, OVERTURNING, beyond, symbol_of_nominal
 from rockflex.plot._study_tables import MARKERS, check_columns, keys_of, names_in, structure_panels
 from rockflex.plot._style import BLACK, BLUE, GREEN, LOOKS, RED, SMALL, Look, columns, literal, styled
 from rockflex.plot._units import short
@@ -116,10 +117,9 @@ def _words(table: "pd.DataFrame", value: str) -> str:
     if known.any():
         first, multiple = limits[known][0], (limits / nominal)[known]
         if np.allclose(limits[known], first, rtol=1e-9):
-            event = "overturning" if first == 0.5 * math.pi else rf"θ_{{\mathrm{{max}}}}>{first:g}\ \mathrm{{rad}}"
+            event = (OVERTURNING if first == OVERTURNED else beyond(first)).symbol
         elif np.allclose(multiple, multiple[0], rtol=1e-9):
-            times = "" if math.isclose(multiple[0], 1.0) else rf"{multiple[0]:g}\cdot"
-            event = rf"θ_{{\mathrm{{max}}}}>{times}0.7\,\mathrm{{atan}}(B/h^*_1)"
+            event = symbol_of_nominal(multiple[0])
         else:
             raise InputError("The designs have limits of several kinds. Plot the table of one limit.")
     event = f"${event}$" if ">" in event else event

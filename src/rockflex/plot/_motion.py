@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex.motion import MEASURES, Shaking
 from rockflex.plot._style import BLACK, BLUE, SHADE, literal, new_figure, styled
 from rockflex.plot._units import short
 
@@ -46,9 +47,9 @@ def plot_motion(motion: "GroundMotion") -> Figure:
     spectrum = motion.spectrum(_PERIODS, _DAMPING)
     first = motion.significant_duration(0.0, 0.05)
     histories = (
-        ("a", "m/s²", motion.acceleration, f"PGA = {short(motion.pga)} m/s² ({short(motion.pga / GRAVITY)} g)"),
-        ("v", "m/s", motion.velocity, f"PGV = {short(motion.pgv)} m/s"),
-        ("d", "m", motion.displacement, f"PGD = {short(motion.pgd)} m"),
+        ("a", "m/s²", motion.acceleration, f"{_told('pga', motion)} ({short(motion.pga / GRAVITY)} g)"),
+        ("v", "m/s", motion.velocity, _told("pgv", motion)),
+        ("d", "m", motion.displacement, _told("pgd", motion)),
     )
     with styled():
         figure = new_figure(7.2, 4.6)
@@ -74,7 +75,13 @@ def plot_motion(motion: "GroundMotion") -> Figure:
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set_xlabel("$T$ [s]")
         axes.set_ylabel("$S_a$ [m/s²]")
-        measures = f"$I_a$ = {short(motion.arias)} m/s, $D_{{5–95}}$ = {short(motion.d5_95)} s (shaded)"
+        measures = f"{_told('arias', motion)}, {_told('d5_95', motion)} (shaded)"
         axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=8.0)
         figure.suptitle(literal(motion.name) or "ground motion", fontsize=9.0)
     return figure
+
+
+def _told(name: str, motion: "GroundMotion") -> str:
+    """Symbol, value and unit of a measure."""
+    measure = MEASURES[name]
+    return f"{measure.sign} = {short(measure.of(Shaking(motion)))} {measure.unit}"

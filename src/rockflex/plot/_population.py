@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockflex.plot._pairs import BEHAVIOURS, Array
-from rockflex.plot._study_tables import check_columns
+from rockflex.plot._study_tables import check_columns, measure_name
 from rockflex.plot._style import BLUE, RED, letter, new_figure, styled
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ _PANELS = {
     "base_mass_ratio": r"$m_0/m_i$",
     "period": r"$T_1$ [s]",
     "height": r"$H$ [m]",
-    "pgv": "PGV [m/s]",
+    "pgv": measure_name("pgv"),
 }
 _COLORS = {"shear": RED, "flexure": BLUE}
 _FEW = 20  # different values, up to which each has its own bar

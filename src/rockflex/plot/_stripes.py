@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import LognormalFragility, fit_stripes
+from rockflex.fragility import LIMIT_STATES, LognormalFragility, beyond, fit_stripes
 from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
 from rockflex.plot._style import Look, columns, styled
 
@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _POINTS = 400
-_WORDS = {
-    "overturning": "P(overturning)",
-    "nominal": r"$P(θ_{\mathrm{max}}>0.7\,\mathrm{atan}(B/h^*_1))$",
-    "uplift": "P(uplift)",
-}
 
 
 def plot_stripes(
@@ -69,7 +64,8 @@ def plot_stripes(
     names = names_in(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with styled():
-        y = _WORDS[limit] if isinstance(limit, str) else rf"$P(θ_{{\mathrm{{max}}}}>{limit:g}\ \mathrm{{rad}})$"
+        event = (LIMIT_STATES[limit] if isinstance(limit, str) else beyond(limit)).symbol
+        y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = structure_panels(names, 3, 2.1, measure_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
             notes: list[tuple[str, str]] = []

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
+from rockflex.motion import MEASURES
 from rockflex.plot._style import literal, new_figure
 from rockflex.plot._surrogates import surrogate_looks
 from rockflex.plot._units import short
@@ -22,17 +23,6 @@ if TYPE_CHECKING:
 
 MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8", "H")
 
-_MEASURES = {
-    "pga": "PGA [m/s²]",
-    "pgv": "PGV [m/s]",
-    "pgd": "PGD [m]",
-    "arias": "Arias intensity [m/s]",
-    "cav": "CAV [m/s]",
-    "sd_t1": r"$S_d(T_1)$ [m]",
-    "sa_t1": r"$S_a(T_1)$ [m/s²]",
-    "relative_pga": r"PGA/($g\,\tan α$)",
-    "relative_pgv": r"$p$ PGV/($g\,\tan α$)",
-}
 _MOST = 12  # panels in one figure
 
 
@@ -46,7 +36,7 @@ def check_columns(table: object, columns: Iterable[str], source: str) -> None:
 
 def measure_name(measure: str) -> str:
     """An intensity measure with its unit, for an axis; of another column its name."""
-    return _MEASURES.get(measure, literal(measure))
+    return MEASURES[measure].axis if measure in MEASURES else literal(measure)
 
 
 def names_in(column: "pd.Series[Any] | Iterable[object]") -> list[str]:

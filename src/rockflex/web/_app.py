@@ -27,7 +27,9 @@ from rockflex.web._exchange import file_answer, file_of, question_of, state_of, 
 from rockflex.web._forms import forms
 from rockflex.web._headers import Headers
 from rockflex.web._jobs import Job, Jobs
+from rockflex.web._limit_states import limit_states
 from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
+from rockflex.web._measures import measures
 from rockflex.web._packing import plain
 from rockflex.web._presets import PRESETS
 from rockflex.web._records import PULSES, record_view, suite_view, suites
@@ -252,6 +254,8 @@ def _about() -> dict[str, Any]:
     first = State.model_validate({"structure": PRESETS[0]["structure"]})
     return forms() | {
         "suites": suites(),
+        "measures": measures(),
+        "limit_states": limit_states(),
         "pulses": pulses,
         "limits": limits,
         "state": plain(first.model_dump(exclude_none=True)),

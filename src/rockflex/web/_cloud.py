@@ -7,9 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import CloudFits, OutcomeFragility, bootstrap_band, fit_each_cloud, fit_outcomes
+from rockflex.fragility import (
+    NOMINAL,
+    OVERTURNING,
+    ROCKING,
+    CloudFits,
+    OutcomeFragility,
+    bootstrap_band,
+    fit_each_cloud,
+    fit_outcomes,
+)
 from rockflex.study.plans import CloudPlan, CloudStudy, pivot_lifts
 from rockflex.web._jobs import Job
+from rockflex.web._limit_states import ROTATION, limit_state
 from rockflex.web._packing import plain
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
@@ -70,7 +80,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
         view["notes"].append("The runs so far share one intensity.")
         return plain(view)
     grid = np.geomspace(im.min(), im.max(), GRID)
-    fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == "nominal")
+    fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
     view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
@@ -80,14 +90,8 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
 
 def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
-    fallen = (part["status"] == "overturned").to_numpy(dtype=bool)
-    nominal = part["nominal_overturning"].to_numpy(dtype=bool)
-    over = {
-        "rocking": rotation > fit.outcomes.threshold,
-        "rotation": fallen | (rotation > choice.rotation),
-        "nominal": nominal,
-        "overturning": fallen,
-    }[choice.limit]
+    fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
+    over = limit_state(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
     found: dict[str, Any] = {
         "model": fit.model,
         "n": len(part),
@@ -103,7 +107,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         "high": None,
     }
     notes += [f"{fit.model}: {note}" for note in fit.outcomes.notes]
-    if choice.limit == "rotation":
+    if choice.limit == ROTATION:
         try:
             found["p"] = fit.outcomes.exceedance(grid, choice.rotation)
             found["median"] = _median(grid, found["p"])
@@ -112,7 +116,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found
-    curve = fit.outcomes.initiation if choice.limit == "rocking" else fit.outcomes.overturning
+    curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
     low, high = curve.band(grid, choice.level)
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")

@@ -7,6 +7,7 @@ import numpy as np
 from rockflex._errors import InputError, SolverError
 from rockflex.study.plans import CloudPlan, DesignStudy, design_table, pivot_lifts, smallest_width
 from rockflex.web._jobs import Job
+from rockflex.web._limit_states import ROTATION
 from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import DesignChoice, State
@@ -21,7 +22,7 @@ RESAMPLES = 60  # while runs still come; then 200
 
 def limit_of(choice: DesignChoice) -> float | str:
     """Return the limit as the library takes it."""
-    return choice.rotation if choice.limit == "rotation" else choice.limit
+    return choice.rotation if choice.limit == ROTATION else choice.limit
 
 
 def design_study(state: State) -> DesignStudy:

@@ -10,7 +10,7 @@ import numpy as np
 import tomli_w
 
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import fit_each_cloud
+from rockflex.fragility import NOMINAL, fit_each_cloud
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.web._cloud import cloud_study
@@ -205,7 +205,7 @@ def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
         return "runs.csv", "text/csv", runs.to_csv(index=False).encode()
     from rockflex.plot import plot_fragility
 
-    fits, reasons = fit_each_cloud(runs, state.cloud.measure, nominal=state.cloud.limit == "nominal")
+    fits, reasons = fit_each_cloud(runs, state.cloud.measure, nominal=state.cloud.limit == NOMINAL.name)
     if not fits:
         raise Refusal(
             f"There is no curve to draw. {' '.join(f'{model}: {why}' for (_, model), why in reasons.items())}"

@@ -7,13 +7,17 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion import (
+    MEASURES,
     GroundMotion,
+    Measure,
+    Shaking,
     Suite,
     half_sine_pulse,
     load_suite,
     mavroeidis_papageorgiou_pulse,
     one_cosine_pulse,
     one_sine_pulse,
+    record_measures,
     rectangular_pulse,
     ricker_pulse,
     suite_names,
@@ -137,25 +141,14 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
     if built is not None and built.properties.n_modes:
         first = 2.0 * np.pi / float(built.properties.omega[0])
     measures: list[dict[str, Any]] = [
-        {"name": "PGA", "value": motion.pga, "unit": "m/s²", "help": "peak ground acceleration"},
-        {"name": "PGV", "value": motion.pgv, "unit": "m/s", "help": "peak ground velocity"},
-        {"name": "PGD", "value": motion.pgd, "unit": "m", "help": "peak ground displacement"},
-        {"name": "Arias", "value": motion.arias, "unit": "m/s", "help": "Arias intensity"},
-        {"name": "CAV", "value": motion.cav, "unit": "m/s", "help": "cumulative absolute velocity"},
-        {"name": "D₅₋₉₅", "value": motion.d5_95, "unit": "s", "help": "duration between 5 % and 95 % of Arias"},
+        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in record_measures()),
         {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
         {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
     ]
     if first is not None and built is not None:
-        sa = motion.sa(first, float(built.properties.zeta[0]))
-        measures.append(
-            {
-                "name": "Sa(T₁)",
-                "value": sa,
-                "unit": "m/s²",
-                "help": f"spectral acceleration at the first period and its damping, {built.properties.zeta[0]:.3g}",
-            }
-        )
+        zeta, of_mode = float(built.properties.zeta[0]), MEASURES["sa_t1"]
+        words = f"{of_mode.words} at the first period and its damping, {zeta:.3g}"
+        measures.append(_fact(of_mode, motion.sa(first, zeta), words))
     return plain(
         {
             "name": motion.name,
@@ -171,6 +164,10 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
             "lifting": _lifting(built),
         }
     )
+
+
+def _fact(measure: Measure, value: float, words: str) -> dict[str, Any]:
+    return {"name": measure.head, "value": value, "unit": measure.unit, "help": words}
 
 
 def _lifting(built: Built | None) -> float | None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import Tendon
 from rockflex.models import parse_model
 from rockflex.structure import LumpedMasses
@@ -13,6 +14,7 @@ from rockflex.structure.file import StructureEntry
 from rockflex.study.assumed import Assumed
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, limit_of
+from rockflex.web._limit_states import ROTATION
 from rockflex.web._records import PULSES
 from rockflex.web._state import PulseChoice, State
 
@@ -64,12 +66,12 @@ def cloud_script(state: State) -> str:
         f"free_vibration={study.free_vibration!r}{_law(state)}{_yielding(study)})",
         f"im = np.geomspace(runs[{cloud.measure!r}].min(), runs[{cloud.measure!r}].max(), 60)",
         "curves = {}",
-        f"for fit in rf.fit_clouds(runs, {cloud.measure!r}, nominal={cloud.limit == 'nominal'}):",
+        f"for fit in rf.fit_clouds(runs, {cloud.measure!r}, nominal={cloud.limit == NOMINAL.name}):",
     ]
-    if cloud.limit == "rotation":
+    if cloud.limit == ROTATION:
         lines.append(f"    curves[fit.model] = fit.outcomes.exceedance(im, {cloud.rotation!r})")
     else:
-        curve = "initiation" if cloud.limit == "rocking" else "overturning"
+        curve = "initiation" if cloud.limit == ROCKING.name else "overturning"
         lines.append(f"    curves[fit.model] = fit.outcomes.{curve}.probability(im)")
     return "\n".join([*lines, "print(curves)", ""])
 

@@ -10,13 +10,14 @@ from rockflex._errors import InputError
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, expected
 from rockflex.study.assumed import Assumed
+from rockflex.web._limit_states import DesignLimit, LimitName
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
+from rockflex.web._measures import MeasureName, SameForAll
 from rockflex.web._refusal import Refusal
 
 Name = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 Scale = Annotated[float, Field(ge=0.01, le=20.0, description="a number from 0.01 to 20")]
 Labels = Annotated[list[Name], Field(min_length=1, max_length=MODELS, description="a list of one to four models")]
-Measure = Literal["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "relative_pga", "relative_pgv"]
 Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a list of one to four suites")]
 
 
@@ -58,8 +59,8 @@ class CloudChoice(Table):
         [0.5, 1.0, 2.0], min_length=1, max_length=20, description="one to twenty scale factors from 0.01 to 20"
     )
     models: Labels = Field(["MDOF-S"], description="a list of one to four models")
-    measure: Measure = Field("pgv", description="an intensity measure")
-    limit: Literal["rocking", "rotation", "nominal", "overturning"] = Field("rocking", description="a limit state")
+    measure: MeasureName = Field("pgv", description="an intensity measure")
+    limit: LimitName = Field("rocking", description="a limit state")
     rotation: float = Field(0.01, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
     level: float = Field(0.9, ge=0.5, le=0.99, description="the confidence of the bands, from 0.5 to 0.99")
 
@@ -79,11 +80,9 @@ class DesignChoice(Table):
         [0.0, 0.2], min_length=1, max_length=4, description="one to four initial forces over the weight, from 0 to 5"
     )
     stiffness: float = Field(0.5, ge=0.0, le=100.0, description="the tendon's stiffness over L_0^r g/B², from 0 to 100")
-    measure: Literal["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1"] = Field(
-        "pgv", description="an intensity measure"
-    )
+    measure: SameForAll = Field("pgv", description="an intensity measure")
     at: float = Field(0.6, gt=0.0, le=1e4, description="the intensity in its SI unit, above 0")
-    limit: Literal["rotation", "nominal", "overturning"] = Field("rotation", description="a limit state")
+    limit: DesignLimit = Field("rotation", description="a limit state")
     rotation: float = Field(0.02, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from rockflex._errors import InputError
 from rockflex.models import parse_model
+from rockflex.motion import MEASURES
 from rockflex.study.plans import CloudPlan, CloudStudy, DesignStudy, to_frame
 from rockflex.web._jobs import Job
 from rockflex.web._limits import RUN, check_runs
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
 
 PER_CHUNK = 24  # runs between two looks at whether to go on
 CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
-UNITS = {
-    "pga": "m/s²", "pgv": "m/s", "pgd": "m", "arias": "m/s", "cav": "m/s", "sd_t1": "m", "sa_t1": "m/s²",
-    "relative_pga": "", "relative_pgv": "",
-}  # fmt: skip
 
 AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
 
@@ -83,7 +80,7 @@ def progress(job: Job, measure: str) -> dict[str, Any]:
         "message": job.message,
         "done": job.runs,
         "total": job.plan.n_runs,
-        "unit": UNITS[measure],
+        "unit": MEASURES[measure].unit,
         "curves": [],
         "notes": [],
     }

@@ -9,7 +9,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import Suite
+from rockflex.motion import Suite, intensities
 from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
@@ -22,7 +22,7 @@ from rockflex.study._arguments import (
 )
 from rockflex.study._case import Case
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
-from rockflex.study.plans._intensity import MEASURES, intensity_measures, scaled_measures
+from rockflex.study.plans._intensity import intensity_measures, scaled_measures
 from rockflex.study.plans._records import record_group
 from rockflex.study.plans._tables import RESULTS, Columns, Row, kinds_of, peaks_of
 
@@ -78,7 +78,7 @@ class Bench:
         found: dict[str, type | Sequence[str]] = {"structure": self.names}
         found |= record_columns(self.motions)
         found |= {"model": self.labels, "scale": float}
-        found |= dict.fromkeys(MEASURES, float)
+        found |= dict.fromkeys((measure.name for measure in intensities()), float)
         found |= {"status": str, **RESULTS, "nominal_limit": float}
         if self.assumptions.friction:
             found["required_friction"] = float

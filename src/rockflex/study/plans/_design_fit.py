@@ -11,13 +11,16 @@ from numpy.typing import NDArray
 from rockflex._checks import in_range, positive, whole_number
 from rockflex._errors import InputError
 from rockflex.fragility import (
+    OVERTURNED,
+    OVERTURNING,
+    ROCKED,
     HazardCurve,
     OutcomeFragility,
     UnanimousOutcome,
     annual_rate,
     fit_outcomes,
 )
-from rockflex.study.plans._design_limits import OVERTURNED, THRESHOLD, rotation_of
+from rockflex.study.plans._design_limits import rotation_of
 from rockflex.study.plans._design_resamples import exceedances, resample_weights
 
 if TYPE_CHECKING:
@@ -111,7 +114,7 @@ def judged(
 ) -> dict[str, Any]:
     """Columns of `design_table` for all runs of one design and model."""
     solved = group[group["status"].notna()]
-    fallen = (solved["status"] == "overturned").to_numpy(dtype=bool)
+    fallen = OVERTURNING.exceeded(solved).to_numpy(dtype=bool)
     rotation = solved["max_rotation"].to_numpy(dtype=float)
     nominal = float(solved["nominal_limit"].iloc[0]) if len(solved) else math.nan
     bound = rotation_of(limit, nominal) if len(solved) else math.nan
@@ -137,7 +140,7 @@ def _answers(runs: Runs, question: Question, band: Band | None) -> dict[str, Any
     if not runs.im.size:
         return found | {"note": "No run was solved: see the column error."}
     try:
-        fit = fit_outcomes(runs.im, runs.rotation, runs.fallen, threshold=THRESHOLD)
+        fit = fit_outcomes(runs.im, runs.rotation, runs.fallen, threshold=ROCKED)
         found["overturning"] = question.answer(fit.overturning.probability)[0]
         notes: list[str] = [note for note in fit.notes if note.kind != "initiation"]
         if question.hazard is None and not runs.im.min() <= question.nodes[0] <= runs.im.max():
@@ -168,7 +171,7 @@ def _limits(runs: Runs, question: Question, band: Band, fit: OutcomeFragility) -
         return math.nan, math.nan, "No band: all runs belong to one recording."
     weights = resample_weights(codes, int(band.n), band.seed)
     limit = None if runs.limit == OVERTURNED else runs.limit
-    drawn = exceedances(runs.im, runs.rotation, runs.fallen, weights, question.nodes, limit, THRESHOLD)
+    drawn = exceedances(runs.im, runs.rotation, runs.fallen, weights, question.nodes, limit, ROCKED)
     values = drawn @ question.weights
     values = values[np.isfinite(values)]
     if values.size < FEWEST:

@@ -5,11 +5,8 @@ import math
 from rockflex._checks import real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.study.plans._intensity import check_measure
-
-OVERTURNED = 0.5 * math.pi
-THRESHOLD = 1e-4  # rad up to which a run counts as one without rocking
-RELATIVE = ("relative_pga", "relative_pgv")  # to the base, so of another motion for each width
+from rockflex.fragility import NOMINAL, OVERTURNED, OVERTURNING, ROCKED
+from rockflex.motion import intensity
 
 
 def check_limit(limit: float | str) -> None:
@@ -19,8 +16,7 @@ def check_limit(limit: float | str) -> None:
 
 def check_same_for_all(measure: str) -> None:
     """Raise an InputError unless there is such a measure, and a level of it is the same motion for every base."""
-    check_measure(measure)
-    if measure in RELATIVE:
+    if intensity(measure).of_what == "base":
         raise InputError(f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1.")
 
 
@@ -33,18 +29,18 @@ def rotation_of(limit: float | str, nominal: float) -> float:
         If it is no limit, or not from 1e-4 rad to below π/2.
     """
     words = limit.split() if isinstance(limit, str) else []
-    if words == ["overturning"]:
+    if words == [OVERTURNING.name]:
         return OVERTURNED
     rotation = real_or_nan(limit)
-    if words and words[-1] == "nominal" and len(words) <= 2:
+    if words and words[-1] == NOMINAL.name and len(words) <= 2:
         try:
             rotation = nominal * float(words[0] if len(words) == 2 else 1.0)
         except ValueError:
             rotation = math.nan
-    if not THRESHOLD <= rotation < OVERTURNED:
+    if not ROCKED <= rotation < OVERTURNED:
         is_of = f" ({rotation:.3g} rad)" if words and math.isfinite(rotation) else ""
         raise InputError(
-            f"limit must be a rotation from {THRESHOLD:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
+            f"limit must be a rotation from {ROCKED:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
             f'"nominal" or "0.5 nominal" in the same range, or "overturning", but {shown(limit)}{is_of} was given.'
         )
     return rotation

@@ -8,12 +8,13 @@ from pydantic import Field, model_validator
 from rockflex._checks import in_range, one_of, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.fragility import LIMIT_STATES, OVERTURNING
 from rockflex.models import BoucWen, ImpactLaw
+from rockflex.motion import intensity
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plans._bench import Bench, bench_of
 from rockflex.study.plans._cross import CrossPlan
-from rockflex.study.plans._intensity import check_measure
 from rockflex.study.plans._ladder import Ladder, rungs, steps_between, steps_from_rest
 from rockflex.study.plans._plan import run_plan
 from rockflex.study.plans._spec import StructuresSpec
@@ -112,13 +113,13 @@ class IncrementalPlan(CrossPlan):
     def rows(self, unit: int) -> list[Row]:
         """Run one ladder."""
         structure, record, model, _ = self.run_of(unit)
-        flag = "nominal_overturning" if self.limit == "nominal" else None
+        state = LIMIT_STATES[self.limit]
 
         def run(scale: float) -> Row:
             row = self.bench.run(structure, record, model, scale)
             if "status" not in row:
                 return row | {"overturned": None}
-            return row | {"overturned": row["status"] == "overturned" or (flag is not None and row[flag])}
+            return row | {"overturned": OVERTURNING.exceeded(row) or state.exceeded(row)}
 
         return Ladder(run, self.scales, self.growth, self.tolerance).climb()
 
@@ -213,7 +214,7 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
     InputError
         If there is no such measure.
     """
-    check_measure(measure)
+    intensity(measure)
     import pandas as pd
 
     rows = []

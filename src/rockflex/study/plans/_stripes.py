@@ -9,15 +9,18 @@ from pydantic import Field
 from rockflex._checks import positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, beyond
+from rockflex.motion import intensity
 from rockflex.study._arguments import positive_numbers
 from rockflex.study.plans._bench import Bench
 from rockflex.study.plans._cross import CrossPlan
-from rockflex.study.plans._intensity import check_measure, factor_to
 from rockflex.study.plans._spec import StructuresSpec
 from rockflex.study.plans._tables import Columns, Row
 
 if TYPE_CHECKING:
     import pandas as pd
+
+COUNTED = (OVERTURNING, NOMINAL, UPLIFT)
 
 
 class StripeStudy(StructuresSpec):
@@ -46,12 +49,12 @@ class StripePlan(CrossPlan):
     """The cross product of structures, records, models and levels, cut into chunks."""
 
     def __init__(self, bench: Bench, measure: str, levels: Sequence[float], per_chunk: int) -> None:
-        check_measure(measure)
-        self.measure = measure
+        asked = intensity(measure)
+        self.measure = measure  # by its name, which a pickle can hold
         self.levels = positive_numbers("levels", levels, "")
         for structure, name in enumerate(bench.names):
             for record, motion in enumerate(bench.motions):
-                if not math.isfinite(factor_to(bench.measures(structure, record), measure, 1.0)):
+                if not math.isfinite(asked.factor(bench.measures(structure, record)[measure], 1.0)):
                     raise InputError(
                         f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
                     )
@@ -59,7 +62,8 @@ class StripePlan(CrossPlan):
 
     def scale(self, structure: int, record: int, level: int) -> float:
         """Factor that takes a record to a level of the measure."""
-        return factor_to(self.bench.measures(structure, record), self.measure, self.levels[level])
+        value = self.bench.measures(structure, record)[self.measure]
+        return intensity(self.measure).factor(value, self.levels[level])
 
     @property
     def columns(self) -> Columns:
@@ -96,17 +100,14 @@ def stripe_counts(
         If the limit is another word, or not positive.
     """
     solved = runs[runs["status"].notna()]
-    if limit == "overturning":
-        exceeds = solved["status"] == "overturned"
-    elif limit == "nominal":
-        exceeds = solved["nominal_overturning"]
-    elif limit == "uplift":
-        exceeds = solved["status"] != "no_uplift"
-    elif isinstance(limit, str):
-        raise InputError(
-            f'limit must be "overturning", "nominal", "uplift" or a rotation in rad, but {shown(limit)} was given.'
-        )
+    if isinstance(limit, str):
+        state = next((each for each in COUNTED if each.name == limit), None)
     else:
-        exceeds = solved["max_rotation"] > positive("limit", limit, "rad")
-    counted = solved.assign(exceeds=exceeds.astype(bool)).groupby(["structure", "model", "level"], observed=True)
+        state = beyond(positive("limit", limit, "rad"))
+    if state is None:
+        words = ", ".join(f'"{each.name}"' for each in COUNTED)
+        raise InputError(f"limit must be {words} or a rotation in rad, but {shown(limit)} was given.")
+    counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
+        ["structure", "model", "level"], observed=True
+    )
     return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()

@@ -1,30 +1,17 @@
 // Intensity measures and suites, as the studies offer them.
 
-// Name, title, unit and what stands at an axis.
-const MEASURES = [
-  ["pgv", "PGV, peak ground velocity", "m/s", "PGV"],
-  ["pga", "PGA, peak ground acceleration", "m/s²", "PGA"],
-  ["pgd", "PGD, peak ground displacement", "m", "PGD"],
-  ["sa_t1", "Sa(T₁), spectral acceleration", "m/s²", "Sa(T₁)"],
-  ["sd_t1", "Sd(T₁), spectral displacement", "m", "Sd(T₁)"],
-  ["arias", "Arias intensity", "m/s", "Arias intensity"],
-  ["cav", "CAV, cumulative absolute velocity", "m/s", "CAV"],
-];
-const RELATIVE = [
-  ["relative_pga", "PGA/(g tan α)", "", "PGA/(g tan α)"],
-  ["relative_pgv", "p PGV/(g tan α)", "", "p PGV/(g tan α)"],
-];
+// Values and titles for a list; the search for a width takes none of the base.
+export function measuresOf(about, ofBase) {
+  const offered = about.measures.filter((each) => ofBase || !each.of_base);
+  return offered.map((each) => [each.name, each.title]);
+}
 
-export { MEASURES };
-export const ALL_MEASURES = [...MEASURES, ...RELATIVE];
+const named = (about, name) => about.measures.find((each) => each.name === name);
 
-export const unitOf = (measure) => ALL_MEASURES.find(([name]) => name === measure)[2];
+export const unitOf = (about, name) => named(about, name).unit;
 
 // Short name of a measure with its unit, for an axis.
-export function axisOf(measure) {
-  const [, , unit, short] = ALL_MEASURES.find(([name]) => name === measure);
-  return unit ? `${short} [${unit}]` : short;
-}
+export const axisOf = (about, name) => named(about, name).axis;
 
 // Suites of many records, with short names.
 export function suitesOf(about) {

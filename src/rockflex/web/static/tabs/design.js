@@ -5,14 +5,9 @@ import { h, number, symbol } from "../dom.js";
 import { box, chips, select } from "../form.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
-import { MEASURES, suitesOf, unitOf } from "../measures.js";
+import { measuresOf, suitesOf, unitOf } from "../measures.js";
 import { assumed, Study } from "../study.js";
 
-const LIMITS = [
-  ["rotation", "a rotation"],
-  ["nominal", "the nominal limit 0.7 atan(B/h*₁)"],
-  ["overturning", "overturning"],
-];
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
 const RUNS = ["suites", "scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
@@ -28,10 +23,11 @@ export default function designTab(app) {
   const list = (name, label, options) =>
     select(`design.${name}`, label, options, choice()[name], (value) => put({ [name]: value }));
 
-  const limit = list("limit", "What is not to be exceeded", LIMITS);
+  const asked = app.about.limit_states.filter((each) => each.noun);
+  const limit = list("limit", "What is not to be exceeded", asked.map((each) => [each.name, each.noun]));
   const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
   const target = entry("target", "Probability that is accepted", { hint: "0.0001 to 0.99" });
-  const measure = list("measure", "Strength of the earthquake, by", MEASURES.map(([name, title]) => [name, title]));
+  const measure = list("measure", "Strength of the earthquake, by", measuresOf(app.about, false));
   const at = entry("at", "At the level", { unit: "m/s", hint: "of this measure, above 0" });
   const narrowest = entry("narrowest", "From", { unit: "× present B", hint: "0.2 to 2" });
   const widest = entry("widest", "To", { unit: "× present B", hint: "1 to 10" });
@@ -117,7 +113,7 @@ export default function designTab(app) {
     const offered = new Set([...MODELS, ...(app.state.bouc_wen ? YIELDING : []), choice().model]);
     model.setOptions([...offered].map((label) => [label, label]), choice().model);
     rotation.hidden = choice().limit !== "rotation";
-    at.querySelector(".unit").textContent = unitOf(choice().measure);
+    at.querySelector(".unit").textContent = unitOf(app.about, choice().measure);
     const held = (app.state.structure.tendons ?? []).length > 0;
     own.hidden = !held;
     tendons.hidden = stiffness.hidden = held;

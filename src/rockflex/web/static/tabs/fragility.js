@@ -5,16 +5,10 @@ import { h, number } from "../dom.js";
 import { box, chips, select } from "../form.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
-import { ALL_MEASURES, axisOf, suitesOf } from "../measures.js";
+import { axisOf, measuresOf, suitesOf } from "../measures.js";
 import { models } from "../models.js";
 import { assumed, Study } from "../study.js";
 
-const LIMITS = [
-  ["rocking", "it rocks (θ > 0.1 mrad)"],
-  ["rotation", "the rotation exceeds …"],
-  ["nominal", "the nominal limit 0.7 atan(B/h*₁)"],
-  ["overturning", "it overturns"],
-];
 const LEVELS = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation stand
 
@@ -27,9 +21,11 @@ export default function fragilityTab(app) {
   const scales = box("cloud.scales", "Scale factors", choice().scales, (value) => put({ scales: value }),
     { many: true, hint: "up to twenty, each from 0.01 to 20" });
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
-  const measures = ALL_MEASURES.map(([name, title]) => [name, title]);
+  const measures = measuresOf(app.about, true);
   const measure = select("cloud.measure", "Intensity measure", measures, choice().measure, (value) => put({ measure: value }));
-  const limit = select("cloud.limit", "Limit state", LIMITS, choice().limit, (value) => put({ limit: value }));
+  const asked = app.about.limit_states;
+  const limit = select("cloud.limit", "Limit state", asked.map((each) => [each.name, each.clause]), choice().limit,
+    (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
     { unit: "rad", hint: "0.0001 to 1.5" });
   const offered = LEVELS.some(([value]) => value === choice().level) ? LEVELS
@@ -70,7 +66,7 @@ export default function fragilityTab(app) {
     [["cloud-study", "Study (TOML)"], ["cloud-python", "Python lines"]]));
 
   function show(answer) {
-    const label = axisOf(choice().measure);
+    const label = axisOf(app.about, choice().measure);
     drawing.hidden = !answer.curves.length;
     empty.hidden = !drawing.hidden;
     curves.options.xLabel = cloud.options.xLabel = label;
@@ -88,7 +84,8 @@ export default function fragilityTab(app) {
         })),
       ],
     });
-    const at = { rocking: 1e-4, rotation: choice().rotation }[choice().limit];
+    const at = choice().limit === "rotation" ? choice().rotation
+      : asked.find((each) => each.name === choice().limit).line;
     cloud.set({
       yRange: [1e-5, 2],
       series: all.map((c) => ({

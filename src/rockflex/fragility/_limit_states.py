@@ -1,0 +1,90 @@
+"""What a run may exceed. All limits are of its largest rotation |θ|, in rad."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+OVERTURNED = 0.5 * math.pi  # rad
+ROCKED = 1e-4  # rad up to which a run counts as one without rocking
+
+
+@dataclass(frozen=True, kw_only=True)
+class LimitState:
+    """A limit that a run may exceed: its names, where it lies, and which runs exceed it.
+
+    Attributes
+    ----------
+    name : str
+        What files and calls call it.
+    label : str
+        What a reader of text is shown.
+    symbol : str
+        The event of exceeding it, in figures: words, or Matplotlib's mathtext without its dollar signs.
+    exceeded : callable
+        Tells of the rows of solved runs in a table, or of one row, whether they exceed it.
+    threshold : float
+        Rotation in rad; NaN where every structure has its own.
+    bound : str
+        The rotation at which it lies, in text; empty if the label says it.
+    """
+
+    name: str
+    label: str
+    symbol: str
+    exceeded: Callable[[Any], Any]
+    threshold: float = math.nan
+    bound: str = ""
+
+    @property
+    def rotation(self) -> str:
+        """The rotation at which it lies, in text."""
+        return self.bound or self.label
+
+
+def symbol_of_nominal(multiple: float = 1.0) -> str:
+    """Return the event of a rotation beyond a multiple of 0.7 atan(B/h*_1), as `LimitState.symbol`."""
+    times = "" if math.isclose(multiple, 1.0) else rf"{multiple:g}\cdot"
+    return rf"θ_{{\mathrm{{max}}}}>{times}0.7\,\mathrm{{atan}}(B/h^*_1)"
+
+
+def _overturned(runs: Any) -> Any:
+    return runs["status"] == "overturned"
+
+
+def beyond(rotation: float, name: str = "rotation", label: str = "") -> LimitState:
+    """Return the limit of a rotation in rad; a run that overturned passed every one below π/2."""
+
+    def exceeded(runs: Any) -> Any:
+        return (runs["max_rotation"] > rotation) | (_overturned(runs) & (rotation < OVERTURNED))
+
+    symbol = rf"θ_{{\mathrm{{max}}}}>{rotation:g}\ \mathrm{{rad}}"
+    return LimitState(
+        name=name, label=label or f"{rotation:g} rad", symbol=symbol, exceeded=exceeded, threshold=rotation
+    )
+
+
+UPLIFT = LimitState(
+    name="uplift", label="uplift", symbol="uplift", exceeded=lambda runs: runs["status"] != "no_uplift", threshold=0.0
+)
+ROCKING = beyond(ROCKED, "rocking", "θ_max > 1e-4 rad")
+NOMINAL = LimitState(
+    name="nominal",
+    label="0.7 atan(B/h*_1)",
+    symbol=symbol_of_nominal(),
+    exceeded=lambda runs: runs["nominal_overturning"],
+)
+OVERTURNING = LimitState(
+    name="overturning",
+    label="overturning",
+    symbol="overturning",
+    exceeded=_overturned,
+    threshold=OVERTURNED,
+    bound="|θ| = π/2",
+)
+LIMIT_STATES = {state.name: state for state in (UPLIFT, ROCKING, NOMINAL, OVERTURNING)}
+
+
+def limit_label(limit: float | str) -> str:
+    """Return what a reader is shown of a limit as files have it: words as they are, or a rotation in rad."""
+    return limit if isinstance(limit, str) else beyond(limit).label

@@ -1,0 +1,52 @@
+"""The limits that the page asks about, in its words."""
+
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import AfterValidator
+from pydantic_core import PydanticCustomError
+
+from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKING, LimitState, beyond
+
+
+class Asked(NamedTuple):
+    """How the page asks of a limit."""
+
+    name: str
+    clause: str  # after "What is asked: that"
+    noun: str  # after "What is not to be exceeded"; empty where a search for a width does not ask of it
+    line: float | None = None  # rad at which it is drawn, where that is not asked for
+
+
+ROTATION = "rotation"  # of which the page asks how large
+ASKED = (
+    Asked(ROCKING.name, "it rocks (θ > 0.1 mrad)", "", ROCKING.threshold),
+    Asked(ROTATION, "the rotation exceeds …", "a rotation"),
+    Asked(NOMINAL.name, "the nominal limit 0.7 atan(B/h*₁)", "the nominal limit 0.7 atan(B/h*₁)"),
+    Asked(OVERTURNING.name, "it overturns", "overturning"),
+)
+
+
+def _asked(name: str) -> str:
+    if name not in (each.name for each in ASKED):
+        raise PydanticCustomError("unknown_limit", "unknown limit")
+    return name
+
+
+def _designed(name: str) -> str:
+    if any(each.name == name and not each.noun for each in ASKED):
+        raise PydanticCustomError("limit_of_no_design", "limit of no design")
+    return name
+
+
+LimitName = Annotated[str, AfterValidator(_asked)]
+DesignLimit = Annotated[LimitName, AfterValidator(_designed)]
+
+
+def limit_state(name: str, rotation: float) -> LimitState:
+    """Return a limit by its name on the page; `rotation` in rad is that of "rotation"."""
+    return beyond(rotation) if name == ROTATION else LIMIT_STATES[name]
+
+
+def limit_states() -> list[dict[str, Any]]:
+    """Return what the lists of the page say of each limit."""
+    return [each._asdict() for each in ASKED]

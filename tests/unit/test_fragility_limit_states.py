@@ -1,0 +1,66 @@
+"""Limit states as values: which runs exceed them, and how their names appear."""
+
+import math
+
+import pandas as pd
+import pytest
+
+import rockflex as rf
+from rockflex.fragility import (
+    LIMIT_STATES,
+    NOMINAL,
+    OVERTURNED,
+    OVERTURNING,
+    ROCKING,
+    UPLIFT,
+    beyond,
+    limit_label,
+    symbol_of_nominal,
+)
+
+# At rest, lifted by less than counts, rocking, beyond 0.7 atan(B/h*_1), and over.
+RUNS = pd.DataFrame(
+    {
+        "structure": "S",
+        "model": "rigid",
+        "level": 1.0,
+        "status": ["no_uplift", "rocking", "rocking", "rocking", "overturned"],
+        "max_rotation": [0.0, 5e-5, 0.02, 0.2, OVERTURNED],
+        "nominal_overturning": [False, False, False, True, True],
+    }
+)
+
+
+@pytest.mark.parametrize(
+    ("state", "first"),
+    [(UPLIFT, 1), (ROCKING, 2), (beyond(0.1), 3), (NOMINAL, 3), (OVERTURNING, 4)],
+    ids=lambda each: getattr(each, "label", each),
+)
+def test_runs_that_exceed_it(state, first):
+    expected = [False] * first + [True] * (5 - first)
+    assert state.exceeded(RUNS).tolist() == expected
+    assert [bool(state.exceeded(row)) for row in RUNS.to_dict("records")] == expected
+
+
+@pytest.mark.parametrize("state", [UPLIFT, NOMINAL, OVERTURNING], ids=lambda state: state.name)
+def test_counts_of_stripes_are_of_it(state):
+    assert rf.stripe_counts(RUNS, state.name)["n_exceeding"].tolist() == [state.exceeded(RUNS).sum()]
+
+
+def test_what_overturned_passed_every_rotation_below_a_right_angle():
+    fallen = {"status": "overturned", "max_rotation": 1.5}  # the last sample that is known
+    assert beyond(1.55).exceeded(fallen)
+    assert not beyond(OVERTURNED).exceeded(fallen)
+    assert not beyond(1.55).exceeded(fallen | {"status": "rocking"})
+
+
+def test_names():
+    assert all(LIMIT_STATES[name].name == name for name in LIMIT_STATES)
+    assert (OVERTURNING.label, OVERTURNING.rotation) == ("overturning", "|θ| = π/2")
+    assert NOMINAL.label == NOMINAL.rotation == "0.7 atan(B/h*_1)"
+    assert NOMINAL.symbol == r"θ_{\mathrm{max}}>0.7\,\mathrm{atan}(B/h^*_1)"
+    assert symbol_of_nominal(0.5) == r"θ_{\mathrm{max}}>0.5\cdot0.7\,\mathrm{atan}(B/h^*_1)"
+    assert beyond(0.02).symbol == r"θ_{\mathrm{max}}>0.02\ \mathrm{rad}"
+    assert [limit_label(limit) for limit in ("0.5 nominal", 0.02)] == ["0.5 nominal", "0.02 rad"]
+    assert (ROCKING.label, ROCKING.threshold) == ("θ_max > 1e-4 rad", 1e-4)
+    assert math.isnan(NOMINAL.threshold)
