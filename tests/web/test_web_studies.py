@@ -146,7 +146,7 @@ def test_a_narrow_base_of_a_search_is_refused_where_its_runs_take_too_long(clien
         ("cloud", {"cloud": {"suites": ["nowhere"]}}, "cloud", "No embedded suite is named"),
         ("cloud", {"cloud": {"scales": [1e9]}}, "cloud.scales", "one to twenty scale factors"),
         ("design", {"design": {"narrowest": 2.0, "widest": 1.5}}, "design.widest", "more than the narrowest"),
-        ("design", {"design": {"model": "fixed"}}, "design", "cannot lift"),
+        ("design", {"design": {"model": "fixed"}}, "design", "has a fixed base"),
         ("design", {"design": {"rotation": 2.0}}, "design.rotation", "a rotation in rad"),
     ],
 )
