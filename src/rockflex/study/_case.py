@@ -1,7 +1,6 @@
 """One run, written once: a model tied to a structure and what is asked of its runs, under a motion at a scale."""
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 
 from rockflex._errors import InputError
 from rockflex.models import Quantities, RockingModel
@@ -32,11 +31,13 @@ class Case:
         Whether the peaks of the floors are tracked.
     extra
         Quantities whose peaks are tracked beside the usual ones.
+    engine
+        The model made ready for records.
 
     Raises
     ------
     InputError
-        If a run is to settle and no one can tell when a hysteretic spring has.
+        If a run is to settle and no one can tell when a hysteretic spring has, or the model's numbers overflow.
     """
 
     model: RockingModel
@@ -46,6 +47,7 @@ class Case:
     history: bool = False
     floors: bool = False
     extra: Quantities | None = None
+    engine: Engine = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.free_vibration is None and self.model.bouc_wen is not None:
@@ -53,13 +55,10 @@ class Case:
                 f'free_vibration="settle" cannot tell when the hysteretic spring of {self.model.label} is at rest. '
                 "Give the free vibration in seconds."
             )
-
-    @cached_property
-    def engine(self) -> Engine:
-        """The model made ready for records."""
         with preparing(self.model):
             asked = asked_of(self.model, floors=self.floors)
-            return Engine(self.model, asked if self.extra is None else asked + self.extra)
+            engine = Engine(self.model, asked if self.extra is None else asked + self.extra)
+        object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
         """Return what a run is asked, to estimate its work by."""

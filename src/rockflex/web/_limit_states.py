@@ -12,7 +12,7 @@ class Asked(NamedTuple):
     """How the page asks of a limit."""
 
     name: str
-    clause: str  # after "What is asked: that"
+    clause: str  # in the list "Limit state"
     noun: str  # after "What is not to be exceeded"; empty where a search for a width does not ask of it
     line: float | None = None  # rad at which it is drawn, where that is not asked for
 

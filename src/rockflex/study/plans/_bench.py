@@ -110,10 +110,7 @@ class Bench:
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """What a run is asked, to estimate its work by; None if there is no such model."""
         case = self._case(structure, model)
-        try:
-            return None if isinstance(case, str) else case.task(self.motions[record], scale)
-        except InputError:
-            return None
+        return None if isinstance(case, str) else case.task(self.motions[record], scale)
 
     def check_work(self, runs: Iterable[tuple[int, int, int, float]]) -> None:
         """Raise the error of the first of these runs if every one of them is more work than it may be."""
