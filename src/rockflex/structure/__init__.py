@@ -7,8 +7,9 @@ from rockflex.structure._eccentric import Eccentric
 from rockflex.structure._equivalents import equivalent_2hz_long_base, equivalent_s1
 from rockflex.structure._fish_bone import FishBone
 from rockflex.structure._frame import Frame
-from rockflex.structure._from_matrices import ModalStructure, from_matrices, from_modes
+from rockflex.structure._from_matrices import from_matrices, from_modes
 from rockflex.structure._lumped import LumpedStructure
+from rockflex.structure._modal_structure import ModalStructure
 from rockflex.structure._restrained import Restrained
 from rockflex.structure._ritz import RitzShapes, cosine_shapes
 from rockflex.structure._sections import LumpedMasses

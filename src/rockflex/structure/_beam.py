@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, SupportsIndex
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,8 +12,10 @@ from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
+from rockflex.modal import MassNormalisedModes
+from rockflex.structure._based import Assembled
 from rockflex.structure._beam_fe import finite_element_modes
+from rockflex.structure._modal_structure import ModalStructure
 from rockflex.structure._profile import Along, Profile, profile
 from rockflex.structure._ritz import RitzShapes, cosine_shapes, ritz_modes
 from rockflex.structure._sections import LumpedMasses, Sections, on_beam
@@ -24,7 +26,7 @@ _RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Beam(Value):
+class Beam(Assembled, Value):
     """A cantilever with distributed mass on a rigid base that can rock.
 
     What varies along the height is a number, a function of heights (n,) in m that returns values (n,), or a table
@@ -116,31 +118,11 @@ class Beam(Value):
             vars(self)[name] = None if along is None else along.given
         self._check_method()
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
-
-        The shapes are given at 20 equal steps of the height.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to the structure's own.
-        """
-        modes = self._modes.modal()
-        return modes if n_modes is None else modes.truncated(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        The floors are 21 stations, base included, that carry the distributed forces with their resultants.
-
-        Raises
-        ------
-        InputError
-            If there are not as many modes.
-        """
+    @property
+    def assembled(self) -> ModalStructure:
+        """The structure known by its modes; their shapes are given at 20 equal steps of the height."""
         zeta = np.asarray(self.damping_ratio, dtype=np.float64)
-        return self._modes.rocking(self.base_mass, self.half_width, zeta, n_modes)
+        return ModalStructure(self._modes, self.base_mass, self.half_width, zeta)
 
     @cached_property
     def _modes(self) -> MassNormalisedModes:

@@ -2,23 +2,23 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import SupportsIndex
 
 from numpy.typing import ArrayLike
 
 from rockflex._checks import mode_count, positive
 from rockflex._computable import computable
 from rockflex._values import Value
-from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.structure._based import Assembled
 from rockflex.structure._beam import Beam
-from rockflex.structure._from_matrices import ModalStructure, from_matrices
+from rockflex.structure._from_matrices import from_matrices
+from rockflex.structure._modal_structure import ModalStructure
 from rockflex.structure._sections import LumpedMasses
 
 _N_MODES = 5
 
 
 @dataclass(frozen=True, eq=False)
-class CantileverWithTipMass(Value):
+class CantileverWithTipMass(Assembled, Value):
     """A uniform column that carries a body at its tip, clamped to a base that can rock.
 
     Attributes
@@ -100,22 +100,7 @@ class CantileverWithTipMass(Value):
             n_modes=mode_count(self.n_modes, modes),
         )
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to the structure's own.
-        """
-        return self.built.modal(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        Raises
-        ------
-        InputError
-            If there are not as many modes.
-        """
-        return self.built.rocking(n_modes)
+    @property
+    def assembled(self) -> Beam | ModalStructure:
+        """The beam, or the body on two freedoms: that of `built`."""
+        return self.built

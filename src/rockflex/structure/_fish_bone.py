@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,14 +11,14 @@ from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.structure._based import Assembled
 from rockflex.structure._lumped import LumpedStructure
 
 Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class FishBone(Value):
+class FishBone(Assembled, Value):
     """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
 
     The column stands for all columns of a story and the half beams for all beams of a floor; members are
@@ -108,25 +107,10 @@ class FishBone(Value):
             damping_ratio=self.damping_ratio,
         )
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all N.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to N.
-        """
-        return self.lumped.modal(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to N.
-        """
-        return self.lumped.rocking(n_modes)
+    @property
+    def assembled(self) -> LumpedStructure:
+        """Lumped masses: those of `lumped`."""
+        return self.lumped
 
 
 @computable("The stiffness of a frame with these story heights, column and beam stiffnesses")

@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,8 @@ from rockflex._checks import MOST_STORIES, in_range, positive, real_or_nan, whol
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import ModalProperties, RockingProperties, modal_properties
+from rockflex.modal import ModalProperties, modal_properties
+from rockflex.structure._based import Assembled
 from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
 
@@ -20,7 +20,7 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Frame:
+class Frame(Assembled):
     """A frame of one bay and N equal stories, with columns clamped to a base that can rock.
 
     Columns and beams are inextensible, each of uniform stiffness, and alike in all stories; the masses are
@@ -117,25 +117,10 @@ class Frame:
             damping_ratio=self.damping_ratio,
         )
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all of them.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to N.
-        """
-        return self.lumped.modal(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to N.
-        """
-        return self.lumped.rocking(n_modes)
+    @property
+    def assembled(self) -> LumpedStructure:
+        """Lumped masses: those of `lumped`."""
+        return self.lumped
 
 
 @lru_cache(maxsize=128)

@@ -1,7 +1,7 @@
 """Structures from the matrices, or from the modes, of any finite element program."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import SupportsIndex
 
 import numpy as np
@@ -11,57 +11,14 @@ from rockflex._checks import damping_ratios, dimensions, finite_matrix, finite_v
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_mass, checked_stiffness
-from rockflex._values import Value
-from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties, modes_that_take_part
+from rockflex.modal import MassNormalisedModes, modes_that_take_part
 from rockflex.structure._freedoms import Freedoms, Heights
 from rockflex.structure._matrix_files import Given, numbers
+from rockflex.structure._modal_structure import ModalStructure
 
 Float = NDArray[np.float64]
 
 _ORTHOGONAL = 1e-5  # room for printed digits
-
-
-@dataclass(frozen=True, eq=False)
-class ModalStructure(Value):
-    """A structure known by its modes; `from_matrices` and `from_modes` make it.
-
-    Attributes
-    ----------
-    modes : MassNormalisedModes
-        Its modes, without those that neither the ground nor the rotation of the base excites.
-    base_mass : float
-        Mass m_0 of the base in kg.
-    half_width : float
-        Half the width B of the base in m.
-    damping_ratio : ndarray, shape (n,)
-        Damping ratio of each mode.
-    """
-
-    modes: MassNormalisedModes
-    base_mass: float
-    half_width: float
-    damping_ratio: Float
-
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to the structure's own.
-        """
-        modes = self.modes.modal()
-        return modes if n_modes is None else modes.truncated(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        Raises
-        ------
-        InputError
-            If there are not as many modes.
-        """
-        return self.modes.rocking(self.base_mass, self.half_width, self.damping_ratio, n_modes)
 
 
 def from_matrices(

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, SupportsIndex
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,7 @@ from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.structure._based import Assembled
 from rockflex.structure._beam import Beam
 
 Float = NDArray[np.float64]
@@ -22,7 +22,7 @@ _N_ELEMENTS = 2000  # as many as the paper takes
 
 
 @dataclass(frozen=True, eq=False)
-class TaperedTower(Value):
+class TaperedTower(Assembled, Value):
     """A hollow truncated cone with a wall of one thickness (Silva & Stojadinović 2024, Section 4.1.1).
 
     Attributes
@@ -107,25 +107,10 @@ class TaperedTower(Value):
         """Half the width B of the base in m."""
         return self.base_radius
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to the structure's own.
-        """
-        return self.beam.modal(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        Raises
-        ------
-        InputError
-            If there are not as many modes.
-        """
-        return self.beam.rocking(n_modes)
+    @property
+    def assembled(self) -> Beam:
+        """The cantilever of `beam`."""
+        return self.beam
 
 
 @dataclass(frozen=True)

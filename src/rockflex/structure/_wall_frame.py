@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,8 +11,10 @@ from scipy.optimize import brentq
 from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._values import Value
-from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
+from rockflex.modal import MassNormalisedModes
+from rockflex.structure._based import Assembled
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
+from rockflex.structure._modal_structure import ModalStructure
 
 Float = NDArray[np.float64]
 
@@ -22,7 +23,7 @@ _LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 
 
 @dataclass(frozen=True, eq=False)
-class WallFrame(Value):
+class WallFrame(Assembled, Value):
     """A uniform wall in flexure beside a uniform frame in shear, tied all along the height.
 
     EI u'''' - GA u'' = m ω² u: the coupled beam of Miranda & Taghavi (2005, Journal of Structural Engineering 131(2),
@@ -83,27 +84,11 @@ class WallFrame(Value):
         """Half the width B = h*_1/aspect_ratio of the base in m."""
         return float(self._modes.moment[0] / self._modes.shear[0]) / self.aspect_ratio
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to the structure's own.
-        """
-        modes = self._modes.modal()
-        return modes if n_modes is None else modes.truncated(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        Raises
-        ------
-        InputError
-            If there are not as many modes.
-        """
+    @property
+    def assembled(self) -> ModalStructure:
+        """The structure known by its modes; their shapes are given at 20 equal steps of the height."""
         zeta = np.asarray(self.damping_ratio, dtype=np.float64)
-        return self._modes.rocking(self.base_mass, self.half_width, zeta, n_modes)
+        return ModalStructure(self._modes, self.base_mass, self.half_width, zeta)
 
     @cached_property
     @computable("The modes of a wall and frame with this height, mass, stiffness_parameter and period")

@@ -1,0 +1,55 @@
+"""A structure known by its modes."""
+
+from dataclasses import dataclass
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._values import Value
+from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ModalStructure(Value):
+    """A structure known by its modes; `from_matrices` and `from_modes` return it.
+
+    Attributes
+    ----------
+    modes : MassNormalisedModes
+        Its modes, without those that neither the ground nor the rotation of the base excites.
+    base_mass : float
+        Mass m_0 of the base in kg.
+    half_width : float
+        Half the width B of the base in m.
+    damping_ratio : ndarray, shape (n,)
+        Damping ratio of each mode.
+    """
+
+    modes: MassNormalisedModes
+    base_mass: float
+    half_width: float
+    damping_ratio: Float
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the structure's own.
+        """
+        modes = self.modes.modal()
+        return modes if n_modes is None else modes.truncated(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Raises
+        ------
+        InputError
+            If there are not as many modes.
+        """
+        return self.modes.rocking(self.base_mass, self.half_width, self.damping_ratio, n_modes)
