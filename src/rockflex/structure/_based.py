@@ -1,4 +1,4 @@
-"""What another structure can be made from: anything on a base that can rock."""
+"""The protocol of all structures on a base that can rock."""
 
 from typing import Protocol, SupportsIndex
 
@@ -6,7 +6,7 @@ from rockflex.modal import ModalProperties, RockingProperties
 
 
 class Based(Protocol):
-    """Any structure."""
+    """Any structure that has modes and can rock."""
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties: ...
 
@@ -14,5 +14,5 @@ class Based(Protocol):
 
 
 def is_structure(given: object) -> bool:
-    """Tell whether something has modes and can rock; a class of structures does not."""
+    """Return whether an object has modes and can rock; a class, as opposed to an instance, does not count."""
     return not isinstance(given, type) and hasattr(given, "rocking") and hasattr(given, "modal")
