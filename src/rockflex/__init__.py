@@ -1,7 +1,7 @@
 """Exact and fast seismic response of flexible structures whose base may uplift and rock.
 
-Names are imported from their layers when they are first used, so that ``import rockflex`` and
-``rockflex --help`` take no time. The signatures stand in ``__init__.pyi``.
+Names are imported from their packages on first use, so that ``import rockflex`` and ``rockflex --help``
+are instant. The public names are listed in ``__init__.pyi``.
 """
 
 import lazy_loader as lazy

@@ -1,4 +1,4 @@
-"""Checks of arguments, with messages that say what was given, what is expected and how to mend it."""
+"""Checks of arguments, with messages that state what was given, what is expected and how to correct it."""
 
 import math
 import operator
@@ -17,13 +17,13 @@ Float = NDArray[np.float64]
 T = TypeVar("T")
 
 MOST_STORIES, MOST_MODES = 1000, 200
-"""Most stories of a frame, and modes of a continuous structure: as many take seconds, and some 100 MB."""
+"""Limits of stories of a frame and modes of a continuous structure: these take seconds and about 100 MB."""
 
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
 
 
 def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite: bool = False) -> float:
-    """Return `value` as a float that is positive (or zero, or infinite, where allowed)."""
+    """Return `value` as a positive float (or zero, or infinity, if allowed)."""
     number = _number(name, value, unit)
     low_enough = number > 0 or (zero and number == 0)
     if not low_enough or math.isnan(number) or (math.isinf(number) and not infinite):
@@ -34,7 +34,7 @@ def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite
 
 
 def in_range(name: str, value: float, low: float, high: float, *, hint: str = "", field: str | None = None) -> float:
-    """Return `value` as a float in [low, high); `field` is the argument that a `name` such as zeta[1] is a part of."""
+    """Return `value` as a float in [low, high); `field` is the argument to which a `name` such as zeta[1] belongs."""
     number = _number(name, value, "")
     if not low <= number < high:
         message = f"{name} must lie in [{low:g}, {high:g}), but {shown(value)} was given."
@@ -72,7 +72,7 @@ def finite(name: str, value: float, unit: str) -> float:
 
 
 def real_or_nan(value: object) -> float:
-    """Return a real number as a float, and NaN for all else: booleans, strings, arrays, numbers too large for one."""
+    """Return a real number as a float; NaN for booleans, strings, arrays, and numbers too large for a float."""
     if isinstance(value, bool) or not isinstance(value, Real):
         return math.nan
     try:
@@ -82,7 +82,7 @@ def real_or_nan(value: object) -> float:
 
 
 def within(name: str, value: float, limit: float, unit: str) -> float:
-    """Return `value` as a float of a magnitude below `limit`; booleans, strings and arrays are refused."""
+    """Return `value` as a float of magnitude below `limit`; booleans, strings and arrays are rejected."""
     number = real_or_nan(value)
     if not abs(number) < limit:
         raise InputError(
@@ -95,7 +95,7 @@ def within(name: str, value: float, limit: float, unit: str) -> float:
 def whole_number(
     name: str, value: SupportsIndex, low: int, high: int | None = None, *, field: str | None = None
 ) -> int:
-    """Return `value` as an int of at least `low` and at most `high`; booleans and floats are refused.
+    """Return `value` as an int from `low` to `high`; booleans and floats are rejected.
 
     `field` as in `in_range`.
     """
@@ -113,12 +113,12 @@ def whole_number(
 
 
 def mode_count(n_modes: SupportsIndex | None, available: int) -> int:
-    """Return the number of modes asked for; None asks for all that are available."""
+    """Return the requested number of modes; None means all that are available."""
     return available if n_modes is None else whole_number("n_modes", n_modes, 1, available)
 
 
 def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Float:
-    """Return one damping ratio in [0, 1) a mode, read-only, from one number or from `n_modes` numbers."""
+    """Return a read-only array of one damping ratio in [0, 1) per mode, from one or from `n_modes` numbers."""
     if dimensions(values) == 0:
         ratio = in_range(name, values, 0.0, 1.0, hint=_DAMPING_HINT)  # pyright: ignore[reportArgumentType]
         ratios = np.full(n_modes, ratio)
@@ -138,7 +138,7 @@ def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Float:
 
 
 def dimensions(values: ArrayLike) -> int:
-    """Return the number of dimensions of `values`; 1 for ragged rows, which a later check refuses."""
+    """Return the number of dimensions of `values`; 1 for ragged rows, which a later check rejects."""
     try:
         return np.ndim(values)
     except ValueError:
@@ -148,7 +148,7 @@ def dimensions(values: ArrayLike) -> int:
 def finite_matrix(
     name: str, values: ArrayLike, unit: str, shape: tuple[int, int], *, field: str | None = None
 ) -> Float:
-    """Return a float64 copy of `values` that has the given shape and finite entries only; `field` as in `in_range`."""
+    """Return a float64 copy of `values` with the given shape and only finite entries; `field` as in `in_range`."""
     field = field or name
     array = float_array(values)
     if array is None:
@@ -166,7 +166,7 @@ def finite_matrix(
 
 
 def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Float:
-    """Return a read-only float64 copy of `values`: one row or more, of `columns` finite numbers each."""
+    """Return a read-only float64 copy of `values`: at least one row of `columns` finite numbers each."""
     rows = np.shape(values)[0] if dimensions(values) == 2 else 1
     array = finite_matrix(name, values, unit, (max(rows, 1), columns))
     array.setflags(write=False)
@@ -174,7 +174,7 @@ def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Float:
 
 
 def float_array(values: ArrayLike) -> Float | None:
-    """Return a float64 copy of real numbers; None for ragged rows, complex numbers, dates, and what is too large."""
+    """Return a float64 copy of real numbers; None for ragged rows, complex numbers, dates, and too large numbers."""
     try:
         given = np.asarray(values)
         return None if given.dtype.kind in "cmM" else np.array(given, dtype=np.float64)
@@ -191,7 +191,7 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
 
 
 def one_of(value: object, words: Collection[str]) -> bool:
-    """Tell whether `value` is one of some words; an array of words is none."""
+    """Return whether `value` is a string among `words`; False for an array of strings."""
     return isinstance(value, str) and value in words
 
 
@@ -226,7 +226,7 @@ def _number(name: str, value: float, unit: str) -> float:
 
 
 def _float_or_none(value: Any) -> float | None:
-    """Return a number as a float; None for all else, complex numbers and those too large for a float included."""
+    """Return a number as a float; None for anything else, complex numbers, and numbers too large for a float."""
     if isinstance(value, complex | np.complexfloating) or (isinstance(value, np.ndarray) and value.ndim):
         return None
     try:

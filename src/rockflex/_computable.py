@@ -1,4 +1,4 @@
-"""Numbers that leave the range of double precision, told in terms of what was given."""
+"""Reports overflow and similar arithmetic failures in terms of the given values."""
 
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
@@ -10,14 +10,14 @@ from rockflex._errors import InputError
 
 @contextmanager
 def computable(what: str | Callable[[], str], field: str | None = None) -> Generator[None]:
-    """Turn a failure of arithmetic into an error that says what cannot be computed; a block or a decorator.
+    """Turn an arithmetic failure into an error that states what cannot be computed; a context or a decorator.
 
     Parameters
     ----------
     what
-        What is computed and from what, as the subject of a sentence; or a function that says so.
+        What is computed from what, as the subject of a sentence, or a function that returns this text.
     field
-        The argument that it depends on, where it is one.
+        The argument responsible, if there is a single one.
 
     Raises
     ------

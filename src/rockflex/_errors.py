@@ -1,19 +1,19 @@
-"""The two ways in which a call can fail, and the one in which it goes on with less."""
+"""The two errors that calls raise, and the warning about records that are left out."""
 
 from rockflex._shown import shortened
 
-LONGEST = 1900  # characters of a message, where a path or a text of the user would make it any length
+LONGEST = 1900  # most characters of a message, which may quote paths and texts of any length
 
 
 class InputError(ValueError):
-    """What was given cannot be used; the message says what, what is expected, and how to mend it.
+    """An invalid input; the message states what was given, what is expected, and how to correct it.
 
     Attributes
     ----------
     field : str or None
-        Name of the argument at fault, where it is one.
+        Name of the invalid argument, if there is a single one.
     said : str
-        The message without the place in a file that it begins with, such as "[frame]", where it does.
+        The message without the place in a file, such as "[frame]", with which it may begin.
     """
 
     def __init__(
@@ -25,11 +25,11 @@ class InputError(ValueError):
 
 
 class SolverError(RuntimeError):
-    """A run that cannot be solved; the message carries the time and the state where it stopped."""
+    """A run that cannot be solved; the message contains the time and the state at which it stopped."""
 
     def __init__(self, message: str = "") -> None:
         super().__init__(shortened(message, LONGEST))
 
 
 class RecordWarning(UserWarning):
-    """Record files are left out of a suite; the message names them, and says why."""
+    """Record files were left out of a suite; the message lists them with the reasons."""

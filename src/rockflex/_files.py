@@ -1,4 +1,4 @@
-"""Paths as they are given, and files that appear whole or not at all and outlast a loss of power afterwards."""
+"""Checks of paths, and atomic writing of files that survive a loss of power."""
 
 import os
 import stat
@@ -18,12 +18,12 @@ _KINDS = (
 
 
 def path_of(name: str, given: object) -> Path:
-    """Return what was given as a path, of which the system can at least say whether there is a file.
+    """Return a given path for which the system can check whether a file exists.
 
     Raises
     ------
     InputError
-        If it is no path, or none that a file can have.
+        If it is not a path, or not a path that a file can have.
     """
     if not isinstance(given, str | Path):
         raise InputError(f"{name} must be a path, but {type(given).__name__} was given.", field=name)
@@ -31,36 +31,36 @@ def path_of(name: str, given: object) -> Path:
     try:
         os.fsencode(path)
         path.exists()
-        reason = "a path holds no null character" if "\0" in str(path) else ""
+        reason = "a path cannot contain a null character" if "\0" in str(path) else ""
     except UnicodeEncodeError:
-        reason = "it holds a character that no path has"
+        reason = "it contains a character that is not allowed in a path"
     except OSError as error:
         reason = error.strerror
     if reason:
-        raise InputError(f"{name} must be that of a file, but {shown(str(path))} was given: {reason}.", field=name)
+        raise InputError(f"{name} must be a valid path, but {shown(str(path))} was given: {reason}.", field=name)
     return path
 
 
 def irregular(path: Path) -> str:
-    """Say what stands at `path` in place of a regular file, as "a pipe"; empty for such a file, and where none is."""
+    """Return what `path` is if not a regular file, such as "a pipe"; empty for a regular or a missing file."""
     try:
         mode = path.stat().st_mode
-    except OSError:  # told by who reads it
+    except OSError:  # reported by the reader
         return ""
     return next((kind for is_kind, kind in _KINDS if is_kind(mode)), "")
 
 
 def check_regular(path: Path, name: str = "") -> None:
-    """Refuse what may never end when it is read, or cannot be; every reader asks before it opens.
+    """Reject anything but regular files, such as pipes, which may never end; every reader calls this first.
 
     Raises
     ------
     InputError
-        If there is something at `path`, and no regular file; `name` says in the message which argument it was.
+        If there is something other than a regular file at `path`; `name` is the argument, for the message.
     """
     kind = irregular(path)
     if kind:
-        remedy = "Give a file in it." if kind == "a folder" else "Write what it gives to a file, and give that."
+        remedy = "Give a file in it." if kind == "a folder" else "Write its content to a file, and give that."
         raise InputError(
             f"{name}{': ' * bool(name)}{path} is {kind}, but a regular file is expected. {remedy}",
             field=name or None,
@@ -68,7 +68,7 @@ def check_regular(path: Path, name: str = "") -> None:
 
 
 def write_whole(path: Path, content: bytes) -> Path:
-    """Write `content` beside `path`, force it to the disk and move it there; a failure leaves what was there before."""
+    """Write `content` to a temporary file, flush it to disk and move it to `path`; on failure `path` is unchanged."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}-{uuid4().hex}")
     try:
@@ -85,13 +85,13 @@ def write_whole(path: Path, content: bytes) -> Path:
 
 
 def sweep(folder: Path, pattern: str) -> None:
-    """Remove what a killed process left of files whose names match `pattern`."""
+    """Remove temporary files of killed processes for names that match `pattern`."""
     for left in folder.glob(f".{pattern}.*"):
         left.unlink(missing_ok=True)
 
 
 def _sync_names(folder: Path) -> None:
-    if os.name == "nt":  # a folder cannot be opened there
+    if os.name == "nt":  # Windows cannot open a folder
         return
     descriptor = os.open(folder, os.O_RDONLY)
     try:

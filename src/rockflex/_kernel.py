@@ -1,4 +1,4 @@
-"""The one decorator of every compiled kernel."""
+"""The decorators of compiled kernels."""
 
 import ctypes
 import hashlib
@@ -20,26 +20,26 @@ F = TypeVar("F", bound=Callable[..., Any])
 def kernel(function: F) -> F:
     """Compile with numba for other kernels: no interpreter lock, fused multiply-adds allowed.
 
-    A kernel writes into the arrays that it is given; it can neither make an array nor return one. Python can call it
-    too, after compiling a way in: see `python_kernel`.
+    A kernel writes into the arrays that it is given; it can neither create nor return an array. Python can call it,
+    too, but must first compile a wrapper; see `python_kernel`.
     """
     return cast("F", compiled_within(function, inlined=False))
 
 
 def inlined_kernel(function: F) -> F:
-    """Compile into the callers, which are few: a call hands over tuples of arrays number by number."""
+    """Compile into the few callers, because calls pass tuples of arrays element by element."""
     return cast("F", compiled_within(function, inlined=True))
 
 
 def python_kernel(function: F) -> F:
-    """Compile a kernel that Python calls, with all kernels that it calls; the result is kept on disk."""
+    """Compile a kernel for calls from Python, with all kernels that it calls; the result is cached on disk."""
     return cast("F", compiled(function, sources_digest()))
 
 
 class Entry:
-    """A kernel that is always given the same types, called without a look at them.
+    """A kernel that is always called with the same types, without checking them.
 
-    numba looks at every argument of every call, which for nested tuples takes longer than a short run.
+    numba inspects every argument of every call, which for nested tuples takes longer than a short run.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
@@ -55,9 +55,9 @@ class Entry:
 
 
 class Callback:
-    """A Python function of an address and a count, as a value that kernels can be given and call.
+    """A Python function of an address and a count, as an argument that kernels can call.
 
-    A call takes the interpreter lock and some microseconds. The function must not raise: nobody would hear it.
+    A call takes the interpreter lock and some microseconds. The function must not raise: the exception would be lost.
     """
 
     def __new__(cls, function: Callable[[int, int], int]) -> "Callback":
@@ -68,7 +68,7 @@ class Callback:
 
 @cache
 def sources_digest() -> str:
-    """Digest of all sources that are compiled in, kernels and constants, so that no kernel is ever used out of date."""
+    """Return a digest of all compiled sources, kernels and constants, so that no outdated kernel is ever used."""
     package = Path(__file__).parent
     sources = {path: path.read_bytes() for path in package.rglob("*.py")}
     kernels = {path for path, source in sources.items() if b"_kernel import " in source}

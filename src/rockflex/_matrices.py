@@ -9,15 +9,15 @@ from rockflex._errors import InputError
 
 Float = NDArray[np.float64]
 
-# Asymmetry left by condensation or by printed digits, as a share of the largest entry.
+# Asymmetry due to condensation or printed digits, relative to the largest entry.
 _SYMMETRY_TOLERANCE = 1e-9
 
 
 def checked_heights(heights: ArrayLike) -> Float:
-    """Return the heights of the masses above the base (N,) in m, read-only: positive, strictly rising."""
+    """Return the heights of the masses above the base (N,) in m, read-only: positive, strictly increasing."""
     h = finite_vector("heights", heights, "m")
     if h.size == 0:
-        raise InputError("heights must hold at least one height in m, but none was given.", field="heights")
+        raise InputError("heights must contain at least one height in m, but none was given.", field="heights")
     if h[0] <= 0.0:
         raise InputError(
             f"heights must be positive, in m above the base, but heights[0] = {h[0]:g} was given. "
@@ -28,26 +28,26 @@ def checked_heights(heights: ArrayLike) -> Float:
     if falls.size:
         i = int(falls[0])
         raise InputError(
-            f"heights must rise from the base to the top, but heights[{i + 1}] = {h[i + 1]:g} m is not above "
+            f"heights must increase from the base to the top, but heights[{i + 1}] = {h[i + 1]:g} m is not above "
             f"heights[{i}] = {h[i]:g} m. Sort the masses by height, with the rows and columns of the "
-            "matrices, and join masses at equal height.",
+            "matrices, and combine masses at equal height.",
             field="heights",
         )
     return h
 
 
 def checked_mass(mass: ArrayLike, size: int, *, field: str = "mass") -> Float:
-    """Return the masses (N,), or the mass matrix (N, N), in kg, read-only: positive (definite).
+    """Return the masses (N,) or the mass matrix (N, N) in kg, read-only: positive (definite).
 
-    `field` is the argument that they were given as.
+    `field` is the name of the argument.
     """
     if dimensions(mass) == 2:
         return _symmetric_positive_definite("mass", mass, "kg", size, field)
     m = finite_vector("mass", mass, "kg", field=field)
     if m.size != size:
         raise InputError(
-            f"mass must hold one mass for each of the {size} heights, but {m.size} were given. "
-            "The mass of the base goes to base_mass.",
+            f"mass must contain one mass for each of the {size} heights, but {m.size} were given. "
+            "Give the mass of the base as base_mass.",
             field=field,
         )
     if m.min() <= 0.0:
@@ -81,12 +81,12 @@ def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: 
         raise InputError(
             f"{name} must be symmetric, but {name}[{i}, {j}] = {matrix[i, j]:.9g} and "
             f"{name}[{j}, {i}] = {matrix[j, i]:.9g} {unit}. "
-            "Check the assembly; a result of condensation that is not symmetric hints at an error in it.",
+            "Check the assembly; an asymmetric result of condensation indicates an error.",
             field=field,
         )
     matrix = 0.5 * (matrix + matrix.T)
     eigenvalues = np.linalg.eigvalsh(matrix)
-    # Below this share of the largest eigenvalue the sign of the smallest is rounding.
+    # Below this fraction of the largest eigenvalue, the sign of the smallest is due to rounding.
     if eigenvalues[0] <= size * np.finfo(float).eps * abs(eigenvalues[-1]):
         raise InputError(
             f"{name} must be positive definite, but its smallest eigenvalue is {eigenvalues[0]:.3g} {unit} "
@@ -98,6 +98,6 @@ def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: 
 
 
 _MEND = {
-    "stiffness": "Hold the structure at its base, and leave out freedoms that nothing restrains.",
-    "mass": "Condense massless freedoms out of both matrices first.",
+    "stiffness": "Fix the structure at its base, and leave out unrestrained degrees of freedom.",
+    "mass": "Condense massless degrees of freedom out of both matrices first.",
 }

@@ -1,8 +1,8 @@
-"""How kernels are compiled that only kernels call: up to LLVM's intermediate code, and no further.
+"""Compilation of kernels that only kernels call: up to LLVM's intermediate code, and no further.
 
-numba optimises every function with all that it calls, and makes machine code of it. Along a chain of calls the same
-code goes through that once for every caller above it, and only the outermost machine code ever runs. `intermediate`
-leaves out all but that one, which is then optimised as a whole: compiled sooner, and faster.
+numba optimises every function together with all functions that it calls, and generates machine code. In a chain of
+calls the same code is processed once for every caller, and only the machine code of the outermost function ever runs.
+Here only the outermost function is optimised, as a whole: it compiles sooner and runs faster.
 """
 
 from typing import Any, Literal
@@ -13,7 +13,7 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import NativeLowering
 
-# Looked up here, so that a version without them is known before anything is compiled.
+# Looked up here, so that a version without them is detected before anything is compiled.
 make_function: Any = _dynfunc.make_function  # pyright: ignore[reportUnknownMemberType]
 KNOWN: Any = JITCodeLibrary
 USED = (KNOWN._optimize_final_module, KNOWN._finalize_final_module, KNOWN._finalize_dynamic_globals, Flags.no_compile)
@@ -21,7 +21,7 @@ USED = (KNOWN._optimize_final_module, KNOWN._finalize_final_module, KNOWN._final
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class IntermediateLowering(NativeLowering):
-    """Lowering into a library of which no machine code is made."""
+    """Lowering into a library without machine code."""
 
     _name = "intermediate_lowering"
 
@@ -37,7 +37,7 @@ class IntermediateLowering(NativeLowering):
         library._finalize_final_module = finalized
         state.library, state.flags.no_compile = library, True
         super().run_pass(state)
-        # numba knows a function by an object to call; this one leads nowhere.
+        # numba identifies a function by a callable object; this one does nothing.
         described = state.cr.fndesc
         name = described.qualname.split(".")[-1]
         known_by = make_function(described.lookup_module(), name, "", 0, state.cr.env, (library,))
@@ -48,10 +48,10 @@ class IntermediateLowering(NativeLowering):
 
 
 class Intermediate(CompilerBase):
-    """numba's own pipeline, but for its lowering."""
+    """numba's own pipeline except for the lowering."""
 
     def define_pipelines(self) -> list[Any]:
-        """Return the one pipeline."""
+        """Return the pipeline."""
         passes = PassManager("intermediate")
         for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes:
             passes.add_pass(IntermediateLowering if step is NativeLowering else step, why)

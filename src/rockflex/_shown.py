@@ -1,19 +1,19 @@
-"""What was given, as a message repeats it: in full where it is short, and never longer than a line or two."""
+"""Given values as quoted in messages: in full if short, and never longer than a line or two."""
 
 import math
 import reprlib
 from itertools import islice
 
-WIDTH = 160  # characters of a value
+WIDTH = 160  # most characters of a value
 
 
 def shown(value: object) -> str:
-    """Return `value` as Python writes it, without its middle where that is long; at once even where it is huge."""
+    """Return the repr of `value`, without the middle part if it is long; fast even for huge values."""
     return shortened(_SHORT.repr(value), WIDTH)
 
 
 def shortened(text: str, most: int = WIDTH) -> str:
-    """Return `text`, without its middle where it is longer than `most` characters."""
+    """Return `text`, without the middle part if it is longer than `most` characters."""
     half = most // 2 - 3
     return text if len(text) <= most else f"{text[:half]} ... {text[-half:]}"
 
@@ -25,13 +25,13 @@ class _Short(reprlib.Repr):
         self.maxstring = self.maxother = WIDTH
 
     def repr_dict(self, x: dict[object, object], level: int) -> str:
-        """The base class sorts the keys, which is not how they were written."""
+        """Return the repr with the keys in their original order; the base class sorts them."""
         items = [f"{self.repr1(k, level - 1)}: {self.repr1(v, level - 1)}" for k, v in islice(x.items(), self.maxdict)]
         more = ["..."] if len(x) > self.maxdict else []
         return f"{{{', '.join([*items, *more])}}}" if level > 0 else "{...}"
 
     def repr_int(self, x: int, level: int) -> str:
-        digits = round(x.bit_length() * math.log10(2.0))  # Python refuses to write more than some thousands of them
+        digits = round(x.bit_length() * math.log10(2.0))  # Python does not convert more than a few thousand digits
         return f"an integer of about {digits} digits" if digits > self.maxlong else super().repr_int(x, level)
 
 

@@ -1,4 +1,4 @@
-"""Values: what is equal in all its fields is equal, also as a copy or back from a pickle."""
+"""Values: objects are equal if all their fields are equal, also after copying or pickling."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
@@ -8,16 +8,16 @@ import numpy as np
 
 
 class Value:
-    """Base of frozen dataclasses that hold arrays, written ``@dataclass(frozen=True, eq=False)``.
+    """Base of frozen dataclasses that contain arrays, written ``@dataclass(frozen=True, eq=False)``.
 
-    Two are equal if they are of one class and all their fields are: arrays of the same shape entry by entry, sequences
-    and mappings by what they hold, and everything else as it compares itself; functions are equal only to themselves.
-    A missing number (NaN) equals a missing number, and -0.0 equals 0.0. Equal values have equal hashes; one that holds
-    what cannot be hashed, such as a table, has none.
+    Two objects are equal if they have the same class and equal fields. Arrays of the same shape are compared entry by
+    entry, sequences and mappings by their content, everything else by its own `==`; a function is equal only to itself.
+    NaN equals NaN, and -0.0 equals 0.0. Equal objects have equal hashes; an object with an unhashable field, such as a
+    table, has no hash.
 
-    A pickle and a copy hold the fields alone and no result that was computed from them and kept. Their arrays are
-    read-only again, which NumPy forgets on the way. A class that copies or checks what it is given has an `__init__` or
-    a `__post_init__` of its own; of one that is made within the package alone, the arrays become read-only as they are.
+    Pickles and copies contain only the fields, not cached results. Their arrays are made read-only again, which NumPy
+    does not preserve. A class that copies or checks its arguments has its own `__init__` or `__post_init__`; for
+    classes that are built only within the package, the given arrays become read-only.
     """
 
     def __post_init__(self) -> None:
@@ -64,7 +64,7 @@ def _same(one: Any, other: Any) -> bool:
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         first, second = cast("Mapping[Any, Any]", one), cast("Mapping[Any, Any]", other)
         return first.keys() == second.keys() and all(_same(first[key], second[key]) for key in first)
-    if hasattr(one, "equals") or hasattr(other, "equals"):  # a table of pandas, of which == makes another table
+    if hasattr(one, "equals") or hasattr(other, "equals"):  # a pandas table, for which == returns another table
         return type(one) is type(other) and bool(cast("Any", one).equals(other))
     missing = isinstance(one, float) and isinstance(other, float) and one != one and other != other
     return missing or bool(one == other)
@@ -77,7 +77,7 @@ def _same_arrays(one: Any, other: Any) -> bool:
 
 
 def _key(value: Any) -> Any:
-    """What stands for a value in a hash: equal for all that `_same` takes for equal."""
+    """Return a hashable key of a value; keys are equal for values that `_same` considers equal."""
     if isinstance(value, np.ndarray):
         return (value.shape, *map(_key, value.ravel().tolist()))
     if isinstance(value, list | tuple):

@@ -187,9 +187,7 @@ def test_adequacy_is_printed():
     assert ["2", "-0.0350", "0.792", "0.0872", "3.33", "0.0280", "87.8"] in rows
     assert max(map(len, result.stdout.splitlines())) <= 80
     flat = " ".join(result.stdout.split())
-    assert (
-        "Take 4DOF-S: with 2 modes, the second uplifted frequency is 87.8 % too high (allowed: 25 %); with 3," in flat
-    )
+    assert "Use 4DOF-S: with 2 modes, the second uplifted frequency is 87.8 % too high (allowed: 25 %); with 3," in flat
     assert "How many modes it takes" not in invoke(STRUCTURE).stdout
 
 

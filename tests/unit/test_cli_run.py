@@ -238,7 +238,7 @@ def test_a_tendon_beyond_its_yield_force_is_told_in_words():
     assert row["tendon_utilisation"] > 1.0
     assert (
         f"Warning: EL-CENTRO-1940-NS × 3: A tendon carries {row['tendon_utilisation']:.4g} times its yield force. "
-        "Tendons stay elastic in the model, so the run is not to be used."
+        "Tendons stay elastic in the model, so the results are not valid."
     ) in invoke(*arguments).stderr
 
 

@@ -224,7 +224,7 @@ def test_files_of_a_folder_that_are_left_out_are_told_once(tmp_path):
     refused = invoke("cloud", file)
     assert refused.exit_code == 2
     assert "1 of 4 files cannot be read." in refused.stderr
-    assert 'on_error="skip" goes on with the other files.' in refused.stderr
+    assert 'on_error="skip" continues with the other files.' in refused.stderr
     file.write_text(text.replace("[records]\n", '[records]\non_error = "skip"\n'))
     for options in ((), ("--dry-run",)):
         done = invoke("cloud", file, *options)

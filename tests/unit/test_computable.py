@@ -127,7 +127,7 @@ def test_a_mode_that_is_none_is_refused(monkeypatch):
         return values, vectors + 0.01 * vectors[:, ::-1]
 
     monkeypatch.setattr(_lowest_modes, "eigsh", disturbed)
-    with pytest.raises(InputError, match=r"cannot hold \(a mode misses its equation by \d"):
+    with pytest.raises(InputError, match=r"cannot hold \(a mode has a relative residual of \d"):
         cantilever().modal()
 
 

@@ -206,7 +206,7 @@ def test_bad_input(ask, text):
 def test_a_model_too_fast_for_its_sampling():
     p = RockingProperties([1e6], [1e4], [5.0], [1.0], 4e5, 6e4, 1.2e4, 0.8, 0.02)
     run = simulate(p, GroundMotion([0.0, 1.0, 0.0], 0.01), "2DOF-S")
-    text = r"The friction demand of 2DOF-S needs \d+ looks a step, above the limit of 2000:"
+    text = r"The friction demand of 2DOF-S needs \d+ points per step, above the limit of 2000:"
     with pytest.raises(InputError, match=text):
         _ = run.required_friction
     assert np.isfinite(run.friction_demand).all()
@@ -222,7 +222,7 @@ def test_a_model_too_fast_for_its_sampling():
 def test_peaks_alone_know_no_friction(name):
     run = simulate(FRAME, EL_CENTRO, "2DOF-S", output="peaks")
     assert not hasattr(run, name)
-    with pytest.raises(InputError, match=f'keeps peaks only, so it has no {name}. Simulate with output="history"'):
+    with pytest.raises(InputError, match=f'contains only peaks, so it has no {name}. Simulate with output="history"'):
         getattr(run, name)
 
 

@@ -14,7 +14,7 @@ SHEAR, FLEXURE = math.inf, 0.0
 NO_LIMIT = {"base_moment": math.inf, "first_frequency": math.inf, "second_frequency": math.inf, "base_shear": math.inf}
 
 LEFT_OUT = (
-    "What the ground must hold, ΣF_x, leaves no mass out: that of missing modes moves with the base there, as it does "
+    "The horizontal ground reaction ΣF_x leaves no mass out: the mass of missing modes moves with the base, as it does "
     "in the base shear of models that end in -R."
 )
 
@@ -162,8 +162,8 @@ def test_mass_that_the_base_shear_is_compared_with():
     assert few.mass == 240e3
     assert not few.base_known
     assert few.reason.endswith(
-        "For the base shear give more modes, or the mass of the base: only 79.6 % of the total mass with the base "
-        f"takes part with 3 modes (asked: 90 %). {LEFT_OUT}"
+        "For the base shear give more modes, or the mass of the base: only 79.6 % of the total mass including the base "
+        f"participates with 3 modes (required: 90 %). {LEFT_OUT}"
     )
     assert rf.adequacy(p.truncated(3)).mass == pytest.approx(200e3, rel=1e-12)  # what is cut off is still known
 
@@ -179,24 +179,26 @@ def test_tendons_are_felt():
 def test_reason_names_the_numbers():
     assert of(frame(5, FLEXURE, 5.0)).reason == (
         "2DOF-S is enough: with one mode, 10.2 % of the base moment is left out (allowed: 12 %) and the first uplifted "
-        "frequency is 3.66 % too high (allowed: 17 %). For the base shear take 4DOF-S: 95.5 % of the mass above the "
-        f"base takes part with 3 modes, only 67.9 % with one mode (asked: 90 %). {LEFT_OUT}"
+        "frequency is 3.66 % too high (allowed: 17 %). For the base shear use 4DOF-S: 95.5 % of the mass above the "
+        f"base participates with 3 modes, only 67.9 % with one mode (required: 90 %). {LEFT_OUT}"
     )
     assert of(frame(15, SHEAR, 10.0)).reason == (
-        "Take 4DOF-S: with 2 modes, the second uplifted frequency is 79.2 % too high (allowed: 25 %); with 3, 0.563 % "
+        "Use 4DOF-S: with 2 modes, the second uplifted frequency is 79.2 % too high (allowed: 25 %); with 3, 0.563 % "
         "of the base moment is left out (allowed: 12 %), the first uplifted frequency is less than 0.1 % too high "
-        "(allowed: 17 %) and the second is less than 0.1 % too high (allowed: 25 %). That is enough for the base "
-        "shear, too: 96 % of the mass above the base takes part (asked: 90 %)."
+        "(allowed: 17 %) and the second is less than 0.1 % too high (allowed: 25 %). This is also enough for "
+        "the base shear: 96 % of the mass above the base participates (required: 90 %)."
     )
     assert of(tower()).reason == (
-        "Take 3DOF-S: with one mode, 17.6 % of the base moment is left out (allowed: 12 %) and the first uplifted "
+        "Use 3DOF-S: with one mode, 17.6 % of the base moment is left out (allowed: 12 %) and the first uplifted "
         "frequency is 22.9 % too high (allowed: 17 %); with 2, 5.9 % of the base moment is left out (allowed: 12 %), "
         "the first uplifted frequency is 0.159 % too high (allowed: 17 %) and the second is 20.1 % too high (allowed: "
-        "25 %). For the base shear give more modes: only 87.2 % of the mass above the base takes part with 5 modes "
-        f"(asked: 90 %). {LEFT_OUT}"
+        "25 %). For the base shear give more modes: only 87.2 % of the mass above the base participates with 5 modes "
+        f"(required: 90 %). {LEFT_OUT}"
     )
     few = rf.adequacy(tower().rocking(2), base_mass=0.0).reason
-    assert few.startswith("The 2 modes at hand are not enough: 5.9 % of the base moment is left out (allowed: 12 %), ")
+    assert few.startswith(
+        "The 2 available modes are not enough: 5.9 % of the base moment is left out (allowed: 12 %), "
+    )
     assert " Give more modes. For the base shear give more modes: only 71.2 % of " in few
 
 
@@ -204,7 +206,7 @@ def test_shear_alone_may_be_met():
     few = rf.adequacy(frame(15, SHEAR, 10.0).rocking(2), base_mass=40e3)
     assert (few.model, few.model_for_shear) == (None, "3DOF-S")
     assert few.reason.endswith(
-        "For the base shear take 3DOF-S: 92.8 % of the mass above the base takes part with 2 modes (asked: 90 %). "
+        "For the base shear use 3DOF-S: 92.8 % of the mass above the base participates with 2 modes (required: 90 %). "
         f"{LEFT_OUT}"
     )
 
@@ -246,7 +248,7 @@ def test_wrong_base_mass():
     with pytest.raises(rf.InputError) as caught:
         rf.adequacy(p, base_mass=60e3)
     assert str(caught.value) == (
-        "base_mass must leave the 200000 kg that the modes move, but 60000 kg of m_tot = 240000 kg was given."
+        "base_mass must leave the effective mass of the modes, 200000 kg, but 60000 kg of m_tot = 240000 kg was given."
     )
     with pytest.raises(rf.InputError, match="base_mass must be a zero or positive, finite number in kg"):
         rf.adequacy(p, base_mass=-1.0)

@@ -65,7 +65,7 @@ def test_the_response_is_that_of_the_structure_built_on_that_base():
 def test_tendons_must_stand_within_the_base():
     pair = [rf.Tendon(1e4, 1e6, position=x) for x in (-0.8, 0.8)]
     assert lumped(1.0, pair).with_half_width(0.8).tendons == tuple(pair)
-    with pytest.raises(rf.InputError, match=r"must pass through the base, 0\.7 m to each side .*one stands at -0\.8 m"):
+    with pytest.raises(rf.InputError, match=r"must pass through the base, 0\.7 m to each side .*one is at -0\.8 m"):
         lumped(1.0, pair).with_half_width(0.7)
 
 
@@ -91,8 +91,8 @@ def test_a_base_that_the_inertia_leaves_no_room_for(changed):
     least = p.translational_inertia + given["m_tot"] * given["half_width"] ** 2
     text = (
         f"i_theta must be at least translational_inertia + m_tot * half_width**2, {least:.9g} kg m², but "
-        f"{given['i_theta']:.9g} kg m² was given. It is taken about a pivot, so it changes with the base: "
-        "properties.with_half_width(B) is the same structure on another one."
+        f"{given['i_theta']:.9g} kg m² was given. It refers to a pivot, so it changes with the base: "
+        "properties.with_half_width(B) gives the same structure on another base."
     )
     with pytest.raises(rf.InputError, match=re.escape(text)):
         dataclasses.replace(p, **changed)

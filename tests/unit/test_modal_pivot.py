@@ -147,7 +147,7 @@ def test_copies_and_changes_keep_the_eccentricity():
 def test_there_are_two_sides(side):
     with pytest.raises(rf.InputError) as caught:
         made().pivot(side)
-    says = f"side must be 1, the right edge of the base, or -1, the left one, but {side!r} was given."
+    says = f"side must be 1 (right edge of the base) or -1 (left edge), but {side!r} was given."
     assert str(caught.value) == says
 
 
@@ -156,21 +156,21 @@ def test_there_are_two_sides(side):
     [
         (
             {"eccentricity": 1.2},
-            "eccentricity must be smaller than half_width, 1.2 m, to either side, but 1.2 m was given. It is how far "
-            "the axis of the masses stands to the right of the middle of the base; check the units too.",
+            "eccentricity must be smaller than half_width, 1.2 m, to either side, but 1.2 m was given. It is the "
+            "distance of the axis of the masses to the right of the middle of the base; check the units too.",
         ),
         ({"eccentricity": -90.0}, "to either side, but -90 m was given"),
         ({"eccentricity": math.nan}, "eccentricity must be a finite number in m, but nan was given"),
         ({"eccentricity": "left"}, "eccentricity must be a finite number in m, but 'left' was given"),
         (
             {"eccentricity": 0.3, "tendons": rf.Tendon(1.0, 1.0, 1.0)},
-            "Tendons must pass through the base, from -1.5 to 0.9 m, but one stands at 1 m. Positions are measured "
-            "from the axis of the masses, as the base's edges are.",
+            "Tendons must pass through the base, from -1.5 to 0.9 m, but one is at 1 m. Positions are measured "
+            "from the axis of the masses, as the edges of the base are.",
         ),
-        ({"eccentricity": -0.3, "tendons": rf.Tendon(1.0, 1.0, -1.0)}, "from -0.9 to 1.5 m, but one stands at -1 m."),
+        ({"eccentricity": -0.3, "tendons": rf.Tendon(1.0, 1.0, -1.0)}, "from -0.9 to 1.5 m, but one is at -1 m."),
         (
             {"eccentricity": B * (1.0 - 1e-15), "i_theta": 150e3 * 121.0 + 30e3 * 9.0 + 240e3 * B**2},
-            "eccentricity must leave inertia to rotate about the nearer pivot, but with 1.2 m of half_width = 1.2 m "
+            "eccentricity must leave rotational inertia about the nearer pivot, but with 1.2 m and half_width = 1.2 m "
             "only the 18420000 kg m² of the modes are left. Move the axis of the masses further from the edge",
         ),
     ],

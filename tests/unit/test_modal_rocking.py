@@ -136,14 +136,14 @@ def test_truncation_out_of_range(n_modes):
         ({"omega": [0.0, 7.76]}, r"omega must be positive, but omega\[0\] = 0 rad/s was given"),
         ({"omega": [7.76, 1.66]}, r"omega\[1\] = 1.66 rad/s is below omega\[0\] = 7.76 rad/s\. Sort"),
         ({"omega": [1.66, np.nan]}, r"omega must be finite, but 1 of 2"),
-        ({"omega": []}, r"effective_mass must hold one value a mode, as omega does \(0\), but 2 were given"),
-        ({"effective_mass": [8.48e6]}, r"effective_mass must hold one value a mode.*\(2\), but 1 were given"),
+        ({"omega": []}, r"effective_mass must contain one value per mode, as omega does \(0\), but 2 were given"),
+        ({"effective_mass": [8.48e6]}, r"effective_mass must contain one value per mode.*\(2\), but 1 were given"),
         (
             {"effective_mass": [8.48e6, -1.0]},
             r"must be positive, but effective_mass\[1\] = -1 kg",
         ),
         ({"effective_height": [np.inf, 51.3]}, r"effective_height must be finite"),
-        ({"top_ordinate": [1.0, 2.0, 3.0]}, r"top_ordinate must hold one value a mode.*\(2\), but 3"),
+        ({"top_ordinate": [1.0, 2.0, 3.0]}, r"top_ordinate must contain one value per mode.*\(2\), but 3"),
         (
             {"i_theta": 1e11},
             r"i_theta must exceed .*1.78\d+e\+11 kg m², but 1e\+11 .*no inertia is left",
@@ -160,9 +160,9 @@ def test_truncation_out_of_range(n_modes):
         ),
         (
             {"translational_inertia": 1.7e11},
-            r"translational_inertia .*what was given is 1.7e\+11.*Give the",
+            r"translational_inertia .*the given value is 1.7e\+11.*Give the",
         ),
-        ({"translational_inertia": 1.83e11}, r"below i_theta, 1.82e\+11 kg m², but what was given is 1.83e"),
+        ({"translational_inertia": 1.83e11}, r"below i_theta, 1.82e\+11 kg m², but the given value is 1.83e"),
         ({"translational_inertia": math.nan}, r"translational_inertia must be a positive, finite number"),
         ({"zeta": 2.0}, r"zeta must lie in \[0, 1\), but 2.0 was given\. Give the fraction .* 2 % is 0.02"),
         ({"zeta": -0.01}, r"zeta must lie in \[0, 1\), but -0.01 was given"),
@@ -259,7 +259,7 @@ def test_modes_without_participation_are_left_out_and_not_counted():
 def test_mode_that_takes_part_in_the_base_moment_alone():
     modal = modal_properties([1.0, 1.0], [[5.0, -3.0], [-3.0, 5.0]], [1.0, 2.0])
     arguments = (modal, [1.0, 1.0], [1.0, 2.0], 1.0, 1.0, 0.02)
-    text = r"Mode 2 \(2.82843 rad/s\) takes part in the base moment but not.*keep only .*\(n_modes=1\)"
+    text = r"Mode 2 \(2.82843 rad/s\) contributes to the base moment but not.*keep only .*\(n_modes=1\)"
     with pytest.raises(InputError, match=text):
         rocking_properties(*arguments)
     assert rocking_properties(*arguments, n_modes=1).effective_mass == pytest.approx([2.0])

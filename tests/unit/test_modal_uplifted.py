@@ -225,5 +225,5 @@ def test_without_a_side_it_is_the_pivot_that_lifts_first():
     assert rf.uplifted_modes(p) == rf.uplifted_modes(p, side=-1) != rf.uplifted_modes(p, side=1)
     assert rf.frequency_equation(p, 3.0) == rf.frequency_equation(p, 3.0, side=-1)
     assert rf.uplifted_modes(frame(), side=-1) == rf.uplifted_modes(frame())
-    with pytest.raises(InputError, match=r"side must be 1, the right edge of the base, or -1, the left one, but 0"):
+    with pytest.raises(InputError, match=r"side must be 1 \(right edge of the base\) or -1 \(left edge\), but 0"):
         rf.uplifted_modes(p, side=0)

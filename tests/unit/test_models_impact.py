@@ -234,7 +234,7 @@ def test_a_forgotten_law_says_so():
     law = ForgottenLaw("<Mine at 0x1>", "this", "that")
     with pytest.raises(InputError) as caught:
         law.after(ALL, np.zeros(4), 1.0)
-    assert str(caught.value) == ("The impact law <Mine at 0x1> was not saved with the response. Give the law itself.")
+    assert str(caught.value) == ("The impact law <Mine at 0x1> was not saved with the response. Pass the law itself.")
 
 
 class Odd:

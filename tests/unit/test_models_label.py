@@ -108,7 +108,7 @@ def test_other_words_are_refused(label):
 
 NO_LAW = (
     "3DOF-C has no impact law of its own: Eq. 19 is one equation for 2 velocities. Use 3DOF-C-SI (Eq. 25), 3DOF-C-E "
-    "(Eq. 25 scaled to meet Eq. 19), or MDOF-C with all modes."
+    "(Eq. 25 scaled to satisfy Eq. 19), or MDOF-C with all modes."
 )
 NO_CLOSURE = 'The closures "SI" and "E" belong to complete models with modes. Leave closure out.'
 
@@ -130,11 +130,11 @@ NO_CLOSURE = 'The closures "SI" and "E" belong to complete models with modes. Le
         ),
         (
             {"n_modes": 3, "yields": True},
-            "A Bouc-Wen superstructure has one mode, but 3 were asked for. Use 2DOF-S-BW.",
+            "A Bouc-Wen superstructure has one mode, but 3 were requested. Use 2DOF-S-BW.",
         ),
         (
             {"n_modes": 0, "yields": True},
-            "A Bouc-Wen superstructure has one mode, but 0 were asked for. Use 2DOF-S-BW.",
+            "A Bouc-Wen superstructure has one mode, but 0 were requested. Use 2DOF-S-BW.",
         ),
         ({"closure": "IS", "complete": True}, 'closure must be "SI", "E" or None, but \'IS\' was given.'),
         ({"closure": True, "complete": True}, 'closure must be "SI", "E" or None, but True was given.'),

@@ -87,13 +87,13 @@ def test_a_spring_makes_any_model_of_one_mode_yield(label, named, complete):
             Model(4),
             PROPERTIES,
             {},
-            "Model 5DOF-S needs 4 modes, but the structure has 3. Give more modes, or use MDOF-S for all there are.",
+            "Model 5DOF-S needs 4 modes, but the structure has 3. Give more modes, or use MDOF-S for all modes.",
         ),
         (
             Model(4, lifts=False),
             PROPERTIES,
             {},
-            "Model 4DOF-fixed needs 4 modes, but the structure has 3. Give more modes, or use fixed for all there are.",
+            "Model 4DOF-fixed needs 4 modes, but the structure has 3. Give more modes, or use fixed for all modes.",
         ),
         (
             parse_model("5DOF-C-SI"),
@@ -124,7 +124,7 @@ def test_a_spring_makes_any_model_of_one_mode_yield(label, named, complete):
             Model(complete=True),
             PROPERTIES.truncated(2),
             {},
-            "MDOF-C needs all modes, but those given carry 99.75% of Σ m_i h_i²: Eq. 19 is one equation for many "
+            "MDOF-C needs all modes, but those given have 99.75% of Σ m_i h_i²: Eq. 19 is one equation for many "
             "velocities. Use MDOF-C-SI or MDOF-C-E.",
         ),
         (
@@ -137,19 +137,19 @@ def test_a_spring_makes_any_model_of_one_mode_yield(label, named, complete):
             parse_model("MDOF-S"),
             PROPERTIES,
             {"bouc_wen": SPRING},
-            "bouc_wen goes with models of one mode, but MDOF-S has 3. Use 2DOF-S, or leave it out.",
+            "bouc_wen applies to models with one mode, but MDOF-S has 3. Use 2DOF-S, or leave it out.",
         ),
         (
             parse_model("rigid"),
             PROPERTIES,
             {"bouc_wen": SPRING},
-            "bouc_wen goes with models of one mode, but rigid has 0. Use 2DOF-S, or leave it out.",
+            "bouc_wen applies to models with one mode, but rigid has 0. Use 2DOF-S, or leave it out.",
         ),
         (
             parse_model("fixed"),
             PROPERTIES,
             {"bouc_wen": SPRING},
-            "bouc_wen goes with models of one mode, but fixed has 3. Use 1DOF-fixed, or leave it out.",
+            "bouc_wen applies to models with one mode, but fixed has 3. Use 1DOF-fixed, or leave it out.",
         ),
     ],
 )

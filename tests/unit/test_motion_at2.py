@@ -98,7 +98,7 @@ def test_read_motion_knows_an_at2_file_by_its_content(tmp_path):
         assert motion.acceleration == pytest.approx(VALUES * GRAVITY)
     with pytest.raises(InputError, match=r"in g by definition, but units='m/s2' was given. Leave units out"):
         read_motion(path, units="m/s2")
-    with pytest.raises(InputError, match=r"says DT = 0.005 s, but dt=0.01 was given. Leave dt out"):
+    with pytest.raises(InputError, match=r"states DT = 0.005 s, but dt=0.01 was given. Leave dt out"):
         read_motion(path, dt=0.01)
 
 
@@ -112,7 +112,7 @@ def case(header="NPTS= 6, DT= .005 SEC", body=BODY, form=NGA):
         (case("NPTS= 7, DT= .005 SEC"), "is truncated: its header says NPTS = 7, but 6 values follow"),
         (
             case("NPTS= 5, DT= .005 SEC"),
-            "holds more than it announces: its header says NPTS = 5, but 6 values",
+            "contains too many values: its header says NPTS = 5, but 6 values",
         ),
         (case("NPTS= 0, DT= .005 SEC", ""), "acceleration must have at least 3 samples, but 0"),
         (case("NPTS= 2, DT= .005 SEC", "0.1 0.2"), "acceleration must have at least 3 samples, but 2"),
@@ -132,7 +132,7 @@ def case(header="NPTS= 6, DT= .005 SEC", body=BODY, form=NGA):
         (case("NPTS= 6, DT= -.005 SEC"), "line 4: DT must be positive, but it is -.005"),
         (
             case(form=NGA.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")),
-            "speaks of units of CM/S",
+            "states units of CM/S",
         ),
         (
             case(body=BODY.replace("E+00", "E+02")),

@@ -81,7 +81,7 @@ def test_one_column(tmp_path):
 def test_comment_with_npts_is_no_at2_header(tmp_path):
     path = write(tmp_path, "# NPTS= 3, DT= 0.01 SEC\n1\n2\n3\n")
     assert read_motion(path, units="m/s2", dt=0.01).pga == 3.0
-    with pytest.raises(InputError, match="does not say the unit"):
+    with pytest.raises(InputError, match="does not state the unit"):
         read_motion(path, dt=0.01)
 
 
@@ -93,7 +93,7 @@ def test_the_step_is_free_of_rounding(tmp_path):
 def test_given_step_replaces_rounded_times(tmp_path):
     dt = 1 / 256
     path = write(tmp_path, "\n".join(f"{k * dt:.3f},{k / 100}" for k in range(100)))
-    with pytest.raises(InputError, match=r"time step is 0.003 s, but 0.004 s before.*only rounded in print"):
+    with pytest.raises(InputError, match=r"time step is 0.003 s, but 0.004 s before.*printed times are only rounded"):
         read_motion(path, units="g")
     assert read_motion(path, units="g", dt=dt).dt == dt
     with pytest.raises(InputError, match=r"line 4: the time 0\.012 s does not fit dt=0.005 s. Leave dt out"):
@@ -126,7 +126,7 @@ def rows(*lines):
         (rows("0 1", "0.1 2"), "has 2 samples, but a record needs at least 3"),
         (rows("0 1 2", "1 1 2", "2 1 2"), "has 3 columns, and its header does not name one as time"),
         (rows("t,acc x,acc y", "0,1,2", "1,1,2", "2,1,2"), "exactly one as acceleration"),
-        (rows("t,vel", "0,1", "1,1", "2,2"), "an acceleration is expected, but the column is headed 'vel'"),
+        (rows("t,vel", "0,1", "1,1", "2,2"), "an acceleration is expected, but the column is labelled 'vel'"),
         (rows("t (ms),acc", "0,1", "1,1", "2,2"), "times are in 'ms', but seconds are expected"),
         (rows("no", "numbers"), "holds no numbers"),
     ],
@@ -140,7 +140,7 @@ def test_refuses(tmp_path, text, message):
 
 def test_the_unit_is_never_guessed(tmp_path):
     for head in ("", "time,acc\n", "t,a_g\n", "# values in g\n"):
-        with pytest.raises(InputError, match=r"does not say the unit of its acceleration. Declare it"):
+        with pytest.raises(InputError, match=r"does not state the unit of its acceleration. Declare it"):
             read_motion(write(tmp_path, table(",", head)))
     with pytest.raises(InputError, match="header gives the unit 'ft/s2', which is not known"):
         read_motion(write(tmp_path, table(",", "time,acc (ft/s2)\n")), units="g")
@@ -167,9 +167,9 @@ def test_amplitudes_that_only_a_wrong_unit_explains(tmp_path, units, value, smal
     text = str(caught.value)
     assert f"the peak acceleration is {value:g} {units}, above 5 g" in text
     assert f"It looks like {smaller}" in text
-    assert f"where {units} was declared" in text
+    assert f"although {units} was declared" in text
     assert 'units="m/s2"' in text
-    assert "scaling a motion is free" in text
+    assert "motions can be scaled without limit" in text
 
 
 def test_binary_file(tmp_path):

@@ -119,7 +119,10 @@ def test_nothing_is_shaken_by_a_vertical_component():
         lambda: run_cloud({"a": STRUCTURE}, [motion], "2DOF-S"),
         lambda: overturning_scales(STRUCTURE, motion, [1.0, 2.0]),
     ):
-        with pytest.raises(InputError, match=r"horizontally here, but 'M-UP' is a vertical component.*RecordInfo\("):
+        with pytest.raises(
+            InputError,
+            match=r"A horizontal ground motion is expected, but 'M-UP' is a vertical component.*RecordInfo\(",
+        ):
             call()
     with pytest.raises(InputError, match="'a', 'b', 'c' and 1 more are vertical components"):
         simulate_many(STRUCTURE, [dataclasses.replace(motion, name=name) for name in "abcd"], "2DOF-S")

@@ -35,7 +35,7 @@ def test_resampling_is_refining():
     [(0.004, "0.005 s or 0.00333333333333 s"), (0.02, "0.01 s"), (0.0099, "0.01 s or 0.005 s")],
 )
 def test_resampling_names_the_steps_that_can_be_had(dt, steps):
-    with pytest.raises(InputError, match=f"cannot be resampled exactly to dt = {dt} s.*Ask for {steps}\\."):
+    with pytest.raises(InputError, match=f"cannot be resampled exactly to dt = {dt} s.*Use {steps}\\."):
         MOTION.resampled(dt)
 
 

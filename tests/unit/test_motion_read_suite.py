@@ -30,7 +30,7 @@ def test_read_suite_reads_a_directory(tmp_path):
     suite = read_suite([tmp_path / "b.csv", tmp_path / "a.AT2"])
     assert suite.names == ("a", "b")
     assert [motion.pga for motion in suite] == [2 * GRAVITY, GRAVITY]
-    with pytest.raises(InputError, match=r"c\.txt does not say the unit"):
+    with pytest.raises(InputError, match=r"c\.txt does not state the unit"):
         read_suite(tmp_path)
     (tmp_path / "c.txt").unlink()
     whole = read_suite(str(tmp_path))
@@ -41,7 +41,7 @@ def test_read_suite_reads_a_directory(tmp_path):
 def test_read_suite_refuses(tmp_path):
     with pytest.raises(InputError, match=r"holds no record: no file ends in .at2"):
         read_suite(tmp_path)
-    with pytest.raises(InputError, match=r"is not a directory. Give a directory, or a list of files"):
+    with pytest.raises(InputError, match=r"is not a directory. Give a directory or a list of files"):
         read_suite(tmp_path / "none")
     for folder in ("x", "y"):
         (tmp_path / folder).mkdir()
@@ -60,16 +60,14 @@ def test_vertical_components_are_left_out_and_named(folder):
         assert suite.names == ("RSN1_X_ABC000", "RSN1_X_ABC090")
         assert [warning.filename for warning in caught] == [__file__]
     assert {motion.metadata.direction for motion in suite} == {"horizontal"}
-    only = (
-        r"No horizontal component was given, only 1 vertical component: RSN2_X_DEF-V\.AT2\. Give horizontal ones; where"
-    )
+    only = r"No horizontal component was given, only 1 vertical component: RSN2_X_DEF-V\.AT2\. Give horizontal ones; if"
     with pytest.raises(InputError, match=only):
         read_suite([folder / "RSN2_X_DEF-V.AT2"])
 
 
 def test_all_files_that_cannot_be_read_are_named_at_once(folder):
     both = r"2 of 6 files cannot be read\. \S*RSN3_X_GHI000\.AT2 is truncated: .* \S*_Search\S* holds no numbers.*"
-    with pytest.raises(InputError, match=both + r'on_error="skip" goes on with the other files\.$'):
+    with pytest.raises(InputError, match=both + r'on_error="skip" continues with the other files\.$'):
         read_suite(folder)
     with pytest.warns(RecordWarning) as caught:
         suite = read_suite(folder, on_error="skip")

@@ -127,7 +127,8 @@ def test_a_model_too_fast_for_its_record():
     """A quadrature of hours is refused; the rest of the response is there."""
     run = simulate(frame(period=1e-6), quiet_motion(0.1, dt=0.05), "1DOF-fixed")
     text = (
-        r"The energy ledger of 1DOF-fixed needs \d{5} quadratures a step, above the limit of 10000: the model turns or "
+        r"The energy ledger of 1DOF-fixed needs \d{5} quadratures per step, above the limit of 10000: the model "
+        r"vibrates or "
         r"decays at up to 6\.\d+e\+06 rad/s, and steps last up to 0\.05 s\. Keep fewer modes, damp them less, or "
         r"refine the record\."
     )

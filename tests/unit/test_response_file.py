@@ -230,11 +230,15 @@ def test_a_file_written_again_is_sound(saved, tmp_path):
         ("nodes", lambda a: a * np.nan, r"InputError: nodes must be finite, but its entry \[0, 0\] is nan"),
         ("nodes", lambda a: a.astype(str), "InputError: nodes must be of type float64, but is of type <U32"),
         ("nodes", lambda a: a + 0j, "InputError: nodes must be of type float64, but is of type complex128"),
-        ("floors.story_drift", lambda a: a[:2], r"must be one a floor each, but .* have the sizes \[2, 3, 3, 3\]"),
+        (
+            "floors.story_drift",
+            lambda a: a[:2],
+            r"There must be one peak of each kind per floor, but .* have the sizes \[2, 3, 3, 3\]",
+        ),
         ("floors.story_shear", lambda a: a[:, None], "story_shear must be one-dimensional"),
         ("floors.floor_acceleration", None, "KeyError: 'floors.floor_acceleration'"),
         ("floor_modes.heights", None, "KeyError: 'floor_modes.heights'"),
-        ("properties.omega", lambda a: a[:2], "InputError: effective_mass must hold one value a mode"),
+        ("properties.omega", lambda a: a[:2], "InputError: effective_mass must contain one value per mode"),
         ("properties.omega", lambda a: -a, "InputError: omega must be positive"),
         ("properties.i_theta", None, "KeyError: 'properties.i_theta'"),
         ("properties.i_theta", lambda a: np.ones(3), "InputError: i_theta must be a number in kg m²"),
@@ -253,7 +257,7 @@ def test_arrays_that_do_not_fit(saved, tmp_path, name, change, text):
 def test_peaks_of_other_floors(saved, tmp_path):
     arrays, scalars = saved
     fewer = {name: value[:2] if name.startswith("floors.") else value for name, value in arrays.items()}
-    with pytest.raises(InputError, match="There are peaks of 2 floors and not as many heights"):
+    with pytest.raises(InputError, match="There are peaks of 2 floors, but a different number of heights"):
         Response.load(rewritten(tmp_path / "run.npz", fewer, scalars))
 
 

@@ -97,7 +97,7 @@ def test_a_law_of_ones_own_is_forgotten(tmp_path, model):
     same(back, run)
     law = back.history.model.law
     assert law == ForgottenLaw("Mine()", "half of the rotation", "the other half")
-    text = "The impact law Mine() was not saved with the response. Give the law itself."
+    text = "The impact law Mine() was not saved with the response. Pass the law itself."
     with pytest.raises(InputError) as caught:
         simulate(FRAME, MOTION, model, impact=law)
     assert str(caught.value) == f"The impact law {law!r} failed: {text}"

@@ -181,7 +181,9 @@ def test_no_floors_no_story_drifts():
     assert run.floors is None
     for name in ("story_drift", "story_shear", "floor_acceleration"):
         for source in (run, run.history):
-            with pytest.raises(InputError, match=r"name no floors, so there are no story drifts.*Simulate a Frame or"):
+            with pytest.raises(
+                InputError, match=r"include no floors, so there are no story drifts.*Simulate a Frame or"
+            ):
                 getattr(source, name)
             assert not hasattr(source, name)
     assert run.base_shear.shape == run.time.shape

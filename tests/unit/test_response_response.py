@@ -142,7 +142,7 @@ def test_peaks_alone_have_no_history(peaks_only):
     for name in (*QUANTITIES, *METHODS):
         assert not hasattr(peaks_only, name)
         assert getattr(peaks_only, name, None) is None
-        text = f'This response keeps peaks only, so it has no {name}. Simulate with output="history".'
+        text = f'This response contains only peaks, so it has no {name}. Simulate with output="history".'
         for kind in (InputError, AttributeError):
             with pytest.raises(kind) as caught:
                 getattr(peaks_only, name)

@@ -122,27 +122,27 @@ def test_shapes_of_equation_36():
 
 
 REFUSED = [
-    ({"mass": ([0, 15], [500, 500])}, r"mass: a table must run from the base \(0 m\) to the top \(20 m\), but it runs "
-     r"from 0 m to 15 m. Add the rows that are missing."),
-    ({"mass": ([2, 20], [500, 500])}, "but it runs from 2 m to 20 m"),
-    ({"mass": ([0, 12, 9, 20], [5, 5, 5, 5])}, "mass: the heights of a table must not fall, but 9 m follows"),
-    ({"mass": ([0, 20], [500, 500, 500])}, "two rows or more, but 2 heights and 3 values were given"),
+    ({"mass": ([0, 15], [500, 500])}, r"mass: a table must extend from the base \(0 m\) to the top \(20 m\), but it "
+     r"covers 0 m to 15 m. Add the missing rows."),
+    ({"mass": ([2, 20], [500, 500])}, "but it covers 2 m to 20 m"),
+    ({"mass": ([0, 12, 9, 20], [5, 5, 5, 5])}, "mass: the heights of a table must not decrease, but 9 m follows"),
+    ({"mass": ([0, 20], [500, 500, 500])}, "at least two rows, but 2 heights and 3 values were given"),
     ({"mass": ([0, 20], [500, 500], [1, 1])}, r"mass must be a table \(heights, values\), but 3 columns were given"),
-    ({"bending_stiffness": ([0, 20], [1e9, 0])}, "bending_stiffness must be positive, but its table holds 0 N m² at"),
-    ({"rotary_inertia": ([0, 20], [1, -1])}, "rotary_inertia must be zero or positive, but its table holds -1 kg m at"),
+    ({"bending_stiffness": ([0, 20], [1e9, 0])}, "bending_stiffness must be positive, but its table contains 0 N m²"),
+    ({"rotary_inertia": ([0, 20], [1, -1])}, "rotary_inertia must be zero or positive, but its table contains -1 kg m"),
     ({"mass": 0.0}, "mass must be a positive, finite number in kg/m, but 0.0 was given"),
     ({"mass": lambda z: 10.0 - z}, "mass must be positive and finite along the whole height, but it is 0 kg/m at 10 m"),
     ({"rotary_inertia": lambda z: z - 1.0}, "rotary_inertia must be zero or positive and finite along the whole"),
-    ({"mass": lambda z: np.ones(3)}, r"mass must return one number for each of the heights it is given, an array of "
+    ({"mass": lambda z: np.ones(3)}, r"mass must return one number for each height, an array of "
      r"shape \(65,\), but it did not"),
     ({"lumped_masses": rf.LumpedMasses([25.0], [1.0])}, "must lie on the beam, at most 20 m above the base, but one "
      "lies at 25 m"),
     ({"lumped_masses": ([3.0], [1.0])}, r"lumped_masses must be LumpedMasses\(heights, masses\), but tuple was given"),
     ({"method": "fem"}, 'method must be "fe" or "ritz", but \'fem\' was given'),
-    ({"method": "ritz", "n_elements": 10}, 'n_elements does not go with method="ritz". Leave it out, or take'),
-    ({"method": "ritz", "shear_stiffness": 1e8}, 'shear_stiffness does not go with method="ritz"'),
-    ({"shapes": rf.cosine_shapes(20.0, 5)}, 'shapes does not go with method="fe". Leave it out, or take method="ritz"'),
-    ({"method": "ritz", "shapes": rf.cosine_shapes(20.0, 2)}, "shapes must hold at least n_modes = 5 shapes, but it"),
+    ({"method": "ritz", "n_elements": 10}, 'n_elements does not apply to method="ritz". Leave it out, or use'),
+    ({"method": "ritz", "shear_stiffness": 1e8}, 'shear_stiffness does not apply to method="ritz"'),
+    ({"shapes": rf.cosine_shapes(20.0, 5)}, 'shapes does not apply to method="fe". Leave it out, or use method="ritz"'),
+    ({"method": "ritz", "shapes": rf.cosine_shapes(20.0, 2)}, "shapes must contain at least n_modes = 5 shapes, but"),
     ({"n_elements": 3}, "n_elements must be a whole number from 5 to 10000, but 3 was given"),
     ({"n_modes": 0}, "n_modes must be a whole number from 1 to 200, but 0 was given"),
     ({"half_width": 0.0}, "half_width must be a positive, finite number in m"),
@@ -161,7 +161,7 @@ def test_refused(changes, words):
     [
         (
             ([1.0], [1.0, 2.0]),
-            "must hold one mass, and one rotary inertia, for each of its 1 heights, but 2 and 1 were",
+            "must contain one mass and one rotary inertia for each of its 1 heights, but 2 and 1 were",
         ),
         (
             ([0.0], [1.0]),
@@ -207,7 +207,7 @@ def test_shapes_refused(value, slope, curvature, words):
 def test_shape_of_shapes_refused():
     flat = rf.RitzShapes(lambda z: z**2, lambda z: 2.0 * z, np.ones_like)
     with pytest.raises(
-        InputError, match=r"shapes.value must return one row a height and one column a shape, \(2, n_sha"
+        InputError, match=r"shapes.value must return one row per height and one column per shape, \(2, n_sha"
     ):
         beam(method="ritz", shapes=flat)
 

@@ -58,7 +58,7 @@ def test_the_outer_eccentricity_holds():
             lambda: rf.Eccentric(FRAME.rocking(), 0.1),
             "structure must be a structure such as a Frame, but RockingProperties(",
         ),
-        (lambda: rf.Eccentric(FRAME.rocking(), 0.1), "take their eccentricity themselves: RockingProperties(..., ecc"),
+        (lambda: rf.Eccentric(FRAME.rocking(), 0.1), "have an eccentricity of their own: RockingProperties(..., ecc"),
         (lambda: rf.Eccentric(rf.Frame, 0.1), "structure must be a structure such as a Frame, but <class"),
         (lambda: rf.Eccentric(FRAME, "left"), "eccentricity must be a finite number in m, but 'left' was given"),
         (
@@ -67,7 +67,7 @@ def test_the_outer_eccentricity_holds():
         ),
         (
             lambda: rf.Eccentric(rf.Restrained(FRAME, rf.Tendon(1e5, 1e6, 1.1)), 0.3),
-            "Tendons must pass through the base, from -1.4955 to 0.895497 m, but one stands at 1.1 m.",
+            "Tendons must pass through the base, from -1.4955 to 0.895497 m, but one is at 1.1 m.",
         ),
     ],
 )

@@ -152,8 +152,8 @@ def test_beam_with_lists_and_bodies(write):
         ),
         (
             {"z": Z, "mass": [1e3], "bending_stiffness": 4e9},
-            "mass must hold one value for each height of its table, and two rows or more, but 4 heights and 1 values "
-            "were given.",
+            "mass must contain one value for each height of its table, and at least two rows, but 4 heights and 1 "
+            "values were given.",
         ),
     ],
 )
@@ -266,7 +266,7 @@ def test_wrong_tendons(failing):
     frame = text("frame", FRAME)
     one = "[[tendons]]\nposition = 0.3\ninitial_force = 5e5\nstiffness = 2e7\n"
     assert failing(frame + one.replace("0.3", "-1.3")).startswith(
-        ", [[tendons]]: Tendons must pass through the base, 0.842617 m to each side of its centre, but one stands at "
+        ", [[tendons]]: Tendons must pass through the base, 0.842617 m to each side of its centre, but one is at "
         "-1.3 m."
     )
     assert failing(frame + one.replace("2e7", "-1")) == (

@@ -127,7 +127,7 @@ def test_height_and_modes():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"story_heights": []}, "story_heights must hold at least one height in m, but none was given"),
+        ({"story_heights": []}, "story_heights must contain at least one height in m, but none was given"),
         (
             {"story_heights": [4.0, -3.0, 2.0]},
             r"story_heights must be positive, but story_heights\[1\] = -3 m was given",

@@ -197,16 +197,16 @@ def test_files_refused(tmp_path):
     def read(name):
         rf.from_matrices(MASSES, tmp_path / name, HEIGHTS, **SCALARS)
 
-    with pytest.raises(InputError, match=r"stiffness: .*k.txt must be one of .npz, .mtx, .csv, told by its suffix"):
+    with pytest.raises(InputError, match=r"stiffness: the suffix of .*k.txt must be one of .npz, .mtx, .csv"):
         read("k.txt")
     with pytest.raises(InputError, match=r"stiffness: the file .*k.csv does not exist \(working directory: "):
         read("k.csv")
     for name in ("k.csv", "k.mtx", "k.npz"):
         (tmp_path / name).write_text("no, numbers\n")
-        with pytest.raises(InputError, match=rf"{name} does not hold a matrix of numbers that can be read"):
+        with pytest.raises(InputError, match=rf"no matrix of numbers can be read from .*{name}"):
             read(name)
     np.savez(tmp_path / "k.npz", a=STIFFNESS, b=STIFFNESS)
-    words = re.escape("must hold an array \"stiffness\", or one array alone, but it holds ['a', 'b']")
+    words = re.escape("must contain an array \"stiffness\" or a single array, but it contains ['a', 'b']")
     with pytest.raises(InputError, match=words):
         read("k.npz")
 
@@ -221,19 +221,31 @@ def test_files_refused(tmp_path):
         ({"stiffness": [[3.0, -1.0], [-2.0, 1.0]]}, r"stiffness must be symmetric, but stiffness\[0, 1\] = -1"),
         ({"stiffness": [1.0, 2.0]}, r"stiffness must have the shape \(1, 1\)"),
         ({"mass": [[1.0, 1.0], [1.0, 1.0]]}, "mass must be positive definite, but its smallest eigenvalue is"),
-        ({"mass": [1.0]}, "mass must hold one mass for each of the 2 freedoms, but 1 were given"),
-        ({"mass": [1.0, -1.0]}, "mass must not be negative, but that of freedom 1 is -1"),
+        ({"mass": [1.0]}, "mass must contain one mass for each of the 2 degrees of freedom, but 1 were given"),
+        ({"mass": [1.0, -1.0]}, "mass must not be negative, but it is -1 at degree of freedom 1"),
         (
             {"mass": [0.0, 0.0]},
-            "mass must move with at least one freedom that translates horizontally, but all have none",
+            "mass must be assigned to at least one degree of freedom that translates horizontally, but it is zero",
         ),
-        ({"mass": [0.0, 1.0], "heights": {0: 1.0}}, "mass must move with at least one freedom that translates"),
-        ({"heights": [1.0]}, "heights must hold one height for each of the 2 freedoms, but 1 were given. Where some"),
-        ({"heights": {}}, "heights must be positive, in m above the base, at least one of them, but none was given"),
-        ({"heights": {0: -1.0}}, "at least one of them, but -1 m was given. A mass at the base belongs to base_mass"),
+        (
+            {"mass": [0.0, 1.0], "heights": {0: 1.0}},
+            "mass must be assigned to at least one degree of freedom that translates",
+        ),
+        (
+            {"heights": [1.0]},
+            "heights must contain one height for each of the 2 degrees of freedom, but 1 were given. If some",
+        ),
+        (
+            {"heights": {}},
+            "heights must contain at least one height in m above the base, all positive, but none was given",
+        ),
+        ({"heights": {0: -1.0}}, "all positive, but -1 m was given. A mass at the base belongs to base_mass"),
         ({"heights": {2: 1.0}}, "heights, index must be a whole number from 0 to 1, but 2 was given"),
-        ({"rotations": [1]}, "rotations must name each freedom once, and none that has a height, but 1 is named twice"),
-        ({"heights": {0: 1.0}, "rotations": [1, 1]}, "but 1 is named twice. Give heights as a map"),
+        (
+            {"rotations": [1]},
+            "rotations must list each degree of freedom once, and none that has a height, but 1 is listed twice",
+        ),
+        ({"heights": {0: 1.0}, "rotations": [1, 1]}, "but 1 is listed twice. Give heights as a map"),
         (
             {"heights": {0: 1.0}, "rotations": [5]},
             "rotations, index must be a whole number from 0 to 1, but 5 was given",
@@ -259,12 +271,12 @@ def test_matrices_refused(changes, words):
             {"shapes": [[1.0, 1.0], [2.0, -1.1]]},
             r"The mode shapes must be orthogonal with respect to the mass, but φ_1\^T M",
         ),
-        ({"shapes": [[1.0, 0.0], [2.0, 0.0]]}, r"Mode shape 2 moves no mass \(φ\^T M φ = 0\). Check the order"),
-        ({"omega": [3.0, 2.0]}, "omega must hold positive frequencies in rad/s that do not fall, but"),
-        ({"omega": [0.0, 2.0]}, "omega must hold positive frequencies in rad/s that do not fall"),
-        ({"omega": []}, "omega must hold positive frequencies in rad/s that do not fall"),
+        ({"shapes": [[1.0, 0.0], [2.0, 0.0]]}, r"Mode shape 2 moves no mass \(φ\^T M φ = 0\). Check that both"),
+        ({"omega": [3.0, 2.0]}, "omega must contain positive frequencies in rad/s in ascending order, but"),
+        ({"omega": [0.0, 2.0]}, "omega must contain positive frequencies in rad/s in ascending order"),
+        ({"omega": []}, "omega must contain positive frequencies in rad/s in ascending order"),
         ({"omega": [3.0]}, r"shapes must have the shape \(2, 1\), but an array of shape \(2, 2\) was given"),
-        ({"heights": [1.0]}, "heights must hold one height for each of the 2 freedoms"),
+        ({"heights": [1.0]}, "heights must contain one height for each of the 2 degrees of freedom"),
     ],
 )
 def test_modes_refused(changes, words):
@@ -276,7 +288,7 @@ def test_modes_refused(changes, words):
 
 def test_a_mode_that_only_turns_is_refused():
     # Two masses and an antisymmetric mode of no base shear.
-    words = r"Mode 1 \(1 rad/s\) takes part in the base moment but not in the base shear"
+    words = r"Mode 1 \(1 rad/s\) contributes to the base moment but not to the base shear"
     with pytest.raises(InputError, match=words):
         rf.from_modes([1.0], [1.0, -1.0], [1.0, 1.0], [1.0, 2.0], **SCALARS)
 
@@ -290,7 +302,7 @@ def test_one_shape_may_be_a_vector():
 def test_sparse_matrices_too_large_to_be_dense(tmp_path):
     (tmp_path / "k.mtx").write_text("%%MatrixMarket matrix coordinate real general\n900000 900000 1\n1 1 2.0\n")
     with pytest.raises(
-        InputError, match=r"stiffness: .*k\.mtx holds a sparse matrix of the shape \(900000, 900000\), but"
+        InputError, match=r"stiffness: .*k\.mtx contains a sparse matrix of shape \(900000, 900000\), but"
     ):
         rf.from_matrices([1.0], tmp_path / "k.mtx", [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
 
@@ -305,24 +317,30 @@ def test_ragged_shapes_are_told():
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "its first line must name a matrix"),
-        ("%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 2.0 0.0\n", "its first line must name a matrix"),
-        ("%%MatrixMarket matrix coordinate real general\n1 1\n", "its second line must hold the numbers of rows"),
-        ("%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 2.0\n", r"it must hold 3 entries of three numbers"),
+        ("", "its first line must declare a matrix"),
+        (
+            "%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 2.0 0.0\n",
+            "its first line must declare a matrix",
+        ),
+        ("%%MatrixMarket matrix coordinate real general\n1 1\n", "its size line must give the numbers of rows"),
+        (
+            "%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 2.0\n",
+            r"it must contain 3 entries of three numbers",
+        ),
         (
             "%%MatrixMarket matrix coordinate real general\n2 2 1\n3 1 2.0\n",
-            "its entries must stand in 2 rows and",
+            "its entries must lie in 2 rows and",
         ),
         (
             "%%MatrixMarket matrix array real symmetric\n2 2\n1\n2\n",
-            "it must hold 3 numbers of a matrix of 2 by 2",
+            "it must contain 3 numbers for a matrix of 2 by 2",
         ),
-        ("%%MatrixMarket matrix array real general\n1000000 1000000\n1\n", "it must hold 1000000000000 numbers"),
+        ("%%MatrixMarket matrix array real general\n1000000 1000000\n1\n", "it must contain 1000000000000 numbers"),
     ],
 )
 def test_damaged_matrix_market(tmp_path, text, words):
     (tmp_path / "k.mtx").write_text(text)
-    with pytest.raises(InputError, match=rf"stiffness: .*k\.mtx does not hold a matrix of numbers.*: {words}"):
+    with pytest.raises(InputError, match=rf"stiffness: no matrix of numbers can be read from .*k\.mtx: {words}"):
         rf.from_matrices([1.0], tmp_path / "k.mtx", [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
 
 

@@ -53,7 +53,7 @@ def test_a_mode_in_the_base_moment_alone_can_be_left_out():
     structure = LumpedStructure(**GOOD | twin_masses)
     assert structure.modal().n_modes == 2
     assert structure.rocking(1).n_modes == 1
-    with pytest.raises(InputError, match=r"Mode 2 .* takes part in the base moment but not in the base shear"):
+    with pytest.raises(InputError, match=r"Mode 2 .* contributes to the base moment but not to the base shear"):
         structure.rocking()
 
 

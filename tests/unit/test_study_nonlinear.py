@@ -98,13 +98,13 @@ def test_what_a_model_cannot_have_is_said_in_its_row():
     table = simulate_many(FRAMES[0], MOTIONS[1], ["2DOF-S", "MDOF-C", "rigid", "2DOF-C"], bouc_wen=BoucWen(0.05))
     assert table["error"].isna().tolist() == [True, False, False, True]
     assert table["error"][1] == (
-        "bouc_wen goes with models of one mode, but MDOF-C has 3. Use 2DOF-S, or leave it out."
+        "bouc_wen applies to models with one mode, but MDOF-C has 3. Use 2DOF-S, or leave it out."
     )
     assert table["n_impacts"].isna().tolist() == [False, True, True, False]
     table = simulate_many(FRAMES[0], MOTIONS[1], ["2DOF-S-BW", "MDOF-C"])
     assert table["error"][0] == "2DOF-S-BW needs its hysteresis. Give bouc_wen=BoucWen(yield_displacement=...)."
     table = simulate_many(FRAMES[0].rocking(2), MOTIONS[1], ["MDOF-C", "MDOF-C-SI"])
-    assert table["error"][0].startswith("MDOF-C needs all modes, but those given carry 99.")
+    assert table["error"][0].startswith("MDOF-C needs all modes, but those given have 99.")
     assert table["error"].isna().tolist() == [False, True]
 
 

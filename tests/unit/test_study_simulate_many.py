@@ -211,4 +211,4 @@ def test_a_hysteresis_is_that_of_the_models_that_end_in_bw_or_else_of_all() -> N
         assert table["max_rotation"].tolist() == expected
         table = run(structure, motion, mixed[:2], bouc_wen=yielding)
         assert table["max_rotation"][1] == expected[2]
-        assert "bouc_wen goes with models of one mode, but MDOF-S has 3" in table["error"][0]
+        assert "bouc_wen applies to models with one mode, but MDOF-S has 3" in table["error"][0]

@@ -94,7 +94,7 @@ def test_other_refusals():
         held([rf.Tendon(1.0, 1.0, 1.3), rf.Tendon(1.0, 1.0, -1.3)])
     with pytest.raises(rf.InputError, match=r"tendons must be Tendon objects, but 3 was given\. Write Tendon\("):
         held(3)
-    with pytest.raises(rf.InputError, match=r"RockingProperties take their tendons themselves"):
+    with pytest.raises(rf.InputError, match=r"RockingProperties have tendons of their own"):
         rf.Restrained(rf.RockingProperties(**BASE), CENTRAL)  # pyright: ignore[reportArgumentType]
 
 

@@ -146,7 +146,7 @@ def test_a_bad_upload_is_refused(client) -> None:
         ({"record": {"source": "pulse", "pulse": {"period": 36_000.0}}}, "record.pulse.period", "from 0.05 to 20"),
         ({"models": ["9DOF-S"]}, "models", "needs 8 modes, but the structure has 5"),
         ({"models": ["2DOF-S-BW"]}, "models", "2DOF-S-BW yields, but nothing says at what displacement."),
-        ({"models": ["MDOF-S-BW"], "bouc_wen": YIELDING}, "models", "bouc_wen goes with models of one mode"),
+        ({"models": ["MDOF-S-BW"], "bouc_wen": YIELDING}, "models", "bouc_wen applies to models with one mode"),
         ({"impact": "restitution"}, "restitution", "go together. Give both or neither."),
         ({"impact": "simplified", "restitution": 0.5}, "restitution", "go together. Give both or neither."),
         ({"impact": "restitution", "restitution": 1.5}, "restitution", "1.5"),
@@ -157,7 +157,7 @@ def test_a_bad_upload_is_refused(client) -> None:
         ),
         ({"bouc_wen": {"yield_displacement": 1e9}}, "bouc_wen.yield_displacement", "from 1e-06 to 100"),
         ({"bouc_wen": {"yield_displacement": 0.1, "exponent": 0.5}}, "bouc_wen.exponent", "from 1 to 50"),
-        ({"bouc_wen": {"yield_displacement": 0.1, "gamma": 0.2}}, "bouc_wen.gamma", "give back more energy"),
+        ({"bouc_wen": {"yield_displacement": 0.1, "gamma": 0.2}}, "bouc_wen.gamma", "return more energy"),
         ({"bouc_wen": {}}, "bouc_wen.yield_displacement", "it is missing: D_y of the first mode"),
     ],
 )

@@ -165,7 +165,7 @@ LUMPED = {"stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": [3.0, 6.0], "base_
             {"fish_bone": {"story_heights": [], "masses": 1.0, "column_stiffness": 1.0, "beam_stiffness": 1.0}
              | {"base_mass": 1.0, "half_width": 1.0, "damping_ratio": 0.0}},
             "structure.fish_bone.story_heights",
-            "story_heights must hold at least one height in m, but none was given.",
+            "story_heights must contain at least one height in m, but none was given.",
         ),
     ],
 )  # fmt: skip

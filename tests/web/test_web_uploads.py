@@ -64,7 +64,7 @@ def test_a_name_with_folders_is_no_path(tmp_path) -> None:
         (b"time (s),acc (g)\n0,1\n1,x\n", "expected a finite number"),
         (b"time (s),acc (g)\n0,0\n0.01,nan\n0.02,0\n", "expected a finite number, but found 'nan'"),
         (b"time (s),acc (g)\n0,0\n0.01,900\n0.02,0\n", "above 5 g"),
-        (b"0 1\n0.01 2\n0.02 1\n", "does not say the unit"),
+        (b"0 1\n0.01 2\n0.02 1\n", "does not state the unit"),
         (b"x" * 5_000_001, "has 5.0 MB, but the page takes 5 MB at most."),
         (b"time (s),acc (g)\n" + b"".join(b"%.2f,0.1\n" % (0.01 * i) for i in range(30_002)), "300 s at most"),
         (b"time (s),acc (g)\n" + b"".join(b"%.4f,0.1\n" % (1e-3 * i) for i in range(200_002)), "200000 samples"),

@@ -16,38 +16,38 @@ Float = NDArray[np.float64]
 
 _SLACK = 1e-9  # rounding of sums that are equal when all modes are kept
 _LEFT_OUT = (
-    "What the ground must hold, ΣF_x, leaves no mass out: that of missing modes moves with the base there, as it does "
+    "The horizontal ground reaction ΣF_x leaves no mass out: the mass of missing modes moves with the base, as it does "
     "in the base shear of models that end in -R."
 )
 
 
 @dataclass(frozen=True)
 class AdequacyTolerance:
-    """What a surrogate model may leave out, as fractions; infinity leaves a criterion out of account.
+    """What a surrogate model may leave out, as fractions; infinity disables a criterion.
 
-    The defaults separate what Silva & Stojadinović 2024 call sufficient from what they do not.
+    The defaults separate the models that Silva & Stojadinović 2024 consider sufficient from those that they do not.
 
     Attributes
     ----------
     base_moment : float
-        Of the base moment L_0^r, left out. Accepted: 0.11 (one mode of 15 stories in flexure, Section 3.4) and 0.06
-        (two of the chimney, Section 4.1.1). Not accepted: 0.13 (one of specimen S1, Section 3.1) and 0.18 (one of the
-        chimney).
+        Fraction of the base moment L_0^r left out. Sufficient: 0.11 (one mode of 15 stories in flexure, Section 3.4)
+        and 0.06 (two of the chimney, Section 4.1.1). Insufficient: 0.13 (one of specimen S1, Section 3.1) and 0.18 (one
+        of the chimney).
     first_frequency : float
-        By which the first uplifted frequency is too high. Accepted: 0.166 (2DOF-S, 15 stories in flexure, h*_1/B = 10:
-        "quite good", Section 3.4). Not accepted: 1.15 (the same in shear: "poor"). The paper finds 2DOF-S likely
-        satisfactory in shear below h*_1/B = 5, too, where the error is up to 0.44; 0.45 would follow it there.
+        Relative error by which the first uplifted frequency is too high. Sufficient: 0.166 (2DOF-S, 15 stories in
+        flexure, h*_1/B = 10: "quite good", Section 3.4). Insufficient: 1.15 (the same in shear: "poor"). The paper also
+        finds 2DOF-S likely satisfactory in shear below h*_1/B = 5, where the error reaches 0.44; use 0.45 to agree.
     second_frequency : float
-        The same of the second one, with two modes or more. Accepted: 0.20 (3DOF-S, chimney) and 0.03 (15 stories in
-        flexure). Not accepted: 0.79 (15 stories in shear: "quite inaccurate").
+        The same for the second frequency, with two modes or more. Sufficient: 0.20 (3DOF-S, chimney) and 0.03 (15
+        stories in flexure). Insufficient: 0.79 (15 stories in shear: "quite inaccurate").
     base_shear : float
-        Of the mass, left out. Accepted: 0.08 (specimen 2Hz-Long Base). Not accepted: 0.29 (two modes of the chimney,
-        with 19 % of the base shear missing). 0.1 is also what EN 1998-1:2004, 4.3.3.3.1, asks for.
+        Fraction of the mass left out. Sufficient: 0.08 (specimen 2Hz-Long Base). Insufficient: 0.29 (two modes of the
+        chimney, with 19 % of the base shear missing). EN 1998-1:2004, 4.3.3.3.1, also requires 0.1.
 
     Raises
     ------
     InputError
-        If a value is negative or no number.
+        If a value is negative or not a number.
     """
 
     base_moment: float = 0.12
@@ -63,33 +63,34 @@ class AdequacyTolerance:
 
 @dataclass(frozen=True, eq=False)
 class Adequacy(Value):
-    """What the modes of a structure contribute, and how many are enough. The arrays are read-only.
+    """The contributions of the modes of a structure, and how many modes are enough. The arrays are read-only.
 
-    Row k - 1 of an array with N rows belongs to the first k of the N modes at hand.
+    Row k - 1 of an array with N rows belongs to the first k of the N available modes.
 
     Attributes
     ----------
     base_moment : ndarray, shape (N,)
-        m*_n h*_n/L_0^r of each mode; negative where a mode opposes the first.
+        m*_n h*_n/L_0^r of each mode; negative for a mode that opposes the first.
     base_shear : ndarray, shape (N,)
         m*_n/`mass` of each mode.
     base_moment_left, base_shear_left : ndarray, shape (N,)
-        What k modes leave out, as a fraction: contributions of opposite sign do not make up for each other.
+        Fraction that k modes leave out; contributions of opposite sign do not cancel.
     frequency_error : ndarray, shape (N, 2)
-        ω*_1 and ω*_2 with k modes over those with all N, less 1; NaN for a frequency that k modes do not have.
+        ω*_1 and ω*_2 with k modes divided by those with all N, minus 1; NaN for a frequency that k modes do not
+        have.
     reference_error : ndarray, shape (2,)
-        By how much, at most, those with all N are above those of the whole structure; zero where no mode is missing.
+        Upper bound of the error of the N modes relative to the whole structure; zero if no mode is missing.
     mass : float
-        Mass in kg that the base shear is compared with: that above the base, or the total where it is not known.
+        Mass in kg that the base shear is compared with: the mass above the base or, if unknown, the total mass.
     base_known : bool
-        Whether `mass` is that above the base.
+        Whether `mass` is the mass above the base.
     enough : int or None
-        Fewest modes that meet the tolerance for uplift, rotation, top displacement and base moment; None if all N do
-        not.
+        Smallest number of modes within the tolerance for uplift, rotation, top displacement and base moment; None if
+        all N are not enough.
     enough_for_shear : int or None
         The same for the base shear.
     tolerance : AdequacyTolerance
-        What was allowed.
+        The tolerance used.
     reason : str
         Recommendation and the numbers behind it, in sentences.
     """
@@ -113,12 +114,12 @@ class Adequacy(Value):
 
     @property
     def n_modes(self) -> int:
-        """Number N of modes at hand."""
+        """Number N of available modes."""
         return self.base_moment.size
 
     @property
     def model(self) -> str | None:
-        """Label of the smallest simplified model for all but the base shear, such as "2DOF-S"."""
+        """Label of the smallest simplified model for everything except the base shear, such as "2DOF-S"."""
         return None if self.enough is None else _label(self.enough)
 
     @property
@@ -128,7 +129,7 @@ class Adequacy(Value):
 
     @property
     def frequency_bound(self) -> Float:
-        """Largest error (N, 2) that ω*_1 and ω*_2 with k modes can have against those of the whole structure."""
+        """Upper bound (N, 2) of the error of ω*_1 and ω*_2 with k modes, relative to the whole structure."""
         return (1.0 + self.frequency_error) * (1.0 + self.reference_error) - 1.0
 
 
@@ -136,21 +137,21 @@ class Adequacy(Value):
 def adequacy(
     properties: RockingProperties, tolerance: AdequacyTolerance | None = None, *, base_mass: float | None = None
 ) -> Adequacy:
-    """Tell how many modes a structure needs above a base that can rock.
+    """Return how many modes a structure needs on a base that can rock.
 
-    A simplified model with k modes is enough if they carry the base moment of the fixed base, which decides when the
-    base lifts, and have the frequencies of the uplifted structure: the first with one mode, the first two with more.
+    A simplified model with k modes is enough if it reproduces the fixed-base moment, which decides when the base
+    lifts, and the frequencies of the uplifted structure: the first one with one mode, the first two with more.
     The number needed for base shear is reported separately, because it is larger.
 
     Parameters
     ----------
     properties : RockingProperties
-        With all the modes that are known.
+        Properties with all known modes.
     tolerance : AdequacyTolerance, optional
         What may be left out.
     base_mass : float, optional
-        Mass of the base in kg. Default: `RockingProperties.base_mass`; where that is not known, the shares of the base
-        shear are those of the total mass, and so too small if the base has mass.
+        Mass of the base in kg. Default: `RockingProperties.base_mass`; if that is unknown, base shear is compared with
+        the total mass, so its shares are too small if the base has mass.
 
     Returns
     -------
@@ -159,14 +160,14 @@ def adequacy(
     Raises
     ------
     InputError
-        If there are no modes, or `base_mass` leaves less mass than the modes move.
+        If there are no modes, or `base_mass` leaves less than the effective mass of the modes.
 
     Notes
     -----
-    What k modes leave out of the base moment is the sum of |m*_n h*_n|/L_0^r over the others, and what no mode at hand
-    carries. The missing modes are taken to lie above those at hand: then the uplifted frequencies are lowest if all
-    their inertia moves with ω_N, which bounds the error of the N modes at hand. Where the two pivots differ, each error
-    is the larger of those about them.
+    The base moment that k modes leave out is the sum of |m*_n h*_n|/L_0^r over the other modes, plus the part that no
+    available mode represents. The missing modes are assumed to have higher frequencies than the available ones. The
+    uplifted frequencies are then lowest if all missing inertia moves with ω_N, which bounds the error of the N
+    available modes. If the two pivots differ, each error is the larger of the two.
 
     References
     ----------
@@ -175,7 +176,7 @@ def adequacy(
     p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
         raise InputError(
-            "properties must have at least one mode, but a rigid structure was given: it needs none.",
+            "properties must have at least one mode, but a rigid structure was given, which needs none.",
             field="properties",
         )
     limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
@@ -212,7 +213,7 @@ def _mass_above(p: RockingProperties, base_mass: float) -> float:
     mass = p.m_tot - positive("base_mass", base_mass, "kg", zero=True)
     if mass < modal * (1.0 - _SLACK):
         raise InputError(
-            f"base_mass must leave the {modal:.6g} kg that the modes move, but {base_mass:g} kg of m_tot = "
+            f"base_mass must leave the effective mass of the modes, {modal:.6g} kg, but {base_mass:g} kg of m_tot = "
             f"{p.m_tot:.6g} kg was given.",
             field="base_mass",
         )
@@ -229,17 +230,17 @@ def _label(modes: int) -> str:
 
 def _for_rotation(a: Adequacy) -> str:
     if a.enough is None:
-        few = "One mode is" if a.n_modes == 1 else f"The {a.n_modes} modes at hand are"
+        few = "One mode is" if a.n_modes == 1 else f"The {a.n_modes} available modes are"
         return f"{few} not enough: {_account(a, a.n_modes)}. Give more modes."
     taken = _account(a, a.enough)
     if a.enough == 1:
         return f"2DOF-S is enough: with one mode, {taken}."
     before = _account(a, a.enough - 1, short=True)
-    return f"Take {a.model}: with {_modes(a.enough - 1)}, {before}; with {a.enough}, {taken}."
+    return f"Use {a.model}: with {_modes(a.enough - 1)}, {before}; with {a.enough}, {taken}."
 
 
 def _account(a: Adequacy, k: int, *, short: bool = False) -> str:
-    """What k modes leave out and by how much they err; in short only what is too much."""
+    """Describe what k modes leave out and their errors; with `short`, only those beyond the tolerance."""
     t, bound = a.tolerance, a.frequency_bound[k - 1]
     at_most = "at most " if np.nanmax(a.reference_error) > 5e-4 else ""
     named = [
@@ -257,18 +258,18 @@ def _account(a: Adequacy, k: int, *, short: bool = False) -> str:
 
 
 def _for_shear(a: Adequacy) -> str:
-    of = "the mass above the base" if a.base_known else "the total mass with the base"
-    asked = f"(asked: {_percent(1.0 - a.tolerance.base_shear)})"
+    of = "the mass above the base" if a.base_known else "the total mass including the base"
+    asked = f"(required: {_percent(1.0 - a.tolerance.base_shear)})"
     carried = [_percent(1.0 - left) for left in a.base_shear_left]
     if a.enough_for_shear is None:
         remedy = "give more modes" if a.base_known else "give more modes, or the mass of the base"
-        only = f"only {carried[-1]} of {of} takes part with {_modes(a.n_modes)} {asked}"
+        only = f"only {carried[-1]} of {of} participates with {_modes(a.n_modes)} {asked}"
         return f"For the base shear {remedy}: {only}. {_LEFT_OUT}"
     if a.enough is not None and a.enough_for_shear <= a.enough:
-        return f"That is enough for the base shear, too: {carried[a.enough - 1]} of {of} takes part {asked}."
+        return f"This is also enough for the base shear: {carried[a.enough - 1]} of {of} participates {asked}."
     fewer = f", only {carried[a.enough - 1]} with {_modes(a.enough)}" if a.enough is not None else ""
     return (
-        f"For the base shear take {a.model_for_shear}: {carried[a.enough_for_shear - 1]} of {of} takes part with "
+        f"For the base shear use {a.model_for_shear}: {carried[a.enough_for_shear - 1]} of {of} participates with "
         f"{_modes(a.enough_for_shear)}{fewer} {asked}. {_LEFT_OUT}"
     )
 

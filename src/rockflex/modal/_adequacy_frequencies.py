@@ -1,4 +1,4 @@
-"""How far the uplifted frequencies of few modes lie above those of all."""
+"""Errors of the uplifted frequencies with few modes."""
 
 import math
 from dataclasses import replace
@@ -13,14 +13,14 @@ Float = NDArray[np.float64]
 
 
 def frequency_errors(p: RockingProperties, missing: float) -> tuple[Float, Float]:
-    """Return `Adequacy.frequency_error` (N, 2) and `reference_error` (2,), each the larger of those about both pivots.
+    """Return `Adequacy.frequency_error` (N, 2) and `reference_error` (2,), the larger values of the two pivots.
 
     Parameters
     ----------
     p : RockingProperties
-        With N modes, one or more.
+        Properties with N modes, at least one.
     missing : float
-        Inertia in kg m² that no mode at hand carries; zero if they are all there are.
+        Inertia in kg m² that no available mode represents; zero if no mode is missing.
     """
     errors = [_about(p, missing, pivot.side) for pivot in p.pivots]
     largest, reference = (np.maximum.reduce(each) for each in zip(*errors, strict=True))
@@ -38,8 +38,8 @@ def _about(p: RockingProperties, missing: float, side: int) -> tuple[Float, Floa
 
 
 def _lowest(p: RockingProperties, inertia: float, side: int) -> Float:
-    """Return the first two uplifted frequencies if `inertia` in kg m² that is missing moves with the last mode's."""
-    # Two modes of one frequency: one with the inertia of both, and one that the rotation does not excite.
+    """Return the first two uplifted frequencies if the missing `inertia` in kg m² moves with the last mode."""
+    # Two modes with the same frequency: one has the inertia of both, and the rotation does not excite the other.
     if p.n_modes == 1:  # the latter is the lowest
         return np.append(p.omega, np.nan)
     height = p.effective_height.copy()

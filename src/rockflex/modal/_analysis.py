@@ -14,16 +14,16 @@ from rockflex._values import Value
 
 Float = NDArray[np.float64]
 
-# A participation below this share of the largest one possible is rounding of the eigenvectors.
+# A participation below this fraction of the largest possible one is rounding error of the eigenvectors.
 NO_PARTICIPATION = 1e-10
 _NO_TOP_ORDINATE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
 class ModalProperties(Value):
-    """Vibration modes of a structure on a fixed base, in the order of rising frequency.
+    """Vibration modes of a structure on a fixed base, in ascending order of frequency.
 
-    The quantities are those of Silva & Stojadinović 2024, Section 2.1 (after Eq. 12), with
+    The quantities are defined in Silva & Stojadinović 2024, Section 2.1 (after Eq. 12), with
     L_n^h = ι^T M φ_n, L_n^θ = h^T M φ_n and M_n = φ_n^T M φ_n. The arrays are read-only.
 
     Attributes
@@ -33,12 +33,12 @@ class ModalProperties(Value):
     effective_mass : ndarray, shape (n,)
         m*_n = (L_n^h)²/M_n in kg; zero for a mode without horizontal participation.
     effective_height : ndarray, shape (n,)
-        h*_n = L_n^θ/L_n^h in m, negative where base shear and base moment are opposed. Without
-        horizontal participation (L_n^h = 0) it is infinite where L_n^θ ≠ 0, and NaN where L_n^θ = 0 too.
+        h*_n = L_n^θ/L_n^h in m, negative if base shear and base moment have opposite signs. Without
+        horizontal participation (L_n^h = 0) it is infinite if L_n^θ ≠ 0, and NaN if L_n^θ = 0 as well.
     participation : ndarray, shape (n,)
-        Γ_n = L_n^h/M_n; goes with the normalisation of `shapes`.
+        Γ_n = L_n^h/M_n for the normalisation of `shapes`.
     shapes : ndarray, shape (N, n)
-        Mode shapes φ_n as columns. The top ordinate is 1; where the top does not move (less than 1e-8 of
+        Mode shapes φ_n as columns. The top ordinate is 1; if the top does not move (less than 1e-8 of
         the largest ordinate), the largest ordinate is 1.
     heights : ndarray, shape (N,)
         Heights of the masses above the base in m.
@@ -62,12 +62,12 @@ class ModalProperties(Value):
         return 2.0 * np.pi / self.omega
 
     def truncated(self, n_modes: SupportsIndex) -> "ModalProperties":
-        """Return the first `n_modes` modes alone.
+        """Return only the first `n_modes` modes.
 
         Raises
         ------
         InputError
-            If there are not as many modes.
+            If the structure has fewer modes than `n_modes`.
         """
         k = mode_count(n_modes, self.n_modes)
         return replace(
@@ -86,17 +86,17 @@ def modal_properties(
 ) -> ModalProperties:
     """Return the modes K φ_n = ω_n² M φ_n and their participation in base shear and base moment.
 
-    With K = C C^T and M = L L^T (Cholesky) the frequencies are the singular values of C^T L^-T. They so
-    keep their digits where light and heavy masses are mixed, which the eigenvalues of the product do not.
+    With K = C C^T and M = L L^T (Cholesky) the frequencies are the singular values of C^T L^-T. This preserves
+    their accuracy if light and heavy masses are mixed, unlike the eigenvalues of the product.
 
     Parameters
     ----------
     mass : array_like, shape (N,) or (N, N)
-        Masses, or symmetric positive definite mass matrix M, in kg, without the mass of the base.
+        Masses, or symmetric positive definite mass matrix M, in kg, excluding the base.
     stiffness : array_like, shape (N, N)
-        Symmetric positive definite lateral stiffness K in N/m, base held.
+        Symmetric positive definite lateral stiffness K in N/m on a fixed base.
     heights : array_like, shape (N,)
-        Heights h of the masses above the base in m, strictly rising; the last one is the top.
+        Heights h of the masses above the base in m, strictly increasing; the last one is the top.
     n_modes : int, optional
         Number of modes to return, the lowest first. Default: all N.
 
@@ -107,8 +107,8 @@ def modal_properties(
     Raises
     ------
     InputError
-        If the shapes do not fit, the heights fall, a matrix is not symmetric positive definite, a value is
-        not finite, or `n_modes` is not from 1 to N.
+        If the shapes do not match, the heights do not increase, a matrix is not symmetric positive definite, a value
+        is not finite, or `n_modes` is not from 1 to N.
 
     References
     ----------
@@ -153,14 +153,14 @@ def _mass_normalised_modes(mass: Float, stiffness: Float) -> tuple[Float, Float]
     if not omega[-1] > omega.size * np.finfo(float).eps * omega[0]:
         raise InputError(
             f"The frequencies span too wide a range for a modal analysis: {omega[-1]:.3g} to {omega[0]:.3g} "
-            "rad/s. Condense floors of nearly no mass out of the matrices first."
+            "rad/s. Condense nearly massless floors out of the matrices first."
         )
     return omega[::-1].copy(), shapes[:, ::-1]
 
 
 def normalising_ordinates(shapes: Float) -> Float:
-    """What each mode is divided by to have the top ordinate 1, or the largest one where the top hardly moves."""
+    """Return the divisor of each mode: its top ordinate, or its largest ordinate if the top hardly moves."""
     magnitude = np.abs(shapes)
     largest = shapes[magnitude.argmax(axis=0), np.arange(shapes.shape[1])]
     scale = np.where(magnitude[-1] > _NO_TOP_ORDINATE * np.abs(largest), shapes[-1], largest)
-    return np.where(scale == 0.0, 1.0, scale)  # a mode may leave all stations where they are
+    return np.where(scale == 0.0, 1.0, scale)  # a mode may displace no station

@@ -1,4 +1,4 @@
-"""From the modes of a structure to its parameters as a rocking structure."""
+"""Rocking parameters of a structure from its modes."""
 
 from typing import SupportsIndex
 
@@ -27,12 +27,12 @@ def rocking_properties(
 ) -> RockingProperties:
     """Return the parameters of the structure on a base that can rock.
 
-    With M the mass matrix, h the heights, ι a vector of ones and m_0 the mass of the base:
+    With the mass matrix M, the heights h, a vector of ones ι and the mass of the base m_0:
     I_θ = h^T M h + m_tot B², m_tot = ι^T M ι + m_0, L_0^r = ι^T M h.
 
-    A mode that takes part in neither base shear nor base moment (L_n^h = L_n^θ = 0) is not excited by the
-    ground nor by the rotation, and is left out. One with L_n^h = 0 and L_n^θ ≠ 0 is excited by the
-    rotation but has no coordinate D_n = q_n/Γ_n, so that Eq. 14 cannot hold it: an error.
+    A mode that contributes neither to the base shear nor to the base moment (L_n^h = L_n^θ = 0) is excited neither
+    by the ground nor by the rotation, and is left out. A mode with L_n^h = 0 and L_n^θ ≠ 0 is excited by the
+    rotation but has no coordinate D_n = q_n/Γ_n, so Eq. 14 cannot represent it: this is an error.
 
     Parameters
     ----------
@@ -45,21 +45,21 @@ def rocking_properties(
     base_mass : float
         Mass m_0 of the base in kg, zero or positive.
     half_width : float
-        Half the width B of the base in m.
+        Half-width B of the base in m.
     damping_ratio : array_like
-        Damping ratio in [0, 1) of every mode, or one for each mode of `modal`.
+        Damping ratio in [0, 1): one number for all modes, or one per mode of `modal`.
     n_modes : int, optional
-        Number of modes to keep, the lowest first, counting those that take part. Default: all of them.
+        Number of modes to retain, the lowest first, not counting modes that are not excited. Default: all.
 
     Returns
     -------
     RockingProperties
-        With `floors` filled in.
+        Properties that include `floors`.
 
     Raises
     ------
     InputError
-        If an argument is outside its range, does not fit `modal`, or a mode has no coordinate D_n.
+        If an argument is outside its range or does not match `modal`, or a mode has no coordinate D_n.
 
     References
     ----------
@@ -69,7 +69,7 @@ def rocking_properties(
     if not np.array_equal(h, instance("modal", modal, ModalProperties).heights):
         raise InputError(
             f"heights must be those of the modal analysis, {modal.heights}, but {h} was given. "
-            "Run modal_properties anew for other heights.",
+            "Call modal_properties again for other heights.",
             field="heights",
         )
     m = checked_mass(mass, h.size)

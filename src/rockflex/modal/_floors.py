@@ -1,4 +1,4 @@
-"""What each mode does at each floor."""
+"""Displacement and force of each mode at each floor."""
 
 from dataclasses import dataclass
 from typing import SupportsIndex
@@ -14,7 +14,7 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, init=False)
 class FloorModes(Value):
-    """Displacement and elastic force at every floor for a unit of each modal coordinate D_n.
+    """Displacement and elastic force at every floor per unit of each modal coordinate D_n.
 
     With q_n = Γ_n D_n (Silva & Stojadinović 2024, Section 2.1) the displacement of floor i relative to the
     base is u_i = Σ_n displacement_in D_n, and the elastic force on it is f_i = Σ_n force_in D_n; the base
@@ -25,14 +25,14 @@ class FloorModes(Value):
     heights : ndarray, shape (N,)
         Heights of the floors above the base in m.
     displacement : ndarray, shape (N, n)
-        Γ_n φ_in, no unit.
+        Γ_n φ_in, dimensionless.
     force : ndarray, shape (N, n)
         (M φ_n)_i Γ_n ω_n² in N/m.
 
     Raises
     ------
     InputError
-        If a value is not finite, or the shapes do not fit.
+        If a value is not finite, or the shapes do not match.
     """
 
     heights: Float
@@ -54,12 +54,12 @@ class FloorModes(Value):
         return self.displacement.shape[1]
 
     def truncated(self, n_modes: SupportsIndex) -> "FloorModes":
-        """Return the first `n_modes` modes alone.
+        """Return only the first `n_modes` modes.
 
         Raises
         ------
         InputError
-            If there are not as many modes.
+            If the structure has fewer modes than `n_modes`.
         """
         k = mode_count(n_modes, self.n_modes)
         return FloorModes(self.heights, self.displacement[:, :k], self.force[:, :k])

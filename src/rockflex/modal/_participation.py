@@ -1,4 +1,4 @@
-"""From mass-normalised modes and what they carry to modal and rocking properties, whatever the freedoms are."""
+"""Modal and rocking properties from mass-normalised modes, for any kind of degrees of freedom."""
 
 from dataclasses import dataclass
 from typing import SupportsIndex
@@ -19,34 +19,34 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class MassNormalisedModes(Value):
-    """Modes with φ_n^T M φ_n = 1, and what the structure carries when it moves as a rigid body.
+    """Modes with φ_n^T M φ_n = 1, and the inertia of the structure as a rigid body.
 
-    With ι the displacement of a unit translation of the base and r that of a unit rotation (heights for
-    horizontal freedoms, 1 for rotations), the rigid-body sums of Silva & Stojadinović 2024, Section 2.1, are
-    those of any structure, with lumped or with distributed mass.
+    Here ι are the displacements due to a unit translation of the base, and r those due to a unit rotation (the
+    height for a horizontal degree of freedom, 1 for a rotation). With them the sums of Silva & Stojadinović 2024,
+    Section 2.1, apply to any structure, with lumped or distributed mass.
 
     Attributes
     ----------
     omega : ndarray, shape (n,)
-        Circular frequencies in rad/s, rising.
+        Circular frequencies in rad/s, in ascending order.
     shear : ndarray, shape (n,)
         L_n^h = ι^T M φ_n in √kg.
     moment : ndarray, shape (n,)
         L_n^θ = r^T M φ_n in √kg m.
     heights : ndarray, shape (S,)
-        Heights of the stations above the base in m, strictly rising; the last one is the top.
+        Heights of the stations above the base in m, strictly increasing; the last one is the top.
     ordinates : ndarray, shape (S, n)
         φ_n at the stations.
     forces : ndarray, shape (S, n), or None
-        Forces at the stations that are statically equivalent to M φ_n; None where no such forces are known.
+        Forces at the stations that are statically equivalent to M φ_n; None if they are not known.
     mass : float
-        ι^T M ι in kg, without the base.
+        ι^T M ι in kg, excluding the base.
     first_moment : float
         L_0^r = r^T M ι in kg m.
     inertia : float
         r^T M r in kg m².
     rotary : float
-        Rotary inertia in kg m² that turns with the base but takes no part in the modes.
+        Rotary inertia in kg m² that rotates with the base but is not included in the modes.
     """
 
     omega: Float
@@ -62,7 +62,7 @@ class MassNormalisedModes(Value):
 
     @computable("The participation of the modes")
     def modal(self) -> ModalProperties:
-        """Return the modes with the top ordinate 1."""
+        """Return the modes, normalised to a top ordinate of 1."""
         shear, moment = self.shear.copy(), self.moment
         no_shear = np.abs(shear) <= NO_PARTICIPATION * np.sqrt(self.mass)
         no_moment = np.abs(moment) <= NO_PARTICIPATION * np.sqrt(self.inertia)
@@ -85,12 +85,12 @@ class MassNormalisedModes(Value):
     def rocking(
         self, base_mass: float, half_width: float, zeta: Float, n_modes: SupportsIndex | None
     ) -> RockingProperties:
-        """Return the parameters on a base that can rock; `zeta` holds one ratio a mode.
+        """Return the parameters on a base that can rock; `zeta` contains one damping ratio per mode.
 
         Raises
         ------
         InputError
-            If there are not as many modes, or one among them takes part in the base moment alone.
+            If the structure has fewer modes than `n_modes`, or one of them contributes only to the base moment.
         """
         modal = self.modal()
         kept = modes_that_take_part(modal, n_modes)
@@ -118,12 +118,12 @@ class MassNormalisedModes(Value):
 
 
 def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
-    """Return the indices of the first `n_modes` modes that the ground or the rotation excites.
+    """Return the indices of the first `n_modes` modes that are excited by the ground or the rotation.
 
     Raises
     ------
     InputError
-        If there are not as many, or one among them takes part in the base moment but not in the base shear.
+        If there are fewer such modes, or one of them contributes to the base moment but not to the base shear.
     """
     take_part = np.flatnonzero(~np.isnan(modal.effective_height))
     kept = take_part[: mode_count(n_modes, take_part.size)]
@@ -133,7 +133,7 @@ def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) 
         below = int(np.sum(kept < mode))
         remedy = f", or keep only the modes below it (n_modes={below})." if below else "."
         raise InputError(
-            f"Mode {mode + 1} ({modal.omega[mode]:.6g} rad/s) takes part in the base moment but not in the "
+            f"Mode {mode + 1} ({modal.omega[mode]:.6g} rad/s) contributes to the base moment but not to the "
             "base shear, so it has no modal coordinate D_n. Change a mass or a stiffness slightly"
             f"{remedy}"
         )

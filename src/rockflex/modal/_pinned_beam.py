@@ -1,4 +1,4 @@
-"""The uniform beam on a rotational spring, a bound of what uplift does to the modes."""
+"""The uniform beam on a rotational spring, a bound for the effect of uplift on the modes."""
 
 import math
 from collections.abc import Callable
@@ -18,16 +18,16 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PinnedBeam(Value):
-    """Frequencies of a pinned beam over those of the same beam clamped.
+    """Frequencies of a pinned beam relative to those of the clamped beam.
 
     Attributes
     ----------
     rotation_ratio : float
-        Frequency of the rotation against the spring over the first of the clamped beam; 0 without a spring, 1 when
-        clamped. No frequency of an uplifted structure stands beside it.
+        Frequency of the rotation on the spring divided by the first frequency of the clamped beam; 0 without a spring,
+        1 if clamped. An uplifted structure has no corresponding frequency.
     ratio : ndarray, shape (n,)
-        ω*_n/ω_n of the vibrations above it, against mode n of the clamped beam: bounds of those of an uplifted
-        structure without a spring.
+        ω*_n/ω_n of the higher vibrations, relative to mode n of the clamped beam. Without a spring these are bounds for
+        an uplifted structure.
     roots : ndarray, shape (n + 1,)
         λ of the rotation and of the vibrations: ω = λ² √(EI/(m L⁴)) in flexure, λ √(GA/(m L²)) in shear.
     """
@@ -43,11 +43,11 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     Parameters
     ----------
     behaviour : {"flexure", "shear"}
-        What deforms.
+        Kind of deformation.
     spring : float
         k_r L/EI in flexure, k_r/(GA L) in shear, zero (pinned) or positive.
     n_modes : int
-        Number of vibrations, 200 at most.
+        Number of vibrations, at most 200.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     Raises
     ------
     InputError
-        If the behaviour is another, the spring negative or not finite, or `n_modes` not positive.
+        If the behaviour is unknown, the spring negative or not finite, or `n_modes` not positive.
 
     References
     ----------
@@ -74,7 +74,7 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     for i in range(1, n + 1):
         pinned.append(_bisected(pin, i * math.pi, (i + 1) * math.pi if flexure else (i + 0.5) * math.pi))
         clamped.append(_bisected(clamp, i * math.pi, (i + 1) * math.pi))
-    # The zeros with a spring lie between those without and those clamped.
+    # The roots with a spring lie between those of the pinned and the clamped beam.
     spring_of = _flexure_spring if flexure else _shear_spring
     roots = [
         _bisected(lambda x: spring_of(x, k), low, high) if k else low
@@ -111,7 +111,7 @@ def _shear_spring(x: float, k: float) -> float:
 
 
 def _bisected(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return where the sign changes, to the last bit."""
+    """Return the place of the sign change, to the last bit."""
     above = function(high) > 0.0
     while low < (middle := 0.5 * (low + high)) < high:
         if (function(middle) > 0.0) == above:

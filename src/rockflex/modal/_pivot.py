@@ -1,4 +1,4 @@
-"""What a rocking structure is like while it turns about one edge of its base."""
+"""The properties of a rocking structure about one edge of its base."""
 
 import math
 from collections.abc import Sequence
@@ -11,38 +11,38 @@ from rockflex._shown import shown
 from rockflex.modal._tendons import Tendon, balanced
 
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
-"""What `pivot_of` takes of `RockingProperties`, by name."""
+"""Names of the `RockingProperties` that `pivot_of` needs."""
 
 _OVERTURNING_SHARE = 0.7
 
 
 @dataclass(frozen=True)
 class Pivot:
-    """The properties of a rocking structure that belong to one edge of its base: `RockingProperties.pivot`.
+    """The properties of a rocking structure about one edge of its base; see `RockingProperties.pivot`.
 
-    A tendon at x from the axis of the masses stands at the distance r = `arm` - `side` x from the pivot.
+    A tendon at x from the axis of the masses is at the distance r = `arm` - `side` x from the pivot.
 
     Attributes
     ----------
     side : int
-        1 for the right edge, about which the structure turns while θ > 0, and -1 for the left one.
+        1 for the right edge, about which the structure rotates while θ > 0, and -1 for the left edge.
     arm : float
         Distance of the pivot from the axis of the masses in m: B - e to the right, B + e to the left.
     i_theta : float
         Moment of inertia about the pivot in kg m².
     weight_moment : float
-        m_tot g times `arm`, in N m.
+        Moment of the weight, m_tot g times `arm`, in N m.
     prestress_moment : float
         Sum of F_0 r over the tendons, in N m.
     tendon_stiffness : float
         Sum of k r² over the tendons, in N m/rad.
     axial_stiffness_moment : float
-        Sum of k r over the tendons, in N/rad: how fast their pull grows with the rotation.
+        Sum of k r over the tendons, in N/rad: increase of their total force with the rotation.
     rocking_stiffness : float
-        Slope of the static moment over the rotation in N m/rad: `tendon_stiffness` - L_0^r g.
+        Slope of the static moment-rotation curve in N m/rad: `tendon_stiffness` - L_0^r g.
     nominal_overturning_rotation : float
-        Nominal limit 0.7 atan(`arm`/h*_1) of the rotation in rad (Silva & Stojadinović 2024, Section 3.3); of a rigid
-        block with L_0^r/m_tot.
+        Nominal limit 0.7 atan(`arm`/h*_1) of the rotation in rad (Silva & Stojadinović 2024, Section 3.3); for a rigid
+        block with L_0^r/m_tot in place of h*_1.
     """
 
     side: int
@@ -57,12 +57,12 @@ class Pivot:
 
     @property
     def resisting_moment(self) -> float:
-        """M_r in N m: the base turns about this pivot when the overturning moment exceeds it (Eq. 24)."""
+        """M_r in N m: the base lifts about this pivot when the overturning moment exceeds it (Eq. 24)."""
         return self.weight_moment + self.prestress_moment
 
     @property
     def balance_rotation(self) -> float:
-        """Rotation |θ| in rad at which the static moment vanishes; infinite where tendons keep it from that."""
+        """Rotation |θ| in rad at which the static moment vanishes; infinite if tendons prevent that."""
         return -self.resisting_moment / self.rocking_stiffness if self.rocking_stiffness < 0.0 else math.inf
 
 
@@ -76,7 +76,7 @@ def checked_side(side: int) -> int:
     """
     if real_or_nan(side) not in (1.0, -1.0):
         raise InputError(
-            f"side must be 1, the right edge of the base, or -1, the left one, but {shown(side)} was given.",
+            f"side must be 1 (right edge of the base) or -1 (left edge), but {shown(side)} was given.",
             field="side",
         )
     return int(side)
@@ -94,9 +94,9 @@ def pivot_of(
     l0r: float,
     height: float,
 ) -> Pivot:
-    """Return one pivot of a structure, from its `RockingProperties` and a height for the slenderness."""
+    """Return one pivot of a structure from its `RockingProperties` and a height that defines the slenderness."""
     arm = half_width - side * eccentricity
-    # About both pivots of a symmetric base the same numbers, to the last digit and in any order of the tendons.
+    # Both pivots of a symmetric base must give identical numbers, to the last digit and in any order of the tendons.
     alike = eccentricity == 0.0 and balanced(tendons)
     distances = [arm - (1 if alike else side) * each.position for each in tendons]
     if alike:
@@ -122,9 +122,9 @@ def pivot_of(
 def pivot_inertia(
     nearer: float, half_width: float, i_theta: float, translational_inertia: float, m_tot: float
 ) -> float:
-    """Return I_θ in kg m² about a pivot that is `nearer` by so many m to the axis than `half_width`."""
+    """Return I_θ in kg m² about a pivot whose distance to the axis is `half_width` - `nearer` (m)."""
     if nearer == 0.0:
         return i_theta
-    # I_θ may be printed with few digits; close to the axis the rest of it would be wrong, even negative.
+    # I_θ may have few printed digits; close to the axis the difference would be wrong, even negative.
     least = translational_inertia + m_tot * (half_width - nearer) ** 2
     return max(i_theta - m_tot * nearer * (2.0 * half_width - nearer), least)

@@ -34,53 +34,52 @@ Float = NDArray[np.float64]
 class RockingProperties(Value):
     """The parameters of a rocking structure with n modes (Silva & Stojadinović 2024, Table 2).
 
-    They hold for any structure, and can be filled by hand from the output of any finite element program. With no modes
-    at all they are those of a rigid block.
-    Sequences become read-only arrays.
+    They describe any structure, and can be entered by hand from the output of any finite element program. Without modes
+    they describe a rigid block. Sequences become read-only arrays.
 
     Attributes
     ----------
     omega : ndarray, shape (n,)
-        Circular frequencies ω_n on a fixed base in rad/s, not falling.
+        Circular frequencies ω_n on a fixed base in rad/s, in ascending order.
     effective_mass : ndarray, shape (n,)
         m*_n in kg, positive.
     effective_height : ndarray, shape (n,)
         h*_n in m, of either sign.
     top_ordinate : ndarray, shape (n,)
-        Γ_n φ_top,n: displacement of the top for a unit of D_n, no unit; u_top = Σ_n Γ_n φ_top,n D_n.
+        Γ_n φ_top,n: displacement of the top per unit of D_n, dimensionless; u_top = Σ_n Γ_n φ_top,n D_n.
     i_theta : float
-        I_θ in kg m²: moment of inertia about a pivot, base mass included; above Σ_n m*_n h*_n², and at least
-        `translational_inertia` + m_tot B². Of an eccentric base it is that about a pivot at the distance B from the
-        axis of the masses all the same; `pivot` has those about its own two.
+        I_θ in kg m²: moment of inertia about a pivot, including the base mass; above Σ_n m*_n h*_n², and at least
+        `translational_inertia` + m_tot B². For an eccentric base, too, it refers to a pivot at the distance B from the
+        axis of the masses; `pivot` gives the inertia about the actual pivots.
     l0r : float
         L_0^r = Σ_i m_i h_i in kg m.
     m_tot : float
-        Total mass in kg, base included; at least Σ_n m*_n.
+        Total mass in kg, including the base; at least Σ_n m*_n.
     half_width : float
-        B in m, positive and finite. A base that cannot lift is a matter of the model, not of B.
+        B in m, positive and finite. For a base that cannot lift, choose a fixed-base model instead of a large B.
     zeta : ndarray, shape (n,)
-        Modal damping ratios in [0, 1); one number stands for all modes.
+        Modal damping ratios in [0, 1); a single number applies to all modes.
     translational_inertia : float
-        Σ_i m_i h_i² in kg m², as Eqs. 19 and 29 need it; from Σ_n m*_n h*_n² to I_θ - m_tot B², which is the default
-        and exact for lumped masses without rotary inertia.
+        Σ_i m_i h_i² in kg m², needed by Eqs. 19 and 29; from Σ_n m*_n h*_n² to I_θ - m_tot B². The latter is the
+        default and exact for lumped masses without rotary inertia.
     floors : FloorModes or None
-        Floor displacements and forces of the same n modes, for quantities above the base.
+        Floor displacements and forces of the same n modes, for floor quantities.
     top_height : float or None
-        Height of the top above the base in m, where `top_ordinate` is taken. Default: the highest floor; None where it
-        is not known, and the total displacement of the top with it.
+        Height in m above the base of the top, to which `top_ordinate` refers. Default: the highest floor. If None, the
+        total displacement of the top is not available.
     base_mass : float or None
-        Mass m_0 of the base in kg, a part of `m_tot`. Default: what all modes together leave of `m_tot`; None where
-        modes are missing, and the mass that they would move is not known.
+        Mass m_0 of the base in kg, a part of `m_tot`. Default: `m_tot` minus the effective mass of all modes; None
+        (unknown) if modes are missing.
     tendons : tuple of Tendon
-        What holds the base down beside its weight; within the base, from -(B + e) to B - e.
+        Tendons that hold the base down; within the base, from -(B + e) to B - e.
     eccentricity : float
-        e in m, smaller than B: how far the vertical axis on which the masses lie stands to the right of the middle of
-        the base, so that the pivots are B - e to its right and B + e to its left.
+        e in m, smaller than B in magnitude: distance of the vertical axis of the masses to the right of the middle of
+        the base. The pivots are B - e to the right and B + e to the left of this axis.
 
     Raises
     ------
     InputError
-        If a value is not finite or outside the range named above, or the lengths differ.
+        If a value is not finite or outside the range given above, or the lengths differ.
     """
 
     omega: Float
@@ -158,10 +157,10 @@ class RockingProperties(Value):
 
     @property
     def mass_left_out(self) -> Float:
-        """Σ m_i, Σ m_i h_i and Σ m_i h_i² above the base that the n modes leave out, in kg, kg m and kg m², shape (3,).
+        """Parts of Σ m_i, Σ m_i h_i and Σ m_i h_i² that the n modes leave out, in kg, kg m and kg m², shape (3,).
 
-        Modes that are left out because they are stiff move with the base, and so does this mass. The first is NaN where
-        `base_mass` is not known.
+        The sums exclude the base. Stiff modes that are left out move with the base, and so does this mass. The first
+        entry is NaN if `base_mass` is not known.
         """
         above = math.nan if self.base_mass is None else self.m_tot - self.base_mass
         moments = np.array([above, self.l0r, self.translational_inertia])
@@ -171,9 +170,9 @@ class RockingProperties(Value):
         return left
 
     def pivot(self, side: int) -> Pivot:
-        """Return what belongs to one edge of the base: 1 is the right one, where θ > 0, and -1 the left one.
+        """Return the properties about one edge of the base: 1 is the right edge, where θ > 0, and -1 the left edge.
 
-        But for their `side` the two are alike if the structure is `symmetric`.
+        If the structure is `symmetric` the two differ only in their `side`.
 
         Raises
         ------
@@ -190,22 +189,22 @@ class RockingProperties(Value):
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:
-        """The pivots that there are to tell apart: one of a `symmetric` structure, else the right and the left one."""
+        """The distinct pivots: one for a `symmetric` structure, otherwise the right and the left one."""
         return (self.pivot(1),) if self.symmetric else (self.pivot(1), self.pivot(-1))
 
     @cached_property
     def weaker_pivot(self) -> Pivot:
-        """The pivot with the lesser resisting moment, about which the base lifts first; the right one of two alike."""
+        """The pivot with the smaller resisting moment, about which the base lifts first; the right one if equal."""
         return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
 
     @property
     def symmetric(self) -> bool:
-        """Whether the base is not eccentric, and every tendon off its middle has a mirror image: both pivots alike."""
+        """Whether both pivots are alike: no eccentricity, and every off-centre tendon has a mirror image."""
         return self.eccentricity == 0.0 and balanced(self.tendons)
 
     @property
     def weight_moment(self) -> float:
-        """Part m_tot g B of the resisting moment that the weight gives, in N m; of the `weaker_pivot`."""
+        """Contribution m_tot g B of the weight to the resisting moment in N m, for the `weaker_pivot`."""
         return self.weaker_pivot.weight_moment
 
     @property
@@ -222,13 +221,13 @@ class RockingProperties(Value):
     def resisting_moment(self) -> float:
         """M_r = (m_tot g + prestress) B in N m: the base lifts when the overturning moment exceeds it (Eq. 24).
 
-        Where the pivots differ it is the lesser of the two, that of the `weaker_pivot`.
+        If the pivots differ, it is the smaller value, that of the `weaker_pivot`.
         """
         return self.weaker_pivot.resisting_moment
 
     @property
     def axial_stiffness(self) -> float:
-        """Sum of the tendons' stiffnesses in N/m: what a base that is lifted without turning would feel."""
+        """Sum of the tendon stiffnesses in N/m: stiffness against lifting the base without rotation."""
         return sum((each.stiffness for each in self.tendons), 0.0)
 
     @property
@@ -238,45 +237,44 @@ class RockingProperties(Value):
 
     @property
     def rocking_stiffness(self) -> float:
-        """Slope of the static moment over the rotation while rocking, in N m/rad: `tendon_stiffness` - L_0^r g."""
+        """Slope of the static moment-rotation curve while rocking, in N m/rad: `tendon_stiffness` - L_0^r g."""
         return self.tendon_stiffness - self.l0r * GRAVITY
 
     @property
     def nominal_overturning_rotation(self) -> float:
-        """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3); of a rigid block with L_0^r/m_tot.
+        """Nominal limit 0.7 atan(B/h*_1) of the rotation in rad (Section 3.3); for a rigid block with L_0^r/m_tot.
 
-        Of an eccentric base it is the lesser of the two, with the nearer pivot's distance for B.
+        For an eccentric base it is the smaller of the two, with the distance of the nearer pivot in place of B.
         """
         return min(pivot.nominal_overturning_rotation for pivot in self.pivots)
 
     @computable("The inertia of the structure on this base")
     def with_half_width(self, half_width: float) -> "RockingProperties":
-        """Return the same structure on a base of another half width B in m, of the same mass.
+        """Return the same structure on a base of the same mass and another half-width B in m.
 
-        I_θ changes by m_tot B² and M_r with B; the modes, L_0^r and what rotary inertia the bodies have stay as they
-        are, and so do the tendons and the eccentricity.
+        The part m_tot B² of I_θ and M_r change with B. The modes, L_0^r, the rotary inertia of the masses, the tendons
+        and the eccentricity do not.
 
         Raises
         ------
         InputError
-            If the half width is not positive or not above the eccentricity, or a tendon does not stand within the
-            base.
+            If the half-width is not positive or not above the eccentricity, or a tendon is outside the base.
         """
         b = positive("half_width", half_width, "m")
         rotary = self.i_theta - self.translational_inertia - self.m_tot * self.half_width**2
-        # The rest is rounding where it is negative, and would weigh more about a closer pivot.
+        # A negative rest is rounding error, which would matter more about a closer pivot.
         about_pivot = self.translational_inertia + max(rotary, 0.0) + self.m_tot * b**2
         return self if b == self.half_width else replace(self, half_width=b, i_theta=about_pivot)
 
     def truncated(self, n_modes: SupportsIndex) -> "RockingProperties":
-        """Return the same structure with its first `n_modes` modes alone, as a surrogate model has it; 0: rigid.
+        """Return the same structure with only its first `n_modes` modes, as in a surrogate model; 0 means rigid.
 
-        I_θ, L_0^r, m_tot and Σ m_i h_i² belong to the structure and stay as they are (Section 2.3).
+        I_θ, L_0^r, m_tot and Σ m_i h_i² belong to the structure and do not change (Section 2.3).
 
         Raises
         ------
         InputError
-            If there are not as many modes.
+            If the structure has fewer modes than `n_modes`.
         """
         k = whole_number("n_modes", n_modes, 0, self.n_modes)
         if k == self.n_modes:

@@ -1,4 +1,4 @@
-"""Whether the parameters of a rocking structure belong to one that there can be."""
+"""Checks that the parameters of a rocking structure are physically possible."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,8 @@ from rockflex.modal._tendons import Tendon
 
 Float = NDArray[np.float64]
 
-SLACK = 1e-9  # of sums that are equal when all modes are kept: room for their rounding
-PRINTED = 1e-5  # of I_θ: room for values that were printed to six digits
+SLACK = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
+PRINTED = 1e-5  # of I_θ: tolerance for values printed to six digits
 
 
 def check_modes(modes: dict[str, Float]) -> None:
@@ -21,7 +21,7 @@ def check_modes(modes: dict[str, Float]) -> None:
     for name, values in modes.items():
         if values.size != omega.size:
             raise InputError(
-                f"{name} must hold one value a mode, as omega does ({omega.size}), but {values.size} were given.",
+                f"{name} must contain one value per mode, as omega does ({omega.size}), but {values.size} were given.",
                 field=name,
             )
     for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
@@ -29,14 +29,14 @@ def check_modes(modes: dict[str, Float]) -> None:
             i = int(np.argmin(values))
             raise InputError(
                 f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. "
-                "Leave out modes that do not take part.",
+                "Leave out modes that do not participate.",
                 field=name,
             )
     falls = np.flatnonzero(omega[1:] < omega[:-1])
     if falls.size:
         i = int(falls[0])
         raise InputError(
-            f"omega must rise from mode to mode, but omega[{i + 1}] = {omega[i + 1]:g} rad/s is below "
+            f"omega must be in ascending order, but omega[{i + 1}] = {omega[i + 1]:g} rad/s is below "
             f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency.",
             field="omega",
         )
@@ -47,15 +47,15 @@ def checked_eccentricity(modes: dict[str, Float], scalars: dict[str, float], ine
     e, b = finite("eccentricity", given, "m") + 0.0, scalars["half_width"]  # + 0.0 takes the sign from -0.0
     if not abs(e) < b:
         raise InputError(
-            f"eccentricity must be smaller than half_width, {b:g} m, to either side, but {e:g} m was given. It is how "
-            "far the axis of the masses stands to the right of the middle of the base; check the units too.",
+            f"eccentricity must be smaller than half_width, {b:g} m, to either side, but {e:g} m was given. It is the "
+            "distance of the axis of the masses to the right of the middle of the base; check the units too.",
             field="eccentricity",
         )
     modal_inertia = float(modes["effective_mass"] @ modes["effective_height"] ** 2)
     nearer = pivot_inertia(abs(e), b, scalars["i_theta"], inertia, scalars["m_tot"])
     if nearer <= modal_inertia:
         raise InputError(
-            f"eccentricity must leave inertia to rotate about the nearer pivot, but with {e:.9g} m of half_width = "
+            f"eccentricity must leave rotational inertia about the nearer pivot, but with {e:.9g} m and half_width = "
             f"{b:.9g} m only the {modal_inertia:.9g} kg m² of the modes are left. Move the axis of the masses further "
             "from the edge of the base.",
             field="eccentricity",
@@ -70,9 +70,9 @@ def tendons_within(tendons: tuple[Tendon, ...], half_width: float, eccentricity:
         if not left - room <= tendon.position <= right + room:
             base, origin = f"{half_width:g} m to each side of its centre", "the centre"
             if eccentricity:
-                base, origin = f"from {left:g} to {right:g} m", "the axis of the masses, as the base's edges are"
+                base, origin = f"from {left:g} to {right:g} m", "the axis of the masses, as the edges of the base are"
             raise InputError(
-                f"Tendons must pass through the base, {base}, but one stands at {tendon.position:g} m. Positions are "
+                f"Tendons must pass through the base, {base}, but one is at {tendon.position:g} m. Positions are "
                 f"measured from {origin}."
             )
     return tendons
@@ -91,8 +91,8 @@ def checked_base_mass(modes: dict[str, Float], m_tot: float, inertia: float, giv
         base = positive("base_mass", given, "kg", zero=True)
         if m_tot - base < modal_mass - SLACK * m_tot:
             raise InputError(
-                f"base_mass must leave the {modal_mass:.9g} kg that the modes move, but {base:.9g} kg of m_tot = "
-                f"{m_tot:.9g} kg was given.",
+                f"base_mass must leave the effective mass of the modes, {modal_mass:.9g} kg, but {base:.9g} kg of "
+                f"m_tot = {m_tot:.9g} kg was given.",
                 field="base_mass",
             )
         return base
@@ -109,17 +109,17 @@ def checked_inertia(modes: dict[str, Float], scalars: dict[str, float], given: f
     if m_tot < modal_mass * (1.0 - SLACK):
         raise InputError(
             f"m_tot must be at least the sum of effective_mass, {modal_mass:.9g} kg, but {m_tot:.9g} kg was "
-            "given. It is the mass of the whole structure with its base; check the units too.",
+            "given. It is the mass of the whole structure including its base; check the units too.",
             field="m_tot",
         )
     if i_theta <= modal_inertia:
         raise InputError(
             "i_theta must exceed the sum of effective_mass * effective_height**2, "
-            f"{modal_inertia:.9g} kg m², but {i_theta:.9g} kg m² was given: no inertia is left to rotate. "
-            "It is taken about a pivot, with the base; check the units too.",
+            f"{modal_inertia:.9g} kg m², but {i_theta:.9g} kg m² was given: no inertia is left for the rotation. "
+            "It refers to a pivot and includes the base; check the units too.",
             field="i_theta",
         )
-    source = "i_theta - m_tot * half_width**2, its default," if given is None else "what was given"
+    source = "i_theta - m_tot * half_width**2, its default," if given is None else "the given value"
     if given is None:
         inertia = i_theta - m_tot * scalars["half_width"] ** 2
     else:
@@ -135,8 +135,8 @@ def checked_inertia(modes: dict[str, Float], scalars: dict[str, float], given: f
     if i_theta < least * (1.0 - PRINTED):
         raise InputError(
             "i_theta must be at least translational_inertia + m_tot * half_width**2, "
-            f"{least:.9g} kg m², but {i_theta:.9g} kg m² was given. It is taken about a pivot, so it changes with the "
-            "base: properties.with_half_width(B) is the same structure on another one.",
+            f"{least:.9g} kg m², but {i_theta:.9g} kg m² was given. It refers to a pivot, so it changes with the "
+            "base: properties.with_half_width(B) gives the same structure on another base.",
             field="i_theta",
         )
     return max(inertia, modal_inertia)

@@ -14,21 +14,21 @@ from rockflex._shown import shown
 class Tendon:
     """An unbonded, elastic, vertical tendon from the structure through the base into the ground.
 
-    While the base rocks about a pivot at the distance r the tendon is stretched by 2 r sin(|θ|/2), to first order by
-    r |θ|, and its force rises from the initial one in proportion (Vassiliou & Makris 2015, doi
-    10.1061/(ASCE)EM.1943-7889.0000953). It never goes slack, since every rotation stretches it.
+    While the base rocks about a pivot at the distance r, the tendon is stretched by 2 r sin(|θ|/2), to first order
+    r |θ|, and its force increases linearly from the initial force (Vassiliou & Makris 2015, doi
+    10.1061/(ASCE)EM.1943-7889.0000953). It never goes slack, because every rotation stretches it.
 
     Attributes
     ----------
     initial_force : float
-        In N, when the base stands on the ground; zero or positive.
+        Force in N while the base is in contact with the ground; zero or positive.
     stiffness : float
         Axial stiffness EA/L over the unbonded length in N/m; zero or positive.
     position : float
-        Distance in m from the axis of the masses, which is the middle of the base unless that is eccentric; positive to
-        the right.
+        Distance in m from the axis of the masses, positive to the right. Unless the base is eccentric, this axis passes
+        through its middle.
     yield_force : float or None
-        In N, positive: against which the force is held. The tendon itself stays elastic.
+        In N, positive. The largest force is compared with it; the tendon itself stays elastic.
 
     Raises
     ------
@@ -59,12 +59,12 @@ class Tendon:
 
 
 def tendon_set(given: Any) -> tuple[Tendon, ...]:
-    """One tendon or several, as a tuple.
+    """Return one or several tendons as a tuple.
 
     Raises
     ------
     InputError
-        If something is no tendon.
+        If something is not a tendon.
     """
     items = (given,) if isinstance(given, Tendon) else tuple(given) if isinstance(given, Iterable) else (given,)
     for item in items:
@@ -77,7 +77,7 @@ def tendon_set(given: Any) -> tuple[Tendon, ...]:
 
 
 def balanced(tendons: Sequence[Tendon]) -> bool:
-    """Tell whether every tendon off the origin of the positions has a mirror image of equal force and stiffness."""
+    """Return whether every off-centre tendon has a mirror image of equal force and stiffness."""
     left = sorted((-t.position, t.initial_force, t.stiffness) for t in tendons if t.position < 0.0)
     right = sorted((t.position, t.initial_force, t.stiffness) for t in tendons if t.position > 0.0)
     pairs = [pair for ours, theirs in zip(left, right, strict=False) for pair in zip(ours, theirs, strict=True)]

@@ -17,32 +17,32 @@ from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted_damping import uplifted_damping
 
 Float = NDArray[np.float64]
-HIGHEST = 1e60  # rad/s, whose fourth power is still a number
+HIGHEST = 1e60  # rad/s, whose fourth power still fits in double precision
 
-_BESIDE = (1e-13, 1e-11, 1e-9)  # shifts beside a root, relative: the first at which no pivot is zero
+_BESIDE = (1e-13, 1e-11, 1e-9)  # relative shifts from a root: the first that gives a regular matrix is used
 
 
 @dataclass(frozen=True, eq=False)
 class UpliftedModes(Value):
-    """Modes of free motion about one pivot. The arrays are read-only.
+    """Vibration modes of the uplifted structure about one pivot. The arrays are read-only.
 
     Attributes
     ----------
     omega : ndarray, shape (n,)
-        Circular frequencies ω*_n of vibration in rad/s, rising.
+        Circular frequencies ω*_n of vibration in rad/s, in ascending order.
     ratio : ndarray, shape (n,)
-        ω*_n/ω_n: against the same mode on a fixed base.
+        ω*_n/ω_n, relative to the same mode on a fixed base.
     damping_ratio : ndarray, shape (n,)
-        ζ*_n = -Re λ/|λ| of the complex eigenvalues λ of Eq. 23 with its damping, in the order of |λ|. From 1 on the
-        motion does not vibrate, and of its two real eigenvalues ζ*_n is -(λ_a + λ_b)/(2 √(λ_a λ_b)). With one mode
-        it is ζ ω*/ω, but for the weight.
+        ζ*_n = -Re λ/|λ| of the complex eigenvalues λ of Eq. 23 with its damping, in the order of |λ|. A value of 1 or
+        more is an overdamped motion with two real eigenvalues, ζ*_n = -(λ_a + λ_b)/(2 √(λ_a λ_b)). With one mode
+        it is ζ ω*/ω if the weight is neglected.
     shapes : ndarray, shape (n + 1, n)
         (θ, D_1 .. D_n) as columns, with Σ_n |D_n| = 1 m and the largest D_n positive.
     growth_rate : float
-        Rate in 1/s at which the rigid, unstable mode grows; √(L_0^r g/I_θ) of a rigid structure. Zero where tendons
-        hold it.
+        Growth rate in 1/s of the unstable rigid mode; √(L_0^r g/I_θ) for a rigid structure. Zero if tendons make it
+        stable.
     sway_rate : float
-        Circular frequency in rad/s of that mode where tendons hold it, else zero.
+        Circular frequency in rad/s of that mode if tendons make it stable, otherwise zero.
     growth_shape : ndarray, shape (n + 1,)
         (θ, D_1 .. D_n) of that mode, with θ = 1 rad.
     """
@@ -60,22 +60,22 @@ class UpliftedModes(Value):
 def uplifted_modes(
     properties: RockingProperties, n_modes: SupportsIndex | None = None, *, side: int | None = None
 ) -> UpliftedModes:
-    """Return the modes of Eq. 23, with the first `n_modes` modes of the structure or with all.
+    """Return the modes of Eq. 23 from the first `n_modes` modes of the structure (default: all).
 
-    Frequencies and shapes are those without damping; `damping_ratio` says what the damping of the fixed base becomes.
+    Frequencies and shapes are undamped; `damping_ratio` is the damping that results from that of the fixed base.
 
-    Its matrices, the rows of D_n times m*_n, are symmetric, and the mass matrix is positive definite since
-    I_θ > Σ m*_n h*_n². The lowest root in ω² is that of the rotation, negative where gravity drives it (and tendons do
-    not outdo it); the others are vibrations.
+    With the rows of D_n multiplied by m*_n, the matrices are symmetric, and the mass matrix is positive definite
+    because I_θ > Σ m*_n h*_n². The lowest root ω² belongs to the rotation; it is negative if gravity outweighs the
+    tendons. The others are vibrations.
 
     Parameters
     ----------
     properties : RockingProperties
     n_modes : int, optional
-        Modes of the structure to keep: 1 is 2DOF-S, 2 is 3DOF-S. Default: all.
+        Number of modes to keep: 1 is 2DOF-S, 2 is 3DOF-S. Default: all.
     side : int, optional
-        1 for motion about the right edge of the base, -1 about the left one. Default: the `weaker_pivot`; both are
-        alike if the structure is `symmetric`.
+        1 for motion about the right edge of the base, -1 about the left edge. Default: the `weaker_pivot`; both give
+        the same if the structure is `symmetric`.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def uplifted_modes(
     Raises
     ------
     InputError
-        If there are not as many modes, or `side` is neither.
+        If the structure has fewer modes than `n_modes`, or `side` is neither 1 nor -1.
 
     References
     ----------
@@ -111,7 +111,7 @@ def uplifted_modes(
 
 @computable("The uplifted frequencies of the given properties")
 def lowest_uplifted(properties: RockingProperties, count: int, side: int | None = None) -> Float:
-    """Return the first `count` of `UpliftedModes.omega`, or as many as there are, with less work than for all."""
+    """Return at most the first `count` of `UpliftedModes.omega`, which is faster than computing all."""
     return np.sqrt(_lowest(properties, _pivot(properties, side), min(count, properties.n_modes))[0][1:])
 
 
@@ -120,11 +120,11 @@ def _pivot(p: RockingProperties, side: int | None) -> Pivot:
 
 
 def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Float, Float]:
-    """Return ω² and (θ, D) of the rotation and of the lowest vibrations, of shapes (v + 1,) and (n + 1, v + 1)."""
-    # With D_n √m*_n for freedoms the lower block of the mass matrix is the identity.
+    """Return ω² (v + 1,) and (θ, D) (n + 1, v + 1) of the rotation and the lowest v vibrations."""
+    # With D_n √m*_n as coordinates the lower block of the mass matrix is the identity.
     root = np.sqrt(p.effective_mass)
     arm = root * p.effective_height
-    # M = L L^T: the rest of the inertia, and the modes' own directions.
+    # M = L L^T, from the rest of the inertia and the directions of the modes.
     rest = float(np.sqrt(pivot.i_theta - arm @ arm))
     # With y = (rest θ, √m*_n D_n + arm θ), M is the identity and K' = S^T K S, where (θ, √m* D) = S y.
     n = p.n_modes
@@ -142,7 +142,7 @@ def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Float,
 
 
 def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Float) -> Float:
-    """Return the damping of Eq. 23 over motions (θ, D) as columns, each scaled to unit modal mass."""
+    """Return the modal damping matrix of Eq. 23 for motions (θ, D) as columns, each scaled to unit modal mass."""
     root = np.sqrt(p.effective_mass)
     arm = root * p.effective_height
     turn, modal = motions[0], root[:, None] * motions[1:]
@@ -152,7 +152,7 @@ def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Float) -> Float:
 
 
 def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> tuple[Float, Float]:
-    """Give small roots back the digits that rounding of the largest took: a step of inverse iteration each."""
+    """Restore the digits that small roots lost to rounding of the largest, by one step of inverse iteration each."""
     moved = motions
     for shift in _BESIDE:
         near = np.diag(stiffness) - (squares * (1.0 + shift))[:, None, None] * mass
@@ -174,21 +174,21 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     Parameters
     ----------
     properties : RockingProperties
-        `truncated` for fewer modes.
+        Use `truncated` for fewer modes.
     omega : array_like
         Circular frequencies in rad/s, any shape.
     side : int, optional
-        1 for motion about the right edge of the base, -1 about the left one. Default: the `weaker_pivot`.
+        1 for motion about the right edge of the base, -1 about the left edge. Default: the `weaker_pivot`.
 
     Returns
     -------
     ndarray
-        In N m/rad, in the shape of `omega`; NaN at a frequency ω_n of the fixed base, where the sum has a pole.
+        Values in N m/rad, with the shape of `omega`; NaN at a fixed-base frequency ω_n, where the sum has a pole.
 
     Raises
     ------
     InputError
-        If a frequency is no number below 1e60 rad/s, or `side` is neither.
+        If a frequency is not a number below 1e60 rad/s, or `side` is neither 1 nor -1.
 
     References
     ----------
@@ -198,7 +198,7 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     frequencies = float_array(omega)
     if frequencies is None or not (np.abs(frequencies) < HIGHEST).all():
         raise InputError(
-            f"omega must hold frequencies in rad/s, below {HIGHEST:g}, but {shown(omega)} was given.", field="omega"
+            f"omega must contain frequencies in rad/s below {HIGHEST:g}, but {shown(omega)} was given.", field="omega"
         )
     square = frequencies[..., None] ** 2
     inertia = properties.effective_mass * properties.effective_height**2

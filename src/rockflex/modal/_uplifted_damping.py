@@ -7,24 +7,25 @@ Float = NDArray[np.float64]
 
 
 def uplifted_damping(squares: Float, damping: Float) -> Float:
-    """Return ζ* (n,) of the vibrations q'' + C q' + Λ q = 0, those of the rotation left out.
+    """Return ζ* (n,) of the vibrations of q'' + C q' + Λ q = 0, without the rotation.
 
     Parameters
     ----------
     squares : ndarray, shape (n + 1,)
-        Λ: the eigenvalues ω² of the undamped system in rad²/s², rising; the first is the rotation's.
+        Λ: the eigenvalues ω² of the undamped system in rad²/s², in ascending order; the first is the rotation.
     damping : ndarray, shape (n + 1, n + 1)
-        C in 1/s, over the undamped modes with unit modal mass; symmetric, positive semidefinite.
+        C in 1/s, in the undamped modes with unit modal mass; symmetric, positive semidefinite.
 
     Notes
     -----
-    Roots λ come in pairs: two that are conjugate, or two real ones of a motion that does not vibrate (the slowest
-    with the fastest, where there are more). The rotation's pair is the growing root and the slowest real one that
-    decays; without a growing root, the pair with the least product. The others are taken in the order of √(λ_a λ_b),
-    which without damping is that of ω*, and have ζ* = -(λ_a + λ_b)/(2 √(λ_a λ_b)).
+    The roots λ come in pairs: two conjugates, or two real roots of an overdamped motion (if there are more, the slowest
+    is paired with the fastest). The pair of the rotation is the growing root and the slowest decaying real root;
+    without a growing root, it is the pair with the smallest product. The other pairs are sorted by √(λ_a λ_b), which is
+    ω* without damping, and have ζ* = -(λ_a + λ_b)/(2 √(λ_a λ_b)).
     """
     size = squares.size
-    # Displacements times ω: with no damping the matrix is skew-symmetric but for the rotation, and so well conditioned.
+    # Displacements are scaled by ω: without damping the matrix is then skew-symmetric except for the rotation, and so
+    # well conditioned.
     scale = np.sqrt(np.abs(squares))
     scale[scale == 0.0] = 1.0
     matrix = np.zeros((2 * size, 2 * size))

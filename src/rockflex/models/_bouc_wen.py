@@ -9,20 +9,20 @@ from rockflex._shown import shown
 
 @dataclass(frozen=True)
 class BoucWen:
-    """A superstructure that yields: ω² [α D + D_y (1 - α) z] takes the place of ω² D.
+    """A yielding superstructure: ω² [α D + D_y (1 - α) z] replaces ω² D.
 
-    z' = (D' - γ |D'| z |z|^(n-1) - β D' |z|^n) / D_y, in contact and while rocking alike.
+    z' = (D' - γ |D'| z |z|^(n-1) - β D' |z|^n) / D_y, both in contact and while rocking.
 
     Parameters
     ----------
     yield_displacement
-        D_y of the first mode's D_1 in m, positive; at the top it is Γ_1 φ_top,1 D_y.
+        Yield displacement D_y of the first modal coordinate D_1 in m, positive; Γ_1 φ_top,1 D_y at the top.
     post_yield_ratio
-        α, stiffness after yielding over that before, in [0, 1).
+        α, ratio of the post-yield to the elastic stiffness, in [0, 1).
     gamma, beta
-        Shape of the hysteresis, -γ < β ≤ γ: |z| stays below (γ + β)^(-1/n), and no loop makes energy.
+        Shape of the hysteresis, -γ < β ≤ γ: |z| stays below (γ + β)^(-1/n), and no loop generates energy.
     exponent
-        n, at least 1; the larger, the sharper the yielding.
+        n, at least 1; a larger value gives a sharper transition to yielding.
 
     Raises
     ------
@@ -49,19 +49,20 @@ class BoucWen:
         if not 0.0 <= self.post_yield_ratio < 1.0:
             raise InputError(
                 f"post_yield_ratio must lie in [0, 1), but {shown(self.post_yield_ratio)} was given. "
-                "Give the stiffness after yielding over the elastic one; for an elastic structure leave bouc_wen out.",
+                "It is the ratio of the post-yield to the elastic stiffness; for an elastic structure leave bouc_wen "
+                "out.",
                 field="post_yield_ratio",
             )
         if self.exponent < 1.0:
             raise InputError(
-                f"exponent must be at least 1, but {shown(self.exponent)} was given. 8 is a sharp yield, 1 a round "
-                "one.",
+                f"exponent must be at least 1, but {shown(self.exponent)} was given. 8 gives a sharp yield, 1 a "
+                "gradual one.",
                 field="exponent",
             )
         if not (self.gamma > 0.0 and abs(self.beta) <= self.gamma and self.gamma + self.beta > 0.0):
             raise InputError(
                 f"gamma must be positive and -gamma < beta <= gamma, but gamma={shown(self.gamma)} and "
-                f"beta={shown(self.beta)} were given: the spring would give back more energy than it takes. The paper "
-                "has 0.5 for both.",
+                f"beta={shown(self.beta)} were given: the spring would return more energy than it absorbs. The "
+                "paper uses 0.5 for both.",
                 field="gamma",
             )

@@ -1,6 +1,6 @@
-"""What acts on the base: each element with its branches, and the forces that it adds to the equations in each.
+"""The elements that act on the base: the branches of each, and its contribution to the equations on each branch.
 
-A further element (a damper, a fuse) is one more class here, or beside this file, and one more entry in `elements_of`.
+To add an element (a damper, a fuse), add a class here or in another file, and an entry in `elements_of`.
 """
 
 from dataclasses import dataclass
@@ -10,35 +10,35 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.models._phase import Border, Key
 
-CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or turning about one pivot; the sign of θ
+CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
 
 
 class Element(Protocol):
-    """Something that acts on the base."""
+    """An element that acts on the base."""
 
     @property
     def branches(self) -> tuple[int, ...]:
-        """Its branches; a run starts on the first."""
+        """The branches; a run starts on the first."""
         ...
 
     def border(self, branch: int, side: int) -> Border:
-        """Forces on a branch while the base turns about the pivot of a side."""
+        """Return the contribution on a branch while the base rotates about the pivot of a side."""
         ...
 
 
 @dataclass(frozen=True)
 class Base:
-    """The base on rigid ground, and the weight that it carries: Eq. 23 less what the modes add."""
+    """The base on rigid ground with the weight of the structure: Eq. 23 without the terms of the modes."""
 
     properties: RockingProperties
 
     @property
     def branches(self) -> tuple[int, ...]:
-        """In contact, and on either pivot."""
+        """Contact, and rocking about either pivot."""
         return CLOSED, RIGHT, LEFT
 
     def border(self, branch: int, side: int) -> Border:
-        """Inertia about the pivot, and the weight: -s m_tot g B + L_0^r (g θ - a)."""
+        """Return the inertia about the pivot, and the moment of the weight: -s m_tot g B + L_0^r (g θ - a)."""
         del branch
         p = self.properties
         pivot = p.pivot(side)
@@ -49,18 +49,18 @@ class Base:
 
 @dataclass(frozen=True)
 class ElasticTendon:
-    """A tendon that stays elastic: it pulls with F_0 + k r |θ| at the distance r from the pivot."""
+    """An elastic tendon: its force is F_0 + k r |θ| at the distance r from the pivot."""
 
     tendon: Tendon
     properties: RockingProperties
 
     @property
     def branches(self) -> tuple[int, ...]:
-        """One: every rotation stretches it."""
+        """A single branch: every rotation stretches the tendon."""
         return (0,)
 
     def border(self, branch: int, side: int) -> Border:
-        """Moment -s F_0 r - k r² θ."""
+        """Return the moment -s F_0 r - k r² θ."""
         del branch
         arm = self.properties.pivot(side).arm - side * self.tendon.position
         return Border.on_rotation(
@@ -79,7 +79,7 @@ def first_key(elements: tuple[Element, ...], side: int) -> Key:
 
 
 def border_of(elements: tuple[Element, ...], key: Key) -> Border:
-    """Return the sum of what all elements add on their branches, while the base turns about a pivot."""
+    """Return the sum of the contributions of all elements on their branches, while the base rotates about a pivot."""
     parts = [each.border(branch, key[0]) for each, branch in zip(elements, key, strict=True)]
     total = parts[0]
     for part in parts[1:]:

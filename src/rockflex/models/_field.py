@@ -1,7 +1,8 @@
 """The vector field of the nonlinear models (Silva & Stojadinović 2024, Eqs. 13-15, 23 and 37-38).
 
-The motion is ``[D_1..D_N, D'_1..D'_N, θ, θ', z, E_damped, E_input, E_hysteretic]``: the last three count the energies
-that are damped, put in by the ground and taken up by the hysteretic spring, so that they are known as well as the rest.
+The motion is ``[D_1..D_N, D'_1..D'_N, θ, θ', z, E_damped, E_input, E_hysteretic]``. The last three are the damped
+energy, the work of the ground and the energy absorbed by the hysteretic spring; integrating them with the motion gives
+them the same accuracy.
 """
 
 import math
@@ -14,10 +15,10 @@ from rockflex._kernel import kernel
 
 Array = NDArray[np.float64]
 
-EXTRA = 4  # components after those of the simplified models
+EXTRA = 4  # components in addition to those of the simplified models
 
-# Places in `Field.modes`, and of each pivot in `Field.pivots`: its distance B from the axis of the masses, I_θ about
-# it, and over the tendons Σ F_0 r, Σ k r² and Σ k r, where r is the distance of a tendon.
+# Indices in `Field.modes`, and for each pivot in `Field.pivots`: its distance B from the axis of the masses, I_θ about
+# it, and the sums over the tendons Σ F_0 r, Σ k r² and Σ k r, where r is the distance of a tendon from the pivot.
 OMEGA2, DRAG, HEIGHT, MASS = 0, 1, 2, 3
 ARM, INERTIA, PRESTRESS, STIFFNESS, PULL = 0, 1, 2, 3, 4
 
@@ -25,10 +26,10 @@ ARM, INERTIA, PRESTRESS, STIFFNESS, PULL = 0, 1, 2, 3, 4
 class Field(NamedTuple):
     """Coefficients of one nonlinear model, N modes."""
 
-    complete: bool  # Eqs. 13 and 14; else Eq. 23
+    complete: bool  # Eqs. 13 and 14; otherwise Eq. 23
     hysteretic: bool
     modes: Array  # (4, N): ω², 2ζω, h* and m*
-    pivots: Array  # (2, 5), of the right pivot and of the left one: see the places above
+    pivots: Array  # (2, 5), for the right and the left pivot: see the indices above
     weight_arm: float  # L_0^r
     total_mass: float
     prestress: float  # Σ F_0
@@ -38,18 +39,18 @@ class Field(NamedTuple):
     gamma: float
     beta: float
     exponent: float
-    whole: int  # the exponent, where it is a whole number, whose power is quickly had; else 0
+    whole: int  # the exponent if it is a whole number, for a fast power; otherwise 0
 
 
 @kernel
 def pivot_at(side: float) -> int:
-    """Place of a side's pivot in the field's pairs of values."""
+    """Return the index of the pivot of a side in `Field.pivots`."""
     return 1 if side < 0.0 else 0
 
 
 @kernel
 def inertia_left(field: Field, side: float, motion: Array) -> float:
-    """Factor of θ'' once D'' is eliminated: I_θ - Σ m* h*², and in the complete models what D adds."""
+    """Return the factor of θ'' after eliminating D'': I_θ - Σ m* h*², in complete models plus the terms of D."""
     n = field.modes.shape[1]
     pivot = pivot_at(side)
     inertia = field.pivots[pivot, INERTIA]
@@ -62,9 +63,9 @@ def inertia_left(field: Field, side: float, motion: Array) -> float:
 
 @kernel
 def field_rates(field: Field, side: float, branch: float, acceleration: float, motion: Array, rates: Array) -> None:
-    """Rates of the motion on one side (0: in contact) under one ground acceleration.
+    """Compute the rates of the motion on one side (0: in contact) for a ground acceleration.
 
-    `branch` is the sign of D'_1 that the hysteresis goes by, so that its law is smooth until it has turned.
+    `branch` is the sign of D'_1 used in the hysteresis law, which is therefore smooth up to the reversal.
     """
     n = field.modes.shape[1]
     theta, spin = motion[2 * n], motion[2 * n + 1]
@@ -104,7 +105,7 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
         if field.complete:
             arm = weight * sine + field.weight_arm * cosine - displaced * sine
             moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
-            # Tendons are stretched by 2 r sin(|θ|/2) and pull at the arm r cos(θ/2), r being their distance B - s x.
+            # A tendon is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2), where r = B - s x.
             moment += (
                 side * field.pivots[pivot, PRESTRESS] * math.sqrt(0.5 + 0.5 * cosine)
                 + field.pivots[pivot, STIFFNESS] * sine
@@ -126,7 +127,7 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
 
 @kernel
 def hysteresis(field: Field, branch: float, velocity: float, z: float) -> float:
-    """Rate of z (Eq. 38), with `branch` D' for |D'|."""
+    """Return the rate of z (Eq. 38), with `branch` D' in place of |D'|."""
     if field.whole > 0:
         power, factor, left = 1.0, abs(z), field.whole
         while left > 0:

@@ -1,7 +1,7 @@
-"""Impact laws: what remains of the velocities when the base comes back to the ground.
+"""Impact laws: the velocities after the base returns to the ground.
 
-At an impact the displacements stay, θ = 0, and a law names the velocities after it. A rotation velocity of zero means
-full contact; any other carries the rocking on, to the side of its sign.
+At an impact θ = 0, the displacements do not change, and the law gives the velocities after it. A rotation velocity of
+zero means full contact; otherwise rocking continues to the side given by its sign.
 """
 
 import math
@@ -21,12 +21,12 @@ Array = NDArray[np.float64]
 
 @runtime_checkable
 class ImpactLaw(Protocol):
-    """An impact law; any object with these three can be passed as one.
+    """The protocol of impact laws; any object with these three members can be used.
 
     Attributes
     ----------
     keeps, loses : str
-        What the law conserves and what it gives up, in words.
+        Descriptions of the quantities that the law conserves and of those that it loses.
     """
 
     @property
@@ -38,13 +38,13 @@ class ImpactLaw(Protocol):
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
     ) -> tuple[ArrayLike, float]:
-        """Velocities after an impact: D' in m/s, shape (N,), and θ' in rad/s, from those before it."""
+        """Return the velocities after an impact, D' (N,) in m/s and θ' in rad/s, from those before it."""
         ...
 
 
 @dataclass(frozen=True)
 class VVELSimplified:
-    """Vertical velocity energy loss, mass by mass (Silva & Stojadinović 2024, Eqs. 25 and 32)."""
+    """Vertical velocity energy loss for each mass separately (Silva & Stojadinović 2024, Eqs. 25 and 32)."""
 
     keeps = "the horizontal velocity of every mass, as far as the modes can follow"
     loses = "the rotation: its vertical velocities, and what the modes cannot follow"
@@ -52,16 +52,16 @@ class VVELSimplified:
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
     ) -> tuple[Array, float]:
-        """D'_n + h*_n θ', and no rotation."""
+        """Return D'_n + h*_n θ', and no rotation."""
         return modal_velocity + properties.effective_height * rotation_velocity, 0.0
 
 
 @dataclass(frozen=True)
 class VVELComplete:
-    """Vertical velocity energy loss in total (Silva & Stojadinović 2024, Eqs. 19 and 29).
+    """Vertical velocity energy loss for all masses together (Silva & Stojadinović 2024, Eqs. 19 and 29).
 
-    Eq. 19 is one equation for all modes. Their velocities by Eq. 25 are scaled by one factor to meet it; for one mode
-    that is Eq. 29 with the sign that Eq. 25 names, and where all modes are kept the factor is one.
+    Eq. 19 is a single equation for all modes. The modal velocities of Eq. 25 are scaled by a common factor to satisfy
+    it. For one mode this is Eq. 29 with the sign of Eq. 25; if all modes are kept, the factor is one.
     """
 
     keeps = "the horizontal kinetic energy of all masses together"
@@ -70,7 +70,7 @@ class VVELComplete:
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
     ) -> tuple[Array, float]:
-        """Eq. 25's velocities, scaled to meet Eq. 19; zero stays zero."""
+        """Return the velocities of Eq. 25, scaled to satisfy Eq. 19; zero stays zero."""
         p = properties
         velocity = modal_velocity + p.effective_height * rotation_velocity
         lever = p.effective_mass * p.effective_height
@@ -81,18 +81,18 @@ class VVELComplete:
 
 @dataclass(frozen=True)
 class Restitution:
-    """The rotation passes to the other side with a share e of its velocity.
+    """The rotation continues on the other side with a fraction e of its velocity.
 
     Every mass keeps its horizontal velocity, D'_after = D'_before + h* (1 - e) θ'_before; e = 0 is `VVELSimplified`.
-    Impacts may accumulate; contact begins, as with e = 0, once the next excursion would be shorter than
-    `shortest_excursion`, judged from the accelerations right after the impact.
+    Impacts may accumulate. Contact starts, as with e = 0, once the next excursion would be shorter than
+    `shortest_excursion`, estimated from the accelerations right after the impact.
 
     Parameters
     ----------
     e
         θ'_after / θ'_before, from 0 to 1.
     shortest_excursion
-        In s, positive.
+        Shortest duration of an excursion in s, positive.
 
     Raises
     ------
@@ -110,8 +110,8 @@ class Restitution:
         e = finite("e", self.e, "")
         if not 0.0 <= e <= 1.0:
             raise InputError(
-                f"The restitution e must lie from 0 to 1, but {shown(self.e)} was given. It is the rotation velocity "
-                "after an impact over that before it; more than 1 would gain energy."
+                f"The restitution e must lie from 0 to 1, but {shown(self.e)} was given. It is the ratio of the "
+                "rotation velocities after and before an impact; more than 1 would gain energy."
             )
         object.__setattr__(self, "e", e)
         object.__setattr__(self, "shortest_excursion", positive("shortest_excursion", self.shortest_excursion, "s"))
@@ -119,19 +119,19 @@ class Restitution:
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
     ) -> tuple[Array, float]:
-        """D'_n + h*_n (1 - e) θ', and e θ'."""
+        """Return D'_n + h*_n (1 - e) θ', and e θ'."""
         passed = self.e * rotation_velocity
         return modal_velocity + properties.effective_height * (rotation_velocity - passed), passed
 
 
 @dataclass(frozen=True)
 class SidedRestitution:
-    """A restitution that depends on the edge of the base that the rotation leaves.
+    """A restitution that depends on the edge about which the base rotated before the impact.
 
     Parameters
     ----------
     right, left
-        For an impact that ends a rotation about the right edge (θ > 0, so θ' < 0 before it), and about the left one.
+        For an impact that ends a rotation about the right edge (θ > 0, so θ' < 0 before it), or about the left edge.
     """
 
     right: Restitution
@@ -143,14 +143,14 @@ class SidedRestitution:
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
     ) -> tuple[Array, float]:
-        """What the law of that edge says."""
+        """Apply the law of that edge."""
         law = self.right if rotation_velocity < 0.0 else self.left
         return law.after(properties, modal_velocity, rotation_velocity)
 
 
 @dataclass(frozen=True)
 class ForgottenLaw:
-    """What a saved response remembers of the user's own law: not what it does."""
+    """Stands for a user-defined law in a loaded response: its description, but not its formula."""
 
     description: str
     keeps: str  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -159,7 +159,7 @@ class ForgottenLaw:
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float
     ) -> tuple[Array, float]:
-        """Cannot be had.
+        """Not available.
 
         Raises
         ------
@@ -167,14 +167,14 @@ class ForgottenLaw:
             Always.
         """
         del properties, modal_velocity, rotation_velocity
-        raise InputError(f"The impact law {self.description} was not saved with the response. Give the law itself.")
+        raise InputError(f"The impact law {self.description} was not saved with the response. Pass the law itself.")
 
 
 def housner(properties: RockingProperties) -> Restitution | SidedRestitution:
-    """Housner's impact of a rigid block, η = 1 - 2 m_tot B²/I_θ: angular momentum about the new pivot is kept.
+    """Return Housner's impact law, η = 1 - 2 m_tot B²/I_θ: angular momentum about the new pivot is conserved.
 
-    On an eccentric base, with the masses at the distances B_1 and B_2 from the pivots before and after the impact, it
-    is η = 1 - m_tot (B_1 + B_2) B_2/I_2, which differs from side to side.
+    For an eccentric base, with the masses at the distances B_1 and B_2 from the pivots before and after the impact, it
+    is η = 1 - m_tot (B_1 + B_2) B_2/I_2, which is different on the two sides.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What follows from the states that a history keeps: accelerations, and the values of quantities."""
+"""Accelerations and values of quantities at the states of a history."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def acting_side(states: Array) -> Array:
-    """Side of each state, shape (n,); a contact of no length never acts, so there it is what follows."""
+    """Return the side of each state, shape (n,); for a contact of zero duration it is the side that follows."""
     side = states[:, SIDE].copy()
     following = np.append(states[1:, TIME] == states[:-1, TIME], False)
     for node in np.flatnonzero((side[1:] == 0.0) & (side[:-1] != 0.0)) + 1:
@@ -28,7 +28,7 @@ def acting_side(states: Array) -> Array:
 
 
 def accelerations(model: RockingModel, states: Array) -> Array:
-    """D''_1..D''_N in m/s² and θ'' in rad/s² at every state, shape (n, N + 1)."""
+    """Return D''_1..D''_N in m/s² and θ'' in rad/s² at every state, shape (n, N + 1)."""
     side, layout = acting_side(states), model.layout
     n = layout.modes
     if isinstance(model, NonlinearModel):
@@ -43,13 +43,13 @@ def accelerations(model: RockingModel, states: Array) -> Array:
 
 
 def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
-    """D', D'', θ' and θ'' in the order of the state, shape (n, 2N + 2), from the accelerations D'' and θ''."""
+    """Return D', D'', θ' and θ'' in the order of the state, shape (n, 2N + 2), from the accelerations."""
     layout = model.layout
     return np.column_stack((layout.velocities(states), found[:, :-1], layout.of(states, layout.spin), found[:, -1]))
 
 
 def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
-    """Values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
+    """Return the values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
     side = acting_side(states)
     values = np.zeros((states.shape[0], len(quantities)))
     for chosen, key, vector in _by_side(model, states, side):
@@ -67,7 +67,7 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
 
 
 def _by_side(model: RockingModel, states: Array, side: Array) -> list[tuple[NDArray[np.bool_], tuple[int, ...], Array]]:
-    """For each side: which states are on it, its phase, and what its rows are taken over."""
+    """Return for each side a mask of its states, its phase, and the vectors that its rows multiply."""
     moving = states[:, HEADER : HEADER + model.layout.moving]
     vector = np.column_stack((moving, states[:, GROUND], np.ones(side.size)))
     chosen = [(side == each, model.start(each)) for each in model.sides]

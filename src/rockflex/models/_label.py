@@ -1,4 +1,4 @@
-"""The paper's names of models: "2DOF-S", ... "MDOF-S", "2DOF-C", "3DOF-C-SI", "fixed", "rigid" and their kin."""
+"""Model labels as in the paper: "2DOF-S", ... "MDOF-S", "2DOF-C", "3DOF-C-SI", "fixed", "rigid" and similar."""
 
 import re
 from dataclasses import dataclass, replace
@@ -22,37 +22,37 @@ _PATTERN = re.compile(
 )
 _EXPECTED = (
     '"2DOF-S", "3DOF-S", ... or "MDOF-S" (all modes); "2DOF-C" or "MDOF-C"; "2DOF-C-SI", "3DOF-C-E", ...; "rigid" or '
-    '"rigid-C"; "fixed" or "5DOF-fixed"; with one mode also "2DOF-S-BW" and its like; and any of them with modes as '
-    '"2DOF-S-R", whose base shear and moment count the mass that the modes leave out'
+    '"rigid-C"; "fixed" or "5DOF-fixed"; with one mode also "2DOF-S-BW" and similar; and any label with modes as '
+    '"2DOF-S-R", whose base shear and moment include the mass that the modes leave out'
 )
-_SAME = 1e-6  # Σ m* h*² over Σ m_i h_i², for all modes to count as kept
+_SAME = 1e-6  # relative tolerance of Σ m* h*² = Σ m_i h_i², if all modes are kept
 
 
 @dataclass(frozen=True)
 class Model:
-    """A choice of model, not yet tied to a structure.
+    """A choice of model, not yet applied to a structure.
 
     Parameters
     ----------
     n_modes
-        Number of modes kept; None for all of them, 0 for a rigid block.
+        Number of modes; None for all modes of the structure, 0 for a rigid block.
     lifts
         Whether the base can lift, or is fixed (Eq. 15).
     complete
-        Eqs. 13, 14 and 16 with large rotations, or the simplified Eqs. 23 and 24.
+        Whether to use Eqs. 13, 14 and 16 with large rotations, or the simplified Eqs. 23 and 24.
     closure
-        Impact of a complete model where no other law is given: ``"SI"`` for Eq. 25, ``"E"`` for Eq. 25's velocities
-        scaled to meet Eq. 19. None for Eqs. 19 and 29 themselves, which need one mode or all of them.
+        Default impact law of a complete model: ``"SI"`` for Eq. 25, ``"E"`` for the velocities of Eq. 25 scaled to
+        satisfy Eq. 19. None for Eqs. 19 and 29 themselves, which need either one mode or all modes.
     yields
-        Whether the label promises a Bouc-Wen superstructure ("2DOF-S-BW").
+        Whether the superstructure is a Bouc-Wen model ("2DOF-S-BW").
     missing_mass
-        Whether base shear and base moment count the mass that the modes leave out as if it moved with the base
-        ("2DOF-S-R"): the missing-mass, or residual, correction of response-history analysis. The motion is the same.
+        Whether base shear and base moment include the mass that the modes leave out as if it moved with the base
+        ("2DOF-S-R"): the missing-mass (residual) correction of response-history analysis. The motion is not affected.
 
     Raises
     ------
     InputError
-        If a value is of the wrong kind, or the combination makes no model.
+        If a value has the wrong type, or the combination is not a model.
     """
 
     n_modes: int | None = None
@@ -91,19 +91,19 @@ class Model:
         elif self.n_modes == 0 and self.missing_mass:
             message = "A rigid block has no base shear of its own to correct. Leave missing_mass out."
         elif self.yields and self.n_modes not in (None, 1):
-            message = f"A Bouc-Wen superstructure has one mode, but {self.n_modes} were asked for. Use 2DOF-S-BW."
+            message = f"A Bouc-Wen superstructure has one mode, but {self.n_modes} were requested. Use 2DOF-S-BW."
         elif self.complete and self.closure is None and self.n_modes not in (None, 0, 1):
             k = self.n_modes + 1 if self.n_modes else 0
             message = (
                 f"{k}DOF-C has no impact law of its own: Eq. 19 is one equation for {self.n_modes} velocities. "
-                f"Use {k}DOF-C-SI (Eq. 25), {k}DOF-C-E (Eq. 25 scaled to meet Eq. 19), or MDOF-C with all modes."
+                f"Use {k}DOF-C-SI (Eq. 25), {k}DOF-C-E (Eq. 25 scaled to satisfy Eq. 19), or MDOF-C with all modes."
             )
         if message:
             raise InputError(message)
 
     @property
     def label(self) -> str:
-        """Name in the paper's manner: degrees of freedom, the rotation counted where the base can lift."""
+        """Label as in the paper; the degrees of freedom include the rotation if the base can lift."""
         kind = "C" if self.complete else "S"
         end = (f"-{self.closure}" if self.closure else "") + ("-BW" if self.yields else "")
         end += "-R" if self.missing_mass else ""
@@ -116,12 +116,12 @@ class Model:
     def of(
         self, properties: RockingProperties, impact: ImpactLaw | None = None, bouc_wen: BoucWen | None = None
     ) -> RockingModel:
-        """Tie the model to a structure, with an impact law and a superstructure other than its own if given.
+        """Return the model applied to a structure, optionally with another impact law and a Bouc-Wen superstructure.
 
         Raises
         ------
         InputError
-            If the structure has fewer modes than the model keeps, or the model cannot have what is given.
+            If the structure has fewer modes than the model, or the arguments do not apply to the model.
         """
         if self.n_modes != 0 and properties.n_modes == 0:
             raise InputError(
@@ -131,7 +131,7 @@ class Model:
             whole = replace(self, n_modes=None).label
             raise InputError(
                 f"Model {self.label} needs {_modes(self.n_modes)}, but the structure has {properties.n_modes}. "
-                f"Give more modes, or use {whole} for all there are."
+                f"Give more modes, or use {whole} for all modes."
             )
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         self._check_missing_mass(kept)
@@ -145,12 +145,12 @@ class Model:
     def _check_missing_mass(self, kept: RockingProperties) -> None:
         if self.missing_mass and kept.base_mass is None:
             raise InputError(
-                f"{self.label} needs the mass above the base, but these properties tell the total mass alone. Give "
-                "RockingProperties their base_mass, in kg."
+                f"{self.label} needs the mass above the base, but these properties give only the total mass. Give "
+                "RockingProperties the base_mass, in kg."
             )
 
     def _check_yielding(self, kept: RockingProperties, bouc_wen: BoucWen | None) -> str:
-        """The label with its -BW."""
+        """Return the label, with -BW for a Bouc-Wen superstructure."""
         if bouc_wen is None:
             if self.yields:
                 raise InputError(f"{self.label} needs its hysteresis. Give bouc_wen=BoucWen(yield_displacement=...).")
@@ -158,13 +158,13 @@ class Model:
         if kept.n_modes != 1:
             one = "2DOF-S" if self.lifts else "1DOF-fixed"
             raise InputError(
-                f"bouc_wen goes with models of one mode, but {self.label} has {kept.n_modes}. Use {one}, or leave "
+                f"bouc_wen applies to models with one mode, but {self.label} has {kept.n_modes}. Use {one}, or leave "
                 "it out."
             )
         return self.label if self.yields else replace(self, yields=True).label
 
     def _law(self, kept: RockingProperties) -> ImpactLaw:
-        """The model's own impact law."""
+        """Return the default impact law of the model."""
         if self.n_modes == 0 and self.lifts:
             return housner(kept)
         if not self.complete or self.closure == "SI":
@@ -172,7 +172,7 @@ class Model:
         modal_inertia = float(kept.effective_mass @ kept.effective_height**2)
         if self.closure is None and kept.n_modes > 1 and modal_inertia < (1.0 - _SAME) * kept.translational_inertia:
             raise InputError(
-                f"{self.label} needs all modes, but those given carry {modal_inertia / kept.translational_inertia:.2%} "
+                f"{self.label} needs all modes, but those given have {modal_inertia / kept.translational_inertia:.2%} "
                 "of Σ m_i h_i²: Eq. 19 is one equation for many velocities. Use MDOF-C-SI or MDOF-C-E."
             )
         return VVELComplete()
@@ -183,7 +183,7 @@ def _modes(count: int) -> str:
 
 
 def parse_model(model: str | Model) -> Model:
-    """Read a model's label; a `Model` is returned as it is.
+    """Return the model with a label; a `Model` is returned unchanged.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The simplified models: linear in contact, linear while rocking, joined by guards and jumps (Eqs. 15, 23-25)."""
+"""The simplified models: linear in contact and while rocking, connected by guards and jumps (Eqs. 15, 23-25)."""
 
 from dataclasses import dataclass, field
 
@@ -8,7 +8,7 @@ from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
 
-NEUTRAL = 0.01  # of L_0^r g: nearer to balance the steady rotation, ∝ 1/`rocking_stiffness`, drowns the motion
+NEUTRAL = 0.01  # of L_0^r g: closer to balance the steady rotation, ∝ 1/`rocking_stiffness`, exceeds the motion by far
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,15 +18,15 @@ class LinearModel(ModalModel):
     Parameters
     ----------
     label
-        The model's name, such as ``"2DOF-S"``.
+        Label of the model, such as ``"2DOF-S"``.
     properties
-        The structure's parameters, with the modes of this model alone.
+        Parameters of the structure, with only the modes of this model.
     lifts
-        Whether the base can lift; if not, this is the structure on a fixed base.
+        Whether the base can lift; otherwise it is fixed.
     law
-        What happens at an impact.
+        Impact law.
     missing_mass
-        Whether base shear and base moment count the mass that the modes leave out, as if it moved with the base.
+        Whether base shear and base moment include the mass that the modes leave out, as if it moved with the base.
     """
 
     label: str
@@ -37,16 +37,16 @@ class LinearModel(ModalModel):
 
     @property
     def neutral(self) -> bool:
-        """Whether tendons balance the weight so closely that a rocking base has no steady rotation to speak of."""
+        """Whether tendons balance the weight so closely that the steady rotation of the rocking base is ill-defined."""
         p = self.properties
         least = min(abs(p.pivot(side).rocking_stiffness) for side in (1, -1))
         return self.lifts and least < NEUTRAL * p.l0r * GRAVITY
 
     @property
     def linear(self) -> "LinearModel":
-        """The model itself, as of every model its simplified, elastic one."""
+        """The simplified, elastic model of the same modes: the model itself."""
         return self
 
     def phase(self, key: Key) -> Phase:
-        """Return one phase: the equations of motion on these branches, and what ends it."""
+        """Return one phase: the equations of motion on these branches, and the conditions that end it."""
         return Phase(key, key[0], self.arrow(key), self.guards(key))

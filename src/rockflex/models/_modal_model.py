@@ -1,4 +1,4 @@
-"""What all models of N modes on a base share: their elements, and their equations of motion as arrows and rows."""
+"""The common part of all models with N modes: elements, and equations of motion as arrows and rows."""
 
 from functools import cached_property
 
@@ -43,30 +43,30 @@ class ModalModel(Value):
 
     @property
     def integrated(self) -> bool:
-        """Whether some phase is integrated step by step, and not carried in closed form."""
+        """Whether some phase is integrated step by step rather than solved in closed form."""
         return False
 
     @cached_property
     def layout(self) -> StateLayout:
-        """Places in the state vector."""
+        """Layout of the state vector."""
         return layout_of(self.properties.n_modes, integrated=self.integrated)
 
     @cached_property
     def elements(self) -> tuple[Element, ...]:
-        """What acts on the base, the base itself first."""
+        """The elements that act on the base, the base itself first."""
         return elements_of(self.properties)
 
     def start(self, side: int) -> Key:
-        """Branches on which a run starts with the base on a side."""
+        """Return the branches on which a run starts with the base on a side."""
         return first_key(self.elements, side)
 
     @property
     def sides(self) -> tuple[int, ...]:
-        """Sides on which the base can be: contact, and both pivots where it can lift."""
+        """Possible sides of the base: contact, and both pivots if it can lift."""
         return (CLOSED, RIGHT, LEFT) if self.lifts else (CLOSED,)
 
     def arrow(self, key: Key) -> Arrow:
-        """Return the equations of motion of a phase that is linear (Eq. 15 or 23)."""
+        """Return the equations of motion of a linear phase (Eq. 15 or 23)."""
         known = self._arrows.get(key)
         if known is None:
             known = self._arrows[key] = self._new_arrow(key)
@@ -98,13 +98,13 @@ class ModalModel(Value):
         )
 
     def free_inertia(self, side: int) -> float:
-        """I_θ - Σ m* h*² about the pivot of a side: what is left to the rotation while the modes move freely, kg m²."""
+        """Return I_θ - Σ m* h*² about the pivot of a side in kg m²: the inertia of the rotation with free modes."""
         p = self.properties
         return p.pivot(side).i_theta - float(np.sum(p.effective_mass * p.effective_height**2))
 
     @cached_property
     def restoring(self) -> Array:
-        """The restoring accelerations of the modes, ω² D or those of Eq. 37, in m/s²: rows, shape (N, C)."""
+        """Restoring accelerations of the modes, ω² D or those of Eq. 37, in m/s²: rows, shape (N, C)."""
         n, omega2 = self.properties.n_modes, self.properties.omega**2
         rows = np.zeros((n, self.layout.columns))
         rows[:, :n] = np.diag(omega2)
@@ -116,7 +116,7 @@ class ModalModel(Value):
         return rows
 
     def overturning_moment(self) -> Array:
-        """Overturning moment in contact, the left-hand side of Eq. 24, or of Eq. 16, in N m: a row, shape (C,)."""
+        """Return the overturning moment in contact (left-hand side of Eq. 24 or 16) in N m: a row, shape (C,)."""
         p = self.properties
         row = self._moment.copy()
         if self.complete:
@@ -134,15 +134,15 @@ class ModalModel(Value):
         return row
 
     def angular_acceleration(self, key: Key) -> Array:
-        """θ'' in a phase of a simplified model, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (C,)."""
+        """Return θ'' in a phase of a simplified model, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (C,)."""
         return self.accelerations(key)[-1]
 
     def modal_accelerations(self, key: Key) -> Array:
-        """D'' of every mode in a phase, Eq. 15 or 23, in m/s²: rows, shape (N, C)."""
+        """Return D'' of every mode in a phase, Eq. 15 or 23, in m/s²: rows, shape (N, C)."""
         return self.accelerations(key)[:-1]
 
     def accelerations(self, key: Key) -> Array:
-        """D'' of every mode and θ'' in a phase: rows, shape (N + 1, C); read-only."""
+        """Return D'' of every mode and θ'' in a phase: read-only rows, shape (N + 1, C)."""
         known = self._accelerations.get(key)
         if known is None:
             known = self._accelerations[key] = self._new_accelerations(key)
@@ -171,7 +171,7 @@ class ModalModel(Value):
         return rows
 
     def guards(self, key: Key) -> tuple[Guard, ...]:
-        """Return what ends a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""
+        """Return the guards of a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""
         side, rest = key[0], key[1:]
         if side != CLOSED:
             row = np.zeros(self.layout.columns)
@@ -182,7 +182,7 @@ class ModalModel(Value):
             return (Guard(row, -QUARTER_TURN, 0.0, tips, lands),)
         if not self.lifts:
             return (Guard(self.overturning_moment(), -np.inf, np.inf, None, None),)
-        # The base lifts where the forces of the phase that follows would turn it on.
+        # The base lifts when the forces of the following phase would start its rotation.
         right, left = ((turned, *rest) for turned in (RIGHT, LEFT))
         low, high = (float(border_of(self.elements, key).constant[0]) for key in (right, left))
         return (Guard(self.overturning_moment(), low, high, Exit(LIFTS, right), Exit(LIFTS, left)),)

@@ -1,4 +1,4 @@
-"""The quantities that responses are made of, by name."""
+"""The response quantities by name."""
 
 from collections.abc import Callable, Iterable
 
@@ -14,11 +14,11 @@ Array = NDArray[np.float64]
 
 
 def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
-    """Return quantities of the whole structure, one each, by name.
+    """Return scalar quantities of the whole structure by name.
 
-    `top_displacement` (m), `base_moment` (N m) and `base_shear` (N) of the elastic forces, or of Eq. 37's, with the
-    missing mass where the model counts it; `total_top_displacement` (m), zero where the height of the top is not known;
-    `horizontal_reaction` (N), Eq. 21 for small rotations.
+    `top_displacement` (m); `base_moment` (N m) and `base_shear` (N) of the elastic forces, or of those of Eq. 37,
+    including the missing mass if the model does; `total_top_displacement` (m), zero if the height of the top is not
+    known; `horizontal_reaction` (N), Eq. 21 for small rotations.
     """
     return collected(model.properties.n_modes, [_WHOLE[name](model) for name in names])
 
@@ -37,7 +37,7 @@ def _base_shear(model: ModalModel) -> Share:
 
 
 def _base_force(model: ModalModel, masses: Array, moment: int) -> Share:
-    """Σ m* h*^k ω² D, less Σ m_i h_i^k (a + h_i θ'') of the masses left out, which move with the base."""
+    """Return Σ m* h*^k ω² D minus Σ m_i h_i^k (a + h_i θ'') of the masses left out, which move with the base."""
     if not model.missing_mass:
         return LINEAR, {"restoring": masses}
     left = model.properties.mass_left_out
@@ -67,11 +67,11 @@ _WHOLE: dict[str, Callable[[ModalModel], Share]] = {
 
 
 def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]) -> Quantities:
-    """Return quantities of the floors, N_floors each, by name.
+    """Return quantities of the floors by name, N_floors each.
 
-    `story_drift` (m): displacement of a floor less that of the one below, relative to the rotated base. `story_shear`
-    (N): sum of the elastic forces from its floor up. `total_floor_displacement` (m): horizontal, relative to the
-    ground. `floor_acceleration` (m/s²): a + h θ'' + Σ Γ φ D'', for small rotations.
+    `story_drift` (m): displacement of a floor minus that of the floor below, relative to the rotated base.
+    `story_shear` (N): sum of the elastic forces at and above the floor. `total_floor_displacement` (m): horizontal,
+    relative to the ground. `floor_acceleration` (m/s²): a + h θ'' + Σ Γ φ D'', for small rotations.
     """
     p = model.properties
     count, n = floors.heights.size, p.n_modes
@@ -86,12 +86,12 @@ def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]
 
 
 def modal_displacement(model: ModalModel, mode: int) -> Quantities:
-    """Return D of one mode in m, counted from 0."""
+    """Return D in m of one mode, counted from 0."""
     share = np.zeros(model.properties.n_modes)
     share[mode] = 1.0
     return Quantities.of(1, share.size, displacement=share)
 
 
 def rotation_by_side(model: ModalModel) -> Quantities:
-    """Return the rotation to the right in rad, which is zero to the left, and that to the left."""
+    """Return the rotation to the right in rad (zero while rotated to the left), and likewise to the left."""
     return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])

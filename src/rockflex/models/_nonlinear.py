@@ -17,20 +17,20 @@ from rockflex.models._phase import Key, Phase
 
 @dataclass(frozen=True, eq=False)
 class NonlinearModel(ModalModel):
-    """N modes on a base that may uplift, with large rotations, a superstructure that yields, or both.
+    """N modes on a base that may uplift, with large rotations, a yielding superstructure, or both.
 
     Parameters
     ----------
     label
-        The model's name, such as ``"2DOF-C"``.
+        Label of the model, such as ``"2DOF-C"``.
     properties
-        The structure's parameters, with the modes of this model alone.
+        Parameters of the structure, with only the modes of this model.
     lifts
-        Whether the base can lift; if not, this is the structure on a fixed base.
+        Whether the base can lift; otherwise it is fixed.
     law
-        What happens at an impact.
+        Impact law.
     complete
-        Eqs. 13, 14 and 16 with all trigonometric, centrifugal and P-Δ terms; else Eqs. 23 and 24.
+        Whether to use Eqs. 13, 14 and 16 with all trigonometric, centrifugal and P-Δ terms, or Eqs. 23 and 24.
     bouc_wen
         Hysteresis of the one mode, or None for an elastic superstructure.
     missing_mass
@@ -47,7 +47,7 @@ class NonlinearModel(ModalModel):
 
     @property
     def integrated(self) -> bool:
-        """True: while it rocks, and with a hysteretic spring throughout."""
+        """Always True: the model is integrated while it rocks, and with a hysteretic spring also in contact."""
         return True
 
     @property
@@ -56,12 +56,12 @@ class NonlinearModel(ModalModel):
         return LinearModel(self.label, self.properties, self.lifts, self.law, self.missing_mass)
 
     def phase(self, key: Key) -> Phase:
-        """Return one phase; only contact of an elastic superstructure is linear."""
+        """Return one phase; it is linear only in contact with an elastic superstructure."""
         linear = key[0] == CLOSED and self.bouc_wen is None
         return Phase(key, key[0], self.arrow(key) if linear else None, self.guards(key))
 
     def field(self) -> Field:
-        """Coefficients of the vector field."""
+        """Return the coefficients of the vector field."""
         p = self.properties
         b = self.bouc_wen or BoucWen(1.0)
         pivots = [p.pivot(side) for side in (RIGHT, LEFT)]

@@ -1,7 +1,7 @@
 """Quantities of the complete models that are not linear in the motion (Silva & Stojadinović 2024, Eqs. 3-22).
 
-In contact, and in the simplified models throughout, every quantity is a row over the motion. While a complete model
-rocks, the sway of a floor bends with the rotation, and forces follow from accelerations.
+In contact, and always in the simplified models, every quantity is a linear row over the motion. While a complete model
+rocks, displacements are nonlinear in the rotation, and forces depend on accelerations.
 """
 
 import math
@@ -16,19 +16,19 @@ from rockflex.models._field import ARM, MASS, PULL, Field, pivot_at
 Array = NDArray[np.float64]
 
 LINEAR = 0  # the row itself
-SWAY = 1  # horizontal displacement of a point at the height levers[0], whose u is the row (Eq. 3)
-LEFT_OUT = 2  # the row, and what the masses left out carry: levers[0] Σ m_i (h_i), levers[1] Σ m_i h_i (h_i²)
-HORIZONTAL = 3  # Σ F_x (Eq. 21) with the tendons' pull
-VERTICAL = 4  # Σ F_z (Eq. 22 with the sign of the weight mended) with the tendons' pull
+SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row gives its u (Eq. 3)
+LEFT_OUT = 2  # the row and the masses left out: levers[0] is Σ m_i or Σ m_i h_i, levers[1] Σ m_i h_i or Σ m_i h_i²
+HORIZONTAL = 3  # Σ F_x (Eq. 21) including tendon forces
+VERTICAL = 4  # Σ F_z (Eq. 22 with the sign of the weight corrected) including tendon forces
 
 
 class Posture(NamedTuple):
-    """What all quantities share at one instant of rocking."""
+    """Values common to all quantities at one instant of rocking."""
 
     sine: float
     cosine: float
-    shift: float  # s B (1 - cos θ), by which the pivot's turn moves everything
-    drive: float  # a cos θ - g sin θ + s B θ'^2, which pushes the masses along the base
+    shift: float  # s B (1 - cos θ), horizontal displacement of the middle of the base
+    drive: float  # a cos θ - g sin θ + s B θ'^2, acceleration of the masses along the base
     turn: float  # θ''
     horizontal: float  # Σ F_x
     vertical: float  # Σ F_z
@@ -36,7 +36,7 @@ class Posture(NamedTuple):
 
 @kernel
 def posture_of(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
-    """Posture of a motion while rocking; `rates` holds D'' and θ''."""
+    """Return the posture of a motion while rocking; `rates` contains D'' and θ''."""
     n = field.modes.shape[1]
     spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
     sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
@@ -51,7 +51,7 @@ def posture_of(field: Field, side: float, acceleration: float, motion: Array, ra
         speed += field.modes[MASS, i] * motion[n + i]
         push += field.modes[MASS, i] * rates[n + i]
     along, beside = across * cosine - field.weight_arm * sine, across * sine + field.weight_arm * cosine
-    # A tendon points from where it leaves the base to where it left it in contact: at θ/2 from the vertical.
+    # A tendon points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
     pull = field.prestress + 2.0 * field.pivots[pivot, PULL] * abs(half)
     square, coriolis = spin * spin, 2.0 * spin * speed
     return Posture(
@@ -69,7 +69,7 @@ def posture_of(field: Field, side: float, acceleration: float, motion: Array, ra
 
 @kernel
 def observe(kind: int, value: float, near: float, far: float, posture: Posture) -> float:
-    """One quantity of a posture, from the value of its row and its two levers."""
+    """Return one quantity of a posture from the value of its row and its two levers."""
     if kind == SWAY:
         return posture.shift + near * posture.sine + value * posture.cosine
     if kind == LEFT_OUT:
@@ -93,7 +93,7 @@ def observe_all(
     motion: Array,
     rates: Array,
 ) -> None:
-    """Put one quantity at many instants in place of the `values` (n,) of its row; `motion`, `rates`: (n, 2N + 2)."""
+    """Replace the `values` (n,) of a row by the quantity at many instants; `motion`, `rates`: (n, 2N + 2)."""
     for k in range(side.size):
         posture = posture_of(field, side[k], acceleration[k], motion[k], rates[k])
         values[k] = observe(kind, values[k], near, far, posture)

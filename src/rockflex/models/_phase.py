@@ -1,4 +1,4 @@
-"""What a phase of the motion is: which freedoms of the base are free, which forces act on them, and how it ends."""
+"""The definition of a phase of the motion: free degrees of freedom of the base, forces, and end conditions."""
 
 from dataclasses import dataclass
 
@@ -7,16 +7,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-FREEDOMS = ("rotation",)  # of the base, in the order in which the borders name them
+FREEDOMS = ("rotation",)  # of the base, in the order of the borders
 
-Key = tuple[int, ...]  # the branch of every element, the base's own first
+Key = tuple[int, ...]  # the branch of every element, the base first
 
-LIFTS, LANDS, OVERTURNS = 0, 1, 2  # what happens where a guard is passed
+LIFTS, LANDS, OVERTURNS = 0, 1, 2  # events at which a guard is passed
 
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """What an element adds to the equations of the base: M q'' + .. + C q' + K q = f + a g, b freedoms q.
+    """Contribution of an element to the equations of the base, M q'' + .. + C q' + K q = f + a g, with b unknowns q.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Border:
         constant: float = 0.0,
         ground: float = 0.0,
     ) -> "Border":
-        """Return the border of an element that acts on the rotation alone."""
+        """Return the border of an element that acts only on the rotation."""
         b = len(FREEDOMS)
         squares, columns = np.zeros((3, b, b)), np.zeros((2, b))
         squares[:, 0, 0] = inertia, damping, stiffness
@@ -61,7 +61,7 @@ class Border:
 
 @dataclass(frozen=True, eq=False)
 class Arrow:
-    """The equations of motion of one phase: N oscillators bordered by the base's free freedoms q.
+    """The equations of motion of one phase: N oscillators bordered by the b degrees of freedom q of the base.
 
         D''_n + 2 ζ_n ω_n D'_n + ω_n² D_n + c_n · q'' = -a
         M q'' + Σ_n m*_n c_n D''_n + C q' + K q = f + a g
@@ -75,13 +75,13 @@ class Arrow:
     leverage : ndarray, shape (b, N)
         m* c.
     flexibility : ndarray, shape (b, b)
-        (M - Σ m* c cᵀ)⁻¹ of the free freedoms; zero in rows and columns of those that are held.
+        (M - Σ m* c cᵀ)⁻¹ of the free degrees of freedom; zero in the rows and columns of fixed ones.
     damping, stiffness : ndarray, shape (b, b)
         C and K.
     constant, drive : ndarray, shape (b,)
         f, and g + Σ m* c.
     free
-        Whether any freedom of the base is free.
+        Whether any degree of freedom of the base is free.
     """
 
     coupling: Array
@@ -94,7 +94,7 @@ class Arrow:
     free: bool
 
     def alike(self, other: "Arrow") -> bool:
-        """Whether both have the same eigenvectors: all but the constant forces agree."""
+        """Return whether both have the same eigenvectors, that is, differ at most in the constant forces."""
         return self.free == other.free and all(
             bool((getattr(self, name) == getattr(other, name)).all())
             for name in ("flexibility", "stiffness", "damping", "drive", "coupling")
@@ -103,7 +103,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Exit:
-    """What happens where a guard leaves its band, and the phase that follows."""
+    """The event at which a guard leaves its band, and the phase that follows."""
 
     event: int
     key: Key
@@ -111,16 +111,16 @@ class Exit:
 
 @dataclass(frozen=True, eq=False)
 class Guard:
-    """A row that stays between two limits as long as the phase lasts.
+    """A row that stays between two limits during the phase.
 
     Attributes
     ----------
     row : ndarray, shape (C,)
-        Over the moving entries of the state, the ground acceleration and 1.
+        Multiplies the moving entries of the state, the ground acceleration and 1.
     low, high
-        Its limits.
+        Its limits; infinite if there is no limit.
     below, above
-        What happens at each of them; None where there is no limit.
+        What happens at each limit; None if there is no limit.
     """
 
     row: Array
@@ -132,18 +132,18 @@ class Guard:
 
 @dataclass(frozen=True, eq=False)
 class Phase:
-    """One branch of every element of a model.
+    """A combination of branches, one for every element of a model.
 
     Attributes
     ----------
     key
         The branches.
     side
-        Pivot about which the base turns: 1 right, -1 left, 0 in contact.
+        Pivot about which the base rotates: 1 right, -1 left, 0 in contact.
     arrow
-        The equations of motion; None where they are not linear, and a vector field takes their place.
+        The equations of motion; None if they are not linear, in which case a vector field is used.
     guards
-        What ends the phase. While the base rocks the first is its rotation.
+        Conditions that end the phase. While the base rocks the first is its rotation.
     """
 
     key: Key

@@ -1,4 +1,4 @@
-"""What is asked of a motion: sums of shares of what moves, whichever phase it is in, and their rows in each phase."""
+"""Response quantities as weighted sums, independent of the phase, and their rows in each phase."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from rockflex.models._phase import Key
 
 Array = NDArray[np.float64]
 
-Share = tuple[int, dict[str, Any]]  # the kind of one quantity, and its shares by name
+Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by name
 
 OF_MODES = ("displacement", "restoring", "acceleration")
 OF_BASE = ("rotation", "right", "turn", "ground")
@@ -23,16 +23,16 @@ ROTATION, RIGHT_ROTATION, TURN, GROUND = -4, -3, -2, -1  # columns of `Quantitie
 
 @dataclass(frozen=True, eq=False)
 class Quantities:
-    """F quantities, each a sum of shares of what moves.
+    """F quantities, each a weighted sum of displacements and accelerations.
 
     Attributes
     ----------
     shares : ndarray, shape (F, 3 N + 4)
-        Of D_n (`displacement`), of the restoring acceleration of each mode (`restoring`: ω_n² D_n, or that of Eq. 37),
-        of D''_n (`acceleration`), of θ (`rotation`), of θ while the base turns about its right pivot (`right`), of θ''
-        (`turn`) and of the ground acceleration (`ground`).
+        Weights of D_n (`displacement`), of the restoring acceleration of each mode (`restoring`: ω_n² D_n, or that of
+        Eq. 37), of D''_n (`acceleration`), of θ (`rotation`), of θ while the base rotates about its right pivot
+        (`right`), of θ'' (`turn`) and of the ground acceleration (`ground`).
     kinds : ndarray, shape (F,)
-        What becomes of the quantity in large rotations: `rockflex.models.observe`.
+        Kind of the quantity for large rotations; see `rockflex.models.observe`.
     """
 
     shares: Array
@@ -40,7 +40,7 @@ class Quantities:
 
     @classmethod
     def of(cls, count: int, modes: int, kind: int = LINEAR, **shares: ArrayLike) -> "Quantities":
-        """Return `count` quantities of a model with so many modes; shares that are not named are zero."""
+        """Return `count` quantities of a model with the given number of modes; shares not given are zero."""
         values = np.zeros((count, 3 * modes + len(OF_BASE)))
         for name, share in shares.items():
             values[:, _column(name, modes)] = share
@@ -48,7 +48,7 @@ class Quantities:
 
     @classmethod
     def none(cls, modes: int) -> "Quantities":
-        """No quantity."""
+        """Return an empty set of quantities."""
         return cls.of(0, modes)
 
     def __len__(self) -> int:
@@ -59,7 +59,7 @@ class Quantities:
 
     @property
     def levers(self) -> Array:
-        """What a quantity that bends in large rotations needs beside its row: `rockflex.models.observe`, (F, 2)."""
+        """Additional coefficients of quantities that are nonlinear in large rotations, (F, 2); see `observe`."""
         rotation, turn, ground = (self.shares[:, column] for column in (ROTATION, TURN, GROUND))
         near = np.where(self.kinds == SWAY, rotation, np.where(self.kinds == LEFT_OUT, -ground, 0.0))
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
@@ -73,7 +73,7 @@ def _column(name: str, modes: int) -> slice | int:
 
 
 def collected(modes: int, shares: Sequence[Share]) -> Quantities:
-    """Return one quantity for each kind and its shares."""
+    """Return one quantity for each pair of kind and shares."""
     total = Quantities.of(len(shares), modes)
     for k, (kind, values) in enumerate(shares):
         total.kinds[k] = kind
@@ -88,10 +88,10 @@ def joined(parts: Sequence[Quantities]) -> Quantities:
 
 
 def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
-    """Rows of the quantities in one phase, shape (F, C).
+    """Return the rows of the quantities in one phase, shape (F, C).
 
-    While a complete model rocks, a quantity that bends has the row of its displacements and forces alone; the rest is
-    `rockflex.models.observe`'s.
+    While a complete model rocks, the row of a nonlinear quantity contains only its displacements and forces;
+    `rockflex.models.observe` adds the rest.
     """
     shares = quantities.shares
     large = model.complete and key[0] != CLOSED
@@ -104,7 +104,7 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
 
 
 def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
-    """What `Quantities.shares` are shares of, as rows of one phase, shape (3 N + 4, C); no accelerations if `large`."""
+    """Return the rows, in one phase, that `Quantities.shares` multiply, (3 N + 4, C); no accelerations if `large`."""
     n, layout = model.properties.n_modes, model.layout
     rows = np.zeros((3 * n + len(OF_BASE), layout.columns))
     modes = np.arange(n)
@@ -121,10 +121,10 @@ def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
 
 
 def lost_support_row(model: ModalModel, key: Key) -> Array:
-    """By how much ΣF_z falls below its value at rest, in N: a row, shape (C,).
+    """Return the decrease of ΣF_z below its value at rest, in N: a row, shape (C,).
 
-    ΣF_z = m_tot (g + s B θ'') and the pull of the tendons, Eq. 22 for small rotations with its sign mended; in contact
-    it rests at m_tot g and their prestress. While a complete model rocks it is no row, but `observe`'s.
+    ΣF_z = m_tot (g + s B θ'') plus the tendon forces, Eq. 22 for small rotations with the sign corrected; in contact it
+    is m_tot g plus their prestress. While a complete model rocks the row is zero, and `observe` gives the value.
     """
     row = np.zeros(model.layout.columns)
     side = key[0]

@@ -1,6 +1,6 @@
-"""What the ground gives the base (Silva & Stojadinović 2024, Eqs. 21 and 22).
+"""The ground reactions (Silva & Stojadinović 2024, Eqs. 21 and 22).
 
-With u_i of the modes kept, Σ m_i u_i = Σ m*_n D_n, and the sums over the masses come down to m_tot, L_0^r and that one.
+With u_i from the modes kept, Σ m_i u_i = Σ m*_n D_n, so the sums over the masses reduce to m_tot, L_0^r and this sum.
 """
 
 from typing import NamedTuple
@@ -19,17 +19,17 @@ Array = NDArray[np.float64]
 
 
 class Reactions(NamedTuple):
-    """What the ground gives the base, in N, shape (n,) each."""
+    """Ground reactions in N, each of shape (n,)."""
 
     horizontal: Array
     vertical: Array
 
 
 def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
-    """Σ m_i (a + x''_i) of Eq. 21 and Σ m_i (g + z''_i), Eq. 22 with the weight's sign mended, and the tendons' pull.
+    """Return Σ m_i (a + x''_i), Eq. 21, and Σ m_i (g + z''_i), Eq. 22 with the sign corrected, plus tendon forces.
 
-    In the simplified models as Eq. 23 has them, for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
-    m_tot (g + s B θ''). `nodes` as in `History`, and D''_n and θ'' at each of them, shape (n, N + 1).
+    In the simplified models, consistent with Eq. 23 for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
+    m_tot (g + s B θ''). `nodes` as in `History`; `rates` contains D''_n and θ'' at each node, shape (n, N + 1).
     """
     if model.complete:
         return _of_large_rotations(model, nodes, rates)
@@ -44,7 +44,7 @@ def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
 
 
 def printed_reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
-    """Eqs. 21 and 22 as they are printed, for every model, and the tendons' pull: with Σ m_i (-g + z''_i)."""
+    """Return Eqs. 21 and 22 as printed, with Σ m_i (-g + z''_i), for every model, plus tendon forces."""
     x, z = _of_large_rotations(model, nodes, rates)
     return Reactions(x, z - 2.0 * model.properties.m_tot * GRAVITY)
 

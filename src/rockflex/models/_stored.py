@@ -1,4 +1,4 @@
-"""Energies that a motion holds, and the floors' accelerations, which depend on how large rotations may be."""
+"""Stored energies and floor accelerations, for small and for large rotations."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,10 @@ Array = NDArray[np.float64]
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
-    """Kinetic, strain and gravity energy at kept states in J, shape (n,) each.
+    """Return kinetic, strain and gravity energy at the states of a history in J, each of shape (n,).
 
     ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving ground;
-    of complete models those of Eqs. 6-8.
+    for complete models those of Eqs. 6-8.
     """
     p, layout = model.properties, model.layout
     side, d, v = states[:, SIDE], layout.displacements(states), layout.velocities(states)
@@ -36,7 +36,7 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
 
 
 def tendon_energy(model: RockingModel, states: Array) -> Array:
-    """Energy of the tendons at kept states in J, less what they hold in contact, shape (n,)."""
+    """Return the energy of the tendons at the states of a history in J, relative to contact, shape (n,)."""
     layout, p = model.layout, model.properties
     rotation = layout.of(states, layout.rotation)
     stretch = stretch_per_arm(model, np.abs(rotation))
@@ -47,14 +47,14 @@ def tendon_energy(model: RockingModel, states: Array) -> Array:
 
 
 def stretch_per_arm(model: RockingModel, turn: Array) -> Array:
-    """Elongation of a tendon over its distance from the pivot, at |θ| in rad: 2 sin(|θ|/2), or |θ| if it is small."""
+    """Return the elongation of a tendon per unit distance from the pivot at |θ| in rad: 2 sin(|θ|/2), or |θ|."""
     return 2.0 * np.sin(0.5 * turn) if model.complete else turn
 
 
 def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) -> Array:
-    """Total horizontal acceleration of each floor in m/s², shape (n, N_floors).
+    """Return the total horizontal acceleration of each floor in m/s², shape (n, N_floors).
 
-    a + h θ'' + Σ Γ φ D''; in the complete models the second derivative of Eq. 3's horizontal coordinate.
+    a + h θ'' + Σ Γ φ D''; in the complete models the second derivative of the horizontal coordinate of Eq. 3.
     """
     layout = model.layout
     rates = accelerations(model, states)
@@ -80,5 +80,5 @@ def _pivot_values(model: RockingModel) -> list[tuple[float, float]]:
 
 
 def _by_side(side: Array, right: float, left: float) -> Array:
-    """The value of one pivot or the other, by the sign of a side or a rotation."""
+    """Return the value of the right or the left pivot, depending on the sign of a side or a rotation."""
     return np.where(side < 0.0, left, right)

@@ -1,4 +1,4 @@
-"""Impact laws as kernels apply them (Silva & Stojadinović 2024, Section 2.1.1)."""
+"""Impact laws in the form used by kernels (Silva & Stojadinović 2024, Section 2.1.1)."""
 
 import ctypes
 from typing import NamedTuple
@@ -14,19 +14,19 @@ from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution, VV
 
 Array = NDArray[np.float64]
 
-SHARED, SCALED, CALLED = 0, 1, 2  # kinds of law: Eq. 25 or a restitution; scaled to Eq. 19; the user's own
+SHARED, SCALED, CALLED = 0, 1, 2  # kinds of law: Eq. 25 or a restitution; scaled to Eq. 19; user-defined
 
 
-SHORTEST = 1e-4  # s: as `Restitution` has it unless told otherwise
+SHORTEST = 1e-4  # s: the default of `Restitution`
 
 
 class Impact(NamedTuple):
     """An impact law for one model."""
 
     kind: int
-    right: float  # restitution where a rotation about the right edge ends
-    left: float  # and about the left one
-    shortest: float  # excursion that is worth another rotation, s
+    right: float  # restitution after a rotation about the right edge
+    left: float  # and about the left edge
+    shortest: float  # shortest excursion that counts as a rotation, s
     mass: Array  # m*
     height: Array  # h*
     unseen: float  # Σ m_i h_i² - Σ m* h*²
@@ -37,7 +37,7 @@ NO_CALLBACK = Callback(lambda _address, _count: 1)
 
 
 def impact_of(law: ImpactLaw, properties: RockingProperties) -> tuple[Impact, list[Exception]]:
-    """A law made ready for kernels, and the list in which what it raises will stand."""
+    """Return a law in the form for kernels, and a list that will collect the exceptions that it raises."""
     own = None
     if not isinstance(law, VVELSimplified | VVELComplete | Restitution | SidedRestitution):
         own = OwnLaw(law, properties)
@@ -62,7 +62,7 @@ def impact_of(law: ImpactLaw, properties: RockingProperties) -> tuple[Impact, li
 
 @kernel
 def strike(impact: Impact, state: Array) -> bool:
-    """Put the velocities after an impact in place of those before it; False if the user's law failed."""
+    """Replace the velocities before an impact by those after it; return False if a user-defined law failed."""
     n = impact.mass.size
     if impact.kind == CALLED:
         return impact.callback(state.ctypes.data, n) == 0
@@ -82,13 +82,13 @@ def strike(impact: Impact, state: Array) -> bool:
 
 @kernel
 def may_pass(impact: Impact) -> bool:
-    """Whether the rocking may go on after an impact without a contact in between."""
+    """Return whether rocking may continue after an impact without contact in between."""
     return impact.kind == CALLED or impact.right != 0.0 or impact.left != 0.0
 
 
 @kernel
 def stick(impact: Impact, state: Array) -> None:
-    """End the rotation: the modes take up what is left of it (Eq. 25)."""
+    """End the rotation: its remaining velocity is transferred to the modes (Eq. 25)."""
     n = impact.mass.size
     for i in range(n):
         state[n + i] += impact.height[i] * state[2 * n + 1]
@@ -97,7 +97,7 @@ def stick(impact: Impact, state: Array) -> None:
 
 @kernel
 def kinetic_energy(impact: Impact, free_inertia: float, state: Array) -> float:
-    """Energy of motion at θ = 0, without what D adds to the inertia: ½ I_f θ'² + ½ Σ m* (D' + h* θ')²."""
+    """Return the kinetic energy at θ = 0, without the inertia terms of D: ½ I_f θ'² + ½ Σ m* (D' + h* θ')²."""
     n = impact.mass.size
     spin = state[2 * n + 1]
     energy = 0.5 * free_inertia * spin * spin
@@ -108,7 +108,7 @@ def kinetic_energy(impact: Impact, free_inertia: float, state: Array) -> float:
 
 
 class OwnLaw:
-    """A user's law as kernels can call it; what it raises is kept, for nobody hears it there."""
+    """A user-defined law that kernels can call; exceptions are stored, because kernels cannot propagate them."""
 
     def __init__(self, law: ImpactLaw, properties: RockingProperties) -> None:
         self._law = law

@@ -1,4 +1,4 @@
-"""Records in the AT2 form of the PEER databases."""
+"""Records in the AT2 format of the PEER databases."""
 
 import re
 from pathlib import Path
@@ -13,23 +13,23 @@ from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number, read_lines
 
 HEADER_LINES = 12
-_DIGITS = 18  # of NPTS that are read: any file holds less
+_DIGITS = 18  # of NPTS that are read; no file has more samples
 _COUNT, _NUMBER, _APART = r"(\d++)", rf"({DECIMAL.pattern})", r"(?:\s*+,\s++|\s++)"
 NPTS = re.compile(rf"\bNPTS\s*+[=:]\s*+{_COUNT}", re.IGNORECASE)
 DT = re.compile(rf"\bDT\s*+[=:]\s*+{_NUMBER}", re.IGNORECASE)
 BARE = re.compile(rf"\s*+{_COUNT}{_APART}{_NUMBER}{_APART}NPTS\s*+,?+\s*+DT\b", re.IGNORECASE)
 DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::\d{2})?(?=\s*+,))?")
-# Numbers may run together where the next one begins with a sign; an exponent must then end before it.
+# Numbers may be adjacent if the next one begins with a sign; an exponent must then end before the sign.
 TOKEN = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?\d{1,3}+)?(?=[\s,+-]|$)")
 
 
 def read_at2(path: str | Path) -> GroundMotion:
     """Read an AT2 file of a PEER strong-motion database.
 
-    The header gives the number of samples and the step, as ``NPTS= 4000, DT= .00500 SEC`` or as
-    ``4000 0.0050 NPTS, DT``, old and new databases alike; the values after it may be wrapped anyhow, and run
-    together where the next one begins with a sign. They are in g by definition, and are multiplied by
-    9.81 m/s². The motion is named after the file, without its ending.
+    The header gives the number of samples and the time step, as ``NPTS= 4000, DT= .00500 SEC`` or as
+    ``4000 0.0050 NPTS, DT``, in old and new databases alike. The values after it may be wrapped in any way, and
+    adjacent values need no separator if the next one begins with a sign. They are in g by definition, and are
+    multiplied by 9.81 m/s². The motion gets the name of the file, without its suffix.
 
     Parameters
     ----------
@@ -39,27 +39,25 @@ def read_at2(path: str | Path) -> GroundMotion:
     Returns
     -------
     GroundMotion
-        The record, with what its title line says (event, year, station, component and its
-        direction) and, from a file name such
-        as RSN953_..., the record sequence number as metadata.
+        The record. Its metadata contain the information in the title line (event, year, station, component and
+        direction) and, for file names such as RSN953_..., the record sequence number.
 
     Raises
     ------
     InputError
         If the file is missing, empty or binary, NPTS or DT is not found, there are fewer or more values than
-        NPTS, a value is not a finite number, the header speaks of another unit than g, or the peak
-        exceeds 5 g.
+        NPTS, a value is not a finite number, the header states another unit than g, or the peak exceeds 5 g.
     """
     file = path_of("path", path)
     return parse_at2(file, read_lines(file))
 
 
 def find_header(lines: list[str]) -> tuple[int, int, str] | None:
-    """Return the number of header lines, NPTS and DT, or None where there is no such header."""
+    """Return the number of header lines, NPTS and DT, or None if there is no such header."""
     npts = dt = None
     for i, line in enumerate(lines[:HEADER_LINES]):
         if line.lstrip().startswith(("#", "%", "!")):
-            continue  # a comment of a plain text file, which says nothing of units
+            continue  # a comment in a plain text file, which says nothing about units
         if bare := BARE.match(line):
             return i + 1, int(bare[1][:_DIGITS]), bare[2]
         npts = NPTS.search(line) or npts
@@ -81,21 +79,21 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
     unit = re.search(r"units\s++of\s++\(?([\w/]++)", "\n".join(lines[:start]), re.IGNORECASE)
     if unit and unit[1].upper() != "G":
         raise InputError(
-            f"{file}: the header speaks of units of {unit[1]}, but an AT2 file holds an acceleration in g. "
-            "Use the AT2 file of the record, not VT2 or DT2; values in m/s² belong into a plain text file."
+            f"{file}: the header states units of {unit[1]}, but an AT2 file contains an acceleration in g. "
+            "Use the AT2 file of the record, not VT2 or DT2; save values in m/s² in a plain text file."
         )
     dt = number(step, file, start)
     if dt <= 0:
         raise InputError(f"{file}, line {start}: DT must be positive, but it is {step}.")
     values = _values(file, lines, start)
     if values.size != npts:
-        what = "is truncated" if values.size < npts else "holds more than it announces"
+        what = "is truncated" if values.size < npts else "contains too many values"
         raise InputError(
             f"{file} {what}: its header says NPTS = {npts}, but {values.size} values follow. "
             "Download the record again, or correct NPTS."
         )
     remedy = (
-        "AT2 files are in g by definition: save the values alone as a text file and declare their unit, "
+        "AT2 files are in g by definition: save only the values as a text file and declare their unit, "
         f'read_motion(path, units="m/s2", dt={dt:g}).'
     )
     return build_motion(file, values, "g", dt, _info(file, lines[: start - 1]), remedy)
@@ -108,7 +106,7 @@ def _values(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[int], 
             return values
     except ValueError:
         pass
-    # The slow way: tokens run together, D exponents, or something to complain about.
+    # The slow way: adjacent tokens, D exponents, or an error to report.
     found: list[float] = []
     for i, line in enumerate(lines[start:], start + 1):
         position = 0
@@ -137,7 +135,7 @@ def _info(file: Path, header: list[str]) -> RecordInfo:
                 component = component.partition("(")[0].rstrip()
             return RecordInfo(
                 event=line[: date.start()].strip(" ,") or None,
-                # Two-digit years belong to the database of 1999 and before.
+                # Two-digit years are from the database of 1999 and earlier.
                 year=year if year > 99 else 1900 + year,
                 station=", ".join(rest[:-1]) or None,
                 component=component or None,

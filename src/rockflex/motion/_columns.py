@@ -58,10 +58,10 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
 
 
 def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return the labels of the columns (empty where there are none) and the numbered rows of cells."""
+    """Return the column labels (empty if there are none) and the numbered rows of cells."""
     rows: list[tuple[int, list[str]]] = []
     heads: list[str] = []
-    plain: list[tuple[int, str]] = []  # heads that are no comments
+    plain: list[tuple[int, str]] = []  # header lines that are not comments
     separator: str | None = None
     for i, line in enumerate(lines, 1):
         content = re.split("[#%!]", line, maxsplit=1)[0].strip()
@@ -85,7 +85,7 @@ def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, lis
         raise InputError(f"{file} holds no numbers: a record is expected as AT2, CSV or columns of text.")
     for i, content in plain:
         cells = _labels(content, separator)
-        # A row of numbers with a slip in it is no header, and must not be lost.
+        # A row of numbers with a typing error is not a header, and must not be skipped.
         if len(cells) == len(rows[0][1]) and any(re.match(r"[+-]?\.?\d", cell) for cell in cells):
             number(next(cell for cell in cells if not _is_number(cell)), file, i)
     for head in reversed(heads):
@@ -97,7 +97,7 @@ def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, lis
 
 def _labels(head: str, separator: str | None) -> list[str]:
     if separator is None:
-        # A label and its unit in brackets may be set apart by a blank, and the unit may hold one.
+        # There may be a blank between a label and its unit in brackets, and inside the unit.
         end = _after_brackets(head)
         head = BRACKET.sub(lambda unit: unit[0].replace(" ", ""), head[:end]) + head[end:]
         head = re.sub(r"(?<!\s)\s++(?=[(\[])", "", head)
@@ -107,12 +107,12 @@ def _labels(head: str, separator: str | None) -> list[str]:
 
 
 def _after_brackets(text: str) -> int:
-    """Return where the last bracket is closed: none that is opened before stays open, to be looked for in vain."""
+    """Return the end of the last closing bracket, so that no regular expression searches beyond it in vain."""
     return max(text.rfind(")"), text.rfind("]")) + 1
 
 
 def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, int]:
-    """Return the columns of time (None where there is none) and acceleration."""
+    """Return the columns of time (None if there is none) and acceleration."""
     times = [i for i, label in enumerate(labels) if re.match(r"t(ime)?\b", label, re.IGNORECASE)]
     accelerations = [i for i, label in enumerate(labels) if re.match("acc", label, re.IGNORECASE)]
     if len(accelerations) == 1 and len(times) == 1:
@@ -121,7 +121,9 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, 
         time = None if n_columns == 1 else 1 if times == [1] else 0
         column = 1 if time == 0 else 0
         if labels and re.match("vel|dis", labels[column], re.IGNORECASE):
-            raise InputError(f"{file}: an acceleration is expected, but the column is headed {shown(labels[column])}.")
+            raise InputError(
+                f"{file}: an acceleration is expected, but the column is labelled {shown(labels[column])}."
+            )
         return time, column
     raise InputError(
         f"{file} has {n_columns} columns, and its header does not name one as time and exactly one as "
@@ -130,7 +132,7 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, 
 
 
 def _stated_unit(file: Path, label: str, units: str | None) -> str:
-    """Return the unit that the label or the caller states; both must agree."""
+    """Return the unit stated by the label or the caller; both must agree."""
     bracket = BRACKET.search(label, 0, _after_brackets(label))
     written = bracket[1] if bracket else ""
     plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-"))
@@ -138,7 +140,7 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
     if written and stated is None:
         raise InputError(
             f"{file}: the column header gives the unit {shown(written)}, which is not known. "
-            "Rewrite it as g, m/s2 or cm/s2, converting the values where needed."
+            "Write it as g, m/s2 or cm/s2, and convert the values if necessary."
         )
     if stated and units and stated != units:
         raise InputError(
@@ -148,8 +150,8 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
     if stated or units:
         return stated or str(units)
     raise InputError(
-        f"{file} does not say the unit of its acceleration. Declare it: "
-        'read_motion(path, units="g"), "m/s2" or "cm/s2"; or head the column "acc (g)".',
+        f"{file} does not state the unit of its acceleration. Declare it: "
+        'read_motion(path, units="g"), "m/s2" or "cm/s2"; or label the column "acc (g)".',
         field="units",
     )
 
@@ -163,7 +165,7 @@ def _check_seconds(file: Path, label: str) -> None:
 
 
 def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float:
-    """Return the common time step."""
+    """Return the common time step in s."""
     if times.size < 3:
         raise InputError(f"{file} has {times.size} samples, but a record needs at least 3.")
     steps = np.diff(times)
@@ -188,11 +190,11 @@ def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float
         k = int(np.argmax(uneven))
         raise InputError(
             f"{file}, line {lines[k + 1]}: the time step is {steps[k]:.6g} s, but {steps[0]:.6g} s before. "
-            "Equal steps are expected: resample the record, for example with numpy.interp, or, where the "
-            "times are only rounded in print, give the step: read_motion(path, dt=...).",
+            "Equal steps are expected: resample the record, for example with numpy.interp. If the printed times are "
+            "only rounded, give the step: read_motion(path, dt=...).",
             field="dt",
         )
-    # The mean is better than one printed difference; twelve digits drop the rounding of the subtraction.
+    # The mean is better than one printed difference; twelve digits remove the rounding of the subtraction.
     return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
 
 

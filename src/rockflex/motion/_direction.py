@@ -1,4 +1,4 @@
-"""Whether a record is of a horizontal or of a vertical component, by its header and its file's name."""
+"""Whether a record is a horizontal or a vertical component, according to its header and file name."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,7 @@ from rockflex.motion._ground_motion import GroundMotion
 
 Direction = Literal["horizontal", "vertical"]
 
-CHANNEL = "[A-Z][HLNG]"  # band and instrument of a seismological channel, whose third letter is the direction
+CHANNEL = "[A-Z][HLNG]"  # band and instrument codes of a seismological channel; the third letter is the direction
 UPWARDS = f"UP|DN|UD|DWN|DOWN|VER|VRT|VERT|VERTICAL|{CHANNEL}Z"
 COMPASS = "[NSEW]|NS|EW|NORTH|SOUTH|EAST|WEST|SOU|EAS"
 VERTICAL = re.compile(rf"{UPWARDS}|U|V|Z|V[12]", re.IGNORECASE)
@@ -21,18 +21,18 @@ RUN_TOGETHER = re.compile(rf".*(?:{UPWARDS}|\dV|-V[12])", re.IGNORECASE)
 
 
 def direction_of(file: Path, component: str | None = None) -> Direction | None:
-    """Tell the direction of a component, or None where nothing says it.
+    """Return the direction of a component, or None if it is not stated.
 
-    Vertical is what a header calls UP, DWN, V, UD and the like, or what a file's name ends in after a hyphen or an
-    underscore. PEER files also run station and component together, as TCU078V.AT2; that is believed unless the header
-    names a horizontal component, an azimuth for instance.
+    A component is vertical if the header calls it UP, DWN, V, UD and the like, or if the file name ends in such a word
+    after a hyphen or an underscore. PEER files may also join station and component, as in TCU078V.AT2; this is accepted
+    unless the header names a horizontal component, for example an azimuth.
 
     Parameters
     ----------
     file
-        The file, of which only the name counts.
+        The file; only its name is used.
     component
-        Component as the header names it.
+        Name of the component in the header.
     """
     stated = (component or "").strip()
     if VERTICAL.fullmatch(stated) or SET_APART.fullmatch(file.stem):
@@ -44,18 +44,18 @@ def direction_of(file: Path, component: str | None = None) -> Direction | None:
 
 
 def is_vertical(motion: GroundMotion) -> bool:
-    """Tell whether a motion is known to be of a vertical component."""
+    """Return whether a motion is known to be a vertical component."""
     return motion.metadata is not None and motion.metadata.direction == "vertical"
 
 
 def check_horizontal(*motions: GroundMotion) -> None:
-    """Raise an InputError where a vertical component would shake a structure sideways."""
+    """Raise an InputError if a vertical component would be applied horizontally."""
     vertical = [motion.name for motion in motions if is_vertical(motion)]
     if vertical:
         more = f" and {len(vertical) - 3} more" if len(vertical) > 3 else ""
         raise InputError(
-            f"The ground moves horizontally here, but {', '.join(map(repr, vertical[:3]))}{more} "
-            f"{'is a vertical component' if len(vertical) == 1 else 'are vertical components'} by the file's header "
-            "or name. Give a horizontal component. If it is one, say so: dataclasses.replace(motion, "
+            f"A horizontal ground motion is expected, but {', '.join(map(repr, vertical[:3]))}{more} "
+            f"{'is a vertical component' if len(vertical) == 1 else 'are vertical components'} according to the header "
+            "or name of the file. Give a horizontal component. If it is one, declare it: dataclasses.replace(motion, "
             'metadata=RecordInfo(direction="horizontal")), or rename the file.'
         )

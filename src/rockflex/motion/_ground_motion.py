@@ -24,20 +24,20 @@ Float = NDArray[np.float64]
 class GroundMotion(Value):
     """A ground acceleration sampled at equal steps and linear between samples.
 
-    The ground is at rest before t = 0, where the first sample already acts; after the last sample the
-    acceleration is zero. Every measure is exact for this piecewise linear function, peaks between samples
-    included, and covers the time from the first sample to the last.
+    The ground is at rest before t = 0, the time of the first sample; after the last sample the
+    acceleration is zero. Every measure is exact for this piecewise linear function, including peaks between
+    samples, and covers the time from the first sample to the last.
 
     Parameters
     ----------
     acceleration : array_like, shape (n,)
-        Samples in m/s², at least three; kept as a read-only copy.
+        Samples in m/s², at least three; stored as a read-only copy.
     dt : float
         Sampling step in s.
     name : str, optional
         Name by which suites and tables refer to the motion.
     metadata : RecordInfo, optional
-        What is known of the record.
+        Information about the record.
 
     Raises
     ------
@@ -87,12 +87,12 @@ class GroundMotion(Value):
 
     @property
     def velocity(self) -> Float:
-        """Ground velocity at the samples in m/s, shape (n,): the exact integral, from rest."""
+        """Ground velocity at the samples in m/s, shape (n,): the exact integral, starting from rest."""
         return _integrals.velocity(self.acceleration, self.dt)
 
     @property
     def displacement(self) -> Float:
-        """Ground displacement at the samples in m, shape (n,): the exact second integral, from rest."""
+        """Ground displacement at the samples in m, shape (n,): the exact second integral, starting from rest."""
         return _integrals.displacement(self.acceleration, self.dt)
 
     @cached_property
@@ -102,20 +102,20 @@ class GroundMotion(Value):
 
     @cached_property
     def pgv(self) -> float:
-        """Peak ground velocity in m/s, also between samples."""
+        """Peak ground velocity in m/s, including peaks between samples."""
         return _integrals.peak_velocity(self.acceleration, self.dt)
 
     @cached_property
     def pgd(self) -> float:
-        """Peak ground displacement in m, also between samples, up to the last sample."""
+        """Peak ground displacement in m up to the last sample, including peaks between samples."""
         return _integrals.peak_displacement(self.acceleration, self.dt)
 
     @cached_property
     def arias(self) -> float:
         """Arias intensity π/(2g) ∫a² dt in m/s (Arias 1970).
 
-        The integral is exact. Databases often sum a² dt over the samples instead, which is larger, the more
-        so the closer the content of the record is to its Nyquist frequency.
+        The integral is exact. Databases often sum a² dt over the samples instead, which gives a larger value,
+        especially if the frequency content of the record is close to its Nyquist frequency.
         """
         return _integrals.arias_intensity(self.acceleration, self.dt)
 
@@ -151,7 +151,7 @@ class GroundMotion(Value):
         return _integrals.significant_duration(self.acceleration, self.dt, low, high)
 
     def scaled(self, factor: float) -> "GroundMotion":
-        """Return the motion multiplied by `factor` (negative: mirrored), with the same name.
+        """Return the motion multiplied by `factor` (negative to reverse it), with the same name.
 
         Raises
         ------
@@ -175,24 +175,23 @@ class GroundMotion(Value):
     def resampled(self, dt: float) -> "GroundMotion":
         """Return the same piecewise linear function sampled at the finer step `dt` (s).
 
-        Only a whole fraction of the present step (within 1e-9) keeps the function as it is, so only that is
-        accepted; the new step is then the present one divided by that whole number.
+        The function stays unchanged only if the present step is a whole multiple of `dt` (within 1e-9), so other
+        steps are rejected; the new step is the present one divided by that whole number.
 
         Raises
         ------
         InputError
-            If the present step is not a whole multiple of `dt`; the error names the nearest steps that are.
+            If the present step is not a whole multiple of `dt`; the error suggests the nearest valid steps.
         """
         return self.refined(_processing.refinement_of(self.dt, dt))
 
     def baseline_corrected(self, degree: int = 1) -> "GroundMotion":
         """Return the motion without the polynomial drift of its velocity.
 
-        A polynomial p of the given degree in time is subtracted from the acceleration. Its coefficients are
-        those for which the velocity ∫p dt (from zero at t = 0, integrated as the samples are, linearly
-        between them) fits the velocity of the record best in the least-squares sense over the samples. The
-        default removes a linear acceleration, which is a parabola through zero in velocity. Correcting
-        twice changes nothing.
+        A polynomial p in time of the given degree is subtracted from the acceleration. Its coefficients are
+        chosen so that the velocity ∫p dt (zero at t = 0, with p sampled and linear between samples) is the
+        least-squares fit to the velocity of the record at the samples. The default removes a linear
+        acceleration, which is a parabola through zero in velocity. Correcting twice changes nothing.
 
         Parameters
         ----------
@@ -242,7 +241,7 @@ class GroundMotion(Value):
         Parameters
         ----------
         periods : array_like, shape (m,)
-            Natural periods in s, zero or positive.
+            Natural periods in s: zero, or at least 1e-6 s.
         damping_ratio : float
             Fraction of critical damping, 0 <= ζ < 1.
 

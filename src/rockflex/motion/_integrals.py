@@ -1,4 +1,4 @@
-"""Exact integrals of an acceleration that is linear between its samples, and the peaks and durations in them."""
+"""Exact integrals of an acceleration that is linear between samples, and their peaks and durations."""
 
 import math
 
@@ -25,7 +25,7 @@ def displacement(a: Float, dt: float) -> Float:
 
 
 def peak_velocity(a: Float, dt: float) -> float:
-    """Largest |v|; between samples v is extreme where a passes through zero."""
+    """Return the largest |v|; between samples v has an extreme where a crosses zero."""
     v = velocity(a, dt)
     k = np.flatnonzero(np.sign(a[:-1]) * np.sign(a[1:]) < 0)
     inside = v[k] + 0.5 * dt * a[k] * (a[k] / (a[k] - a[k + 1]))
@@ -33,7 +33,7 @@ def peak_velocity(a: Float, dt: float) -> float:
 
 
 def peak_displacement(a: Float, dt: float) -> float:
-    """Largest |d|; between samples d is extreme at the zeros of the quadratic v."""
+    """Return the largest |d|; between samples d has an extreme at the zeros of the quadratic v."""
     v, d = velocity(a, dt), displacement(a, dt)
     # With x = t/dt in [0, 1]: v = c + b x + q x².
     c, b, q = v[:-1], dt * a[:-1], 0.5 * dt * np.diff(a)
@@ -52,11 +52,11 @@ def arias_intensity(a: Float, dt: float) -> float:
 
 
 def cumulative_absolute_velocity(a: Float, dt: float) -> float:
-    """Return ∫|a| dt over the record; a sample in which `a` changes sign is split at the zero."""
+    """Return ∫|a| dt over the record; an interval in which `a` changes sign is split at the zero."""
     left, right = a[:-1], a[1:]
     total = np.abs(left) + np.abs(right)
     crossing = np.sign(left) * np.sign(right) < 0
-    # Two triangles of heights |left|, |right| share the sample in proportion to them.
+    # Two triangles of heights |left| and |right| divide the interval in proportion to these heights.
     ratio = np.divide(left**2 + right**2, total, out=total.copy(), where=crossing)
     return float(np.sum(0.5 * dt * ratio))
 

@@ -1,4 +1,4 @@
-"""What an intensity measure is."""
+"""The definition of an intensity measure."""
 
 import math
 from collections.abc import Callable
@@ -10,28 +10,28 @@ from rockflex.motion._shaking import Shaking
 
 @dataclass(frozen=True, kw_only=True)
 class Measure:
-    """An intensity measure: its names, its unit, and how it is computed.
+    """An intensity measure: its names, its unit, and the function that computes it.
 
     Attributes
     ----------
     name : str
-        What files, the command line and columns of tables call it.
+        Name in files, on the command line and in table columns.
     label : str
-        What a reader is shown, such as ``"PGV"``.
+        Name shown to readers, such as ``"PGV"``.
     unit : str
         SI unit; empty if it has none.
     words : str
-        What it is, such as ``"peak ground velocity"``; empty if the label says it.
+        Description, such as ``"peak ground velocity"``; empty if the label is clear enough.
     of : callable
         Computes it from a `Shaking`.
     of_what : {"motion", "mode", "base"}
-        What it depends on: the motion alone, also the first mode, or also the base.
+        What it depends on: only the motion, also the first mode, or also the base.
     power : {0, 1, 2}
-        Power of the factor on the acceleration with which it grows. A motion cannot be scaled to a measure of power 0.
+        The measure is proportional to this power of the acceleration. Motions cannot be scaled to a measure of power 0.
     short : str
-        For the heads of narrow columns, if it is shorter than the label.
+        Name for the headers of narrow columns, if shorter than the label.
     symbol : str
-        In figures, as Matplotlib's mathtext, if it is another than the label.
+        Name in figures, as Matplotlib mathtext, if different from the label.
     """
 
     name: str
@@ -46,12 +46,12 @@ class Measure:
 
     @property
     def title(self) -> str:
-        """Label and words, for a list to choose from."""
+        """Label and description, for a selection list."""
         return f"{self.label}, {self.words}" if self.words not in ("", self.label) else self.label
 
     @property
     def head(self) -> str:
-        """Name over a narrow column."""
+        """Header of a narrow column."""
         return self.short or self.label
 
     @property
@@ -61,7 +61,7 @@ class Measure:
 
     @property
     def axis(self) -> str:
-        """Name and unit on the axis of a figure; words that are the label are not abbreviated by the symbol."""
+        """Name and unit for the axis of a figure; if the label is the description, the label rather than the symbol."""
         return self.with_unit(self.label if self.words == self.label else self.sign)
 
     def with_unit(self, name: str) -> str:
@@ -69,13 +69,13 @@ class Measure:
         return f"{name} [{self.unit}]" if self.unit else name
 
     def scaled(self, value: float, factor: float) -> float:
-        """Return what a value becomes when the acceleration is multiplied by a factor of either sign."""
+        """Return the value after multiplying the acceleration by a factor of either sign."""
         for _ in range(self.power):
             value *= abs(factor)
         return value
 
     def factor(self, value: float, level: float) -> float:
-        """Return the factor on the acceleration that takes a value to a level; infinite or NaN where none does."""
+        """Return the factor on the acceleration that scales a value to a level; infinite or NaN if there is none."""
         if not value > 0.0 or not self.power:
             return math.inf
         return math.sqrt(level / value) if self.power == 2 else level / value

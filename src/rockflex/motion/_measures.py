@@ -1,4 +1,4 @@
-"""The intensity measures. One that is added here is known to files, the command line, figures and the page."""
+"""The intensity measures. A measure added here is available everywhere: in files, commands, figures and the page."""
 
 from rockflex._checks import one_of
 from rockflex._errors import InputError
@@ -66,7 +66,7 @@ _ALL = (
 )
 
 MEASURES: dict[str, Measure] = {each.name: each for each in _ALL}
-"""Every measure by its name, in the order of columns."""
+"""Every measure by its name, in the order of table columns."""
 
 
 def intensities() -> list[Measure]:
@@ -75,7 +75,7 @@ def intensities() -> list[Measure]:
 
 
 def record_measures() -> list[Measure]:
-    """Return the measures of a motion alone, whatever it shakes."""
+    """Return the measures that depend only on the motion, not on a structure."""
     return [each for each in MEASURES.values() if each.of_what == "motion"]
 
 
@@ -85,7 +85,7 @@ def intensity(name: str) -> Measure:
     Raises
     ------
     InputError
-        If there is none.
+        If there is no such measure.
     """
     names = [each.name for each in intensities()]
     if not one_of(name, names):

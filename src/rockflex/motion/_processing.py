@@ -10,7 +10,7 @@ from rockflex._shown import shown
 from rockflex.motion._integrals import velocity
 
 Float = NDArray[np.float64]
-FINEST = 10_000  # new steps in an old one
+FINEST = 10_000  # largest number of new steps per old step
 
 
 def refine(a: Float, k: int) -> Float:
@@ -21,7 +21,7 @@ def refine(a: Float, k: int) -> Float:
 
 
 def refinement_of(old: float, new: float) -> int:
-    """Return the whole number old/new, or raise an error that names the steps that can be had."""
+    """Return the whole number old/new, or raise an error that suggests valid steps."""
     positive("dt", new, "s")
     ratio = min(old / new, FINEST)
     k = round(ratio)
@@ -31,7 +31,7 @@ def refinement_of(old: float, new: float) -> int:
     steps = " or ".join(f"{old / n:.12g} s" for n in nearest)
     raise InputError(
         f"A record with dt = {old:g} s cannot be resampled exactly to dt = {shown(new)} s: only a whole fraction "
-        f"of its own step leaves it unchanged between samples. Ask for {steps}."
+        f"of its step leaves it unchanged between samples. Use {steps}."
     )
 
 

@@ -1,8 +1,8 @@
-"""Mathematical pulses, sampled so that their corners fall on samples.
+"""Analytical pulses, sampled so that their corners coincide with samples.
 
-Every pulse takes a step `dt` and uses the largest step not above it that divides the pulse (half of the
-window for Ricker pulses) into whole intervals: length / ceil(length/dt - 1e-9). A step that already divides
-the pulse is used as it is. Between samples the motion is linear, as everywhere.
+The step used is the largest one up to `dt` that divides the pulse (half of the window for Ricker pulses)
+into whole intervals: length / ceil(length/dt - 1e-9). A step that already divides the pulse is used as it
+is. Between samples the motion is linear, as in all motions.
 """
 
 import math
@@ -37,14 +37,14 @@ def ricker_pulse(
     - symmetric: a_p (1 - u²) exp(-u²/2), with its peak a_p at the centre;
     - antisymmetric: (a_p/β) x (x² - 3) exp(-x²/2), with peaks ±a_p at x² = 3 - √6 and β = 1.3801.
 
-    The window is three periods (symmetric) or four (antisymmetric) long with the centre on its middle
-    sample; what it cuts off is below 2e-8 of the peak. The net velocity is zero. The antisymmetric peak lies
-    between samples, so `pga` falls short of the amplitude by about 4 (dt/T_p)² of it, at most.
+    The window is three (symmetric) or four (antisymmetric) periods long, with the centre on its middle
+    sample; the truncated part is below 2e-8 of the peak. The net velocity is zero. The antisymmetric peak
+    lies between samples, so `pga` is below the amplitude by at most about 4 (dt/T_p)² of it.
 
     Parameters
     ----------
     amplitude : float
-        Peak acceleration a_p in m/s²; negative values mirror the pulse.
+        Peak acceleration a_p in m/s²; negative values reverse the pulse.
     period : float
         Period T_p in s.
     dt : float
@@ -96,7 +96,7 @@ def one_sine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Ground
     Returns
     -------
     GroundMotion
-        The sampled pulse; its peaks fall on samples where the step divides T_p/4.
+        The sampled pulse; its peaks coincide with samples if the step divides T_p/4.
 
     Raises
     ------
@@ -110,8 +110,8 @@ def one_sine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Ground
 def one_cosine_pulse(amplitude: float, period: float, dt: float = 0.005) -> GroundMotion:
     """One full cosine, a_p cos(2π t/T_p) for 0 <= t <= T_p: zero net velocity and displacement.
 
-    The jumps at both ends are represented as they are: the first sample acts at t = 0, and the excitation is
-    zero after the last.
+    The jumps at both ends are represented exactly: the motion starts with the first sample at t = 0, and the
+    acceleration is zero after the last sample.
 
     Parameters
     ----------
@@ -165,8 +165,8 @@ def half_sine_pulse(amplitude: float, duration: float, dt: float = 0.005) -> Gro
 def rectangular_pulse(amplitude: float, duration: float, dt: float = 0.005) -> GroundMotion:
     """Constant acceleration a_p for 0 <= t <= t_p: net velocity a_p t_p.
 
-    Exact, whatever the step: the first sample acts at t = 0, and the excitation is zero after the last, so
-    equal samples are a rectangle with both of its jumps.
+    Exact for any step: the motion starts with the first sample at t = 0, and the acceleration is zero after the
+    last sample, so equal samples are a rectangle with a jump at both ends.
 
     Parameters
     ----------
@@ -235,14 +235,14 @@ def mavroeidis_papageorgiou_pulse(
     envelope = np.pi * np.linspace(-1, 1, n + 1)
     carrier = gamma * envelope + nu
     rate = np.sin(envelope) * np.cos(carrier) + gamma * (1 + np.cos(envelope)) * np.sin(carrier)
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused as a sample
+    with np.errstate(over="ignore", invalid="ignore"):  # samples that are not finite are rejected later
         shape = -np.pi / (gamma * period) * rate
     detail = f"T={period:g} s, gamma={gamma:g}, nu={nu:g}"
     return _pulse("Mavroeidis-Papageorgiou", amplitude, shape, step, detail, unit="m/s")
 
 
 def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
-    """Ground at rest, for free vibration.
+    """Return ground at rest, for free vibration.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
     Returns
     -------
     GroundMotion
-        Zeros.
+        A motion of zero acceleration.
 
     Raises
     ------
@@ -270,7 +270,7 @@ def _intervals(name: str, length: float, dt: float) -> tuple[int, float]:
     # Two intervals at least: a motion has three samples or more.
     if length / dt > LONGEST:
         raise InputError(
-            f"{name} = {length:g} s with dt = {dt:g} s asks for {length / dt:.3g} samples; use a larger dt."
+            f"{name} = {length:g} s with dt = {dt:g} s requires {length / dt:.3g} samples; use a larger dt."
         )
     n = max(2, math.ceil(length / dt - 1e-9))
     return n, dt if math.isclose(n * dt, length, rel_tol=1e-9) else length / n
@@ -284,6 +284,6 @@ def _sine(n: int, turns: float) -> Float:
 
 def _pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²") -> GroundMotion:
     amplitude = finite("amplitude", amplitude, unit)
-    with np.errstate(over="ignore"):  # what is not finite is refused as a sample
+    with np.errstate(over="ignore"):  # samples that are not finite are rejected later
         samples = amplitude * shape
     return GroundMotion(samples, dt, name=f"{kind} {amplitude:g} {unit}, {detail}")

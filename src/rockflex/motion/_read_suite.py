@@ -1,4 +1,4 @@
-"""Many record files read into a suite."""
+"""Reading many record files into a suite."""
 
 import warnings
 from collections.abc import Iterable, Sequence
@@ -16,8 +16,8 @@ from rockflex.motion._suite import Suite
 OnError = Literal["raise", "skip"]
 
 SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
-TOLD = 10  # files whose faults are told in full; of more only the names
-NAMES = 50_000  # characters of a message that names every file
+TOLD = 10  # files whose errors are reported in full; beyond these only the names are listed
+NAMES = 50_000  # most characters of a message that lists every file
 
 
 def read_suite(
@@ -28,29 +28,29 @@ def read_suite(
 ) -> Suite:
     """Read the horizontal components among record files into a suite, sorted by file name.
 
-    Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out with a warning that names them: see
-    `RecordInfo`, whose `direction` says what the header or the name of a file tells.
+    Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out, and a warning lists them. The direction of a
+    record is taken from its header or file name; see `RecordInfo.direction`.
 
     Parameters
     ----------
     paths : path or iterable of paths
-        A directory, of which every file ending in .at2, .csv, .dat, .tsv or .txt (upper case too) is read,
+        A directory, in which every file with the suffix .at2, .csv, .dat, .tsv or .txt (in any case) is read,
         or the files themselves.
     units, dt : optional
-        As in `read_motion`, for the files that do not say them.
+        As in `read_motion`, for files that do not state them.
     on_error : {"raise", "skip"}
-        With files that cannot be read: raise an error that names all of them, or go on with the others, and name them
-        in a warning.
+        If files cannot be read: raise an error that lists all of them, or continue with the others and list them in a
+        warning.
 
     Returns
     -------
     Suite
-        The motions, named after their files without the ending; the suite is named after the directory.
+        The motions, named after their files without the suffix; the suite is named after the directory.
 
     Raises
     ------
     InputError
-        If files cannot be read (see `read_motion`) and `on_error` is "raise", no file is left, a directory holds no
+        If files cannot be read (see `read_motion`) and `on_error` is "raise", no file remains, a directory contains no
         record, or two files have the same name.
 
     Warns
@@ -71,9 +71,9 @@ def read_suite(
 def read_files(
     files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError, skip: str = 'on_error="skip"'
 ) -> dict[Path, GroundMotion]:
-    """Read the horizontal components among record files, by their file; see `read_suite`.
+    """Return the horizontal components among record files by file; see `read_suite`.
 
-    `skip` is how a message says what goes on with the other files.
+    `skip` is the option that an error message suggests to continue with the other files.
     """
     if on_error not in get_args(OnError):
         raise InputError(f'on_error must be "raise" or "skip", but {shown(on_error)} was given.')
@@ -91,7 +91,7 @@ def read_files(
     if faults:
         told = _told(faults, len(files))
         if on_error == "raise" or not motions:
-            told += f" {skip} goes on with the other files." if motions else ""
+            told += f" {skip} continues with the other files." if motions else ""
             field = next((name for name in fields[:TOLD] if name in ("units", "dt")), None)
             raise InputError(told, longest=NAMES, field=field)
         warnings.warn(f"Left out: {told}", RecordWarning, stacklevel=3)
@@ -100,20 +100,20 @@ def read_files(
         components = f"{len(vertical)} vertical component{'s' * (len(vertical) > 1)}"
         if not horizontal:
             raise InputError(
-                f"No horizontal component was given, only {components}: {names}. Give horizontal ones; where a "
-                "header or a file's name is wrong, correct it."
+                f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "
+                "header or file name is wrong, correct it."
             )
         warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=3)
     return horizontal
 
 
 def folder_files(folder: Path) -> list[Path]:
-    """Record files of a directory, by their ending, sorted by name.
+    """Return the record files of a directory, by suffix, sorted by name.
 
     Raises
     ------
     InputError
-        If there is none.
+        If there are none.
     """
     files = [file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES and file.is_file()]
     if not files:
@@ -124,13 +124,13 @@ def folder_files(folder: Path) -> list[Path]:
 def _folder(folder: Path) -> tuple[str, list[Path]]:
     if not folder.is_dir():
         raise InputError(
-            f"{folder} is not a directory. Give a directory, or a list of files; one file alone is read by read_motion."
+            f"{folder} is not a directory. Give a directory or a list of files; use read_motion for a single file."
         )
     return folder.resolve().name, folder_files(folder)
 
 
 def _told(faults: dict[Path, str], n_files: int) -> str:
-    """Name every file that cannot be read, and the faults of the first few."""
+    """List every file that cannot be read, with the errors of the first few."""
     shown, others = list(faults.values())[:TOLD], [str(file) for file in list(faults)[TOLD:]]
     told = " ".join(shown) if n_files == 1 else f"{len(faults)} of {n_files} files cannot be read. {' '.join(shown)}"
     return f"{told} The others: {', '.join(others)}." if others else told

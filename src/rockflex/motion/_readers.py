@@ -1,4 +1,4 @@
-"""Choice of the reader by what a file holds."""
+"""Choice of the reader by the content of a file."""
 
 from pathlib import Path
 
@@ -13,34 +13,35 @@ from rockflex.motion._text import UNITS, read_lines
 
 
 def read_motion(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
-    """Read a record from an AT2 file, a CSV file, or text in columns, told apart by content.
+    """Read a record from an AT2 file, a CSV file, or text in columns; the content decides.
 
-    Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. One
-    column is the acceleration, two are time (s) and acceleration. More need a header line in which exactly
-    one label begins with "acc". The motion starts at the first sample, whatever its time.
+    Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A single
+    column is the acceleration, two columns are time (s) and acceleration. With more columns, a header line must
+    have exactly one label that begins with "t" or "time" and one that begins with "acc". The motion starts at
+    the first sample, whatever its time.
 
     Parameters
     ----------
     path : str or Path
         The file.
     units : {"g", "m/s2", "cm/s2"}, optional
-        Unit of the acceleration; needed where no column header says it in brackets, as "acc (g)",
+        Unit of the acceleration; needed unless a column header states it in brackets, as "acc (g)",
         "a [m/s^2]" or "acceleration (gal)". AT2 files are in g by definition.
     dt : float, optional
-        Sampling step in s; needed where the file has no times. Given beside a time column, it replaces
-        times that were rounded in print: each must lie within half a step of its place.
+        Sampling step in s; needed if the file has no times. For a file with a time column it replaces
+        times that were rounded in print: each must lie within half a step of its nominal time.
 
     Returns
     -------
     GroundMotion
-        The record in m/s², named after the file without its ending.
+        The record in m/s², named after the file without its suffix.
 
     Raises
     ------
     InputError
         If the file is missing, empty or binary; `units` or `dt` is missing, contradicts the file or is not
         valid; a value is not a finite number; rows differ in length; time steps are not equal and positive;
-        or the peak exceeds 5 g, which only a wrong unit explains. Nothing is read in part.
+        or the peak exceeds 5 g, which indicates a wrong unit. A file is never read in part.
     """
     if units is not None and not one_of(units, UNITS):
         raise InputError(
@@ -59,5 +60,5 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
             field="units",
         )
     if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
-        raise InputError(f"{file} says DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
+        raise InputError(f"{file} states DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
     return motion

@@ -1,4 +1,4 @@
-"""What is known of a record besides its samples."""
+"""Information about a record besides its samples."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -6,7 +6,7 @@ from typing import Literal
 
 @dataclass(frozen=True, kw_only=True)
 class RecordInfo:
-    """Facts about a recorded motion; whatever is not known is None.
+    """Information about a recorded motion; None if unknown.
 
     Parameters
     ----------
@@ -23,9 +23,9 @@ class RecordInfo:
     rsn : int, optional
         Record sequence number of the PEER NGA database.
     component : str, optional
-        Component as its source names it.
+        Name of the component in its source.
     direction : {"horizontal", "vertical"}, optional
-        Which way the component points, where its source says it. Nothing is simulated under a vertical one.
+        Direction of the component, if its source states it. Vertical components cannot be used in simulations.
     station : str, optional
         Recording station.
     source : str, optional

@@ -1,4 +1,4 @@
-"""A ground motion beside the numbers of a structure that some intensity measures refer to."""
+"""A ground motion together with the properties of a structure that some intensity measures need."""
 
 import math
 from dataclasses import dataclass
@@ -11,16 +11,16 @@ STIFF = 1e-6  # s
 
 @dataclass(frozen=True)
 class Shaking:
-    """What intensity measures are computed from: a motion, and what it shakes; a number that is not known is NaN.
+    """The input of an intensity measure: a motion and properties of the structure; unknown properties are NaN.
 
     Attributes
     ----------
     motion : GroundMotion
         The motion.
     omega, damping_ratio : float
-        Of the first mode on a fixed base, in rad/s and as a fraction of critical.
+        Circular frequency in rad/s and damping ratio of the first mode on a fixed base.
     lifting : float
-        Acceleration in m/s² that lifts the base of the structure if it is rigid, g tan α = M_r/L_0^r.
+        Acceleration in m/s² that lifts the base of the structure if it were rigid, g tan α = M_r/L_0^r.
     rate : float
         Frequency parameter p of the rocking structure in rad/s, p² = L_0^r g/I_θ.
     """
@@ -33,9 +33,9 @@ class Shaking:
 
     @cached_property
     def sd(self) -> float:
-        """Spectral displacement in m of the first mode; NaN if there is none."""
+        """Spectral displacement in m of the first mode; NaN if there is no mode."""
         if math.isnan(self.omega):
             return math.nan
         period = 2.0 * math.pi / self.omega
-        # A structure so stiff moves with the ground, and no spectrum has its period.
+        # Such a stiff structure moves with the ground; its period is below those of a spectrum.
         return self.motion.sd(period, self.damping_ratio) if period >= STIFF else self.motion.pga / self.omega**2

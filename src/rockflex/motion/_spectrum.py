@@ -18,8 +18,8 @@ class ResponseSpectrum(Value):
     """Peak response of damped linear oscillators to one ground motion.
 
     The response is exact for the piecewise linear acceleration (the recurrence of Nigam & Jennings 1969),
-    and the peaks are true ones, between samples too. They cover the record, not the free vibration after it.
-    A period of zero is the rigid oscillator: sd = sv = 0 and sa = PGA.
+    and the peaks include those between samples. They cover the record, but not the free vibration after it.
+    A period of zero is a rigid oscillator: sd = sv = 0 and sa = PGA.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class ResponseSpectrum(Value):
 
 
 def response_spectrum(acceleration: Float, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
-    """Response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
+    """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
     period = finite_vector("periods", periods, "s")
     bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))
     if bad.size:
@@ -62,6 +62,6 @@ def response_spectrum(acceleration: Float, dt: float, periods: ArrayLike, dampin
         peaks[i] = oscillator_peaks(acceleration, dt, 2 * np.pi / float(period[i]), zeta)
     sd, sv = peaks.T.copy()
     pga = np.full(period.size, np.max(np.abs(acceleration)))
-    with np.errstate(over="ignore"):  # a period too long to be squared has no acceleration
+    with np.errstate(over="ignore"):  # the acceleration is zero if the square of the period overflows
         sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
     return ResponseSpectrum(period, zeta, sd, sv, sa)

@@ -15,7 +15,7 @@ def unit_responses(omega: float, zeta: float, t: float) -> tuple[float, float, f
         return 1.0, 0.0, 0.0, 0.0
     x = omega * t
     if x < 0.5:
-        # Power series of s: the closed forms of step and ramp cancel for small ωt.
+        # Power series of s: for small ωt the closed forms of step and ramp suffer from cancellation.
         before, term = 0.0, t
         rate, impulse, step, ramp = 0.0, 0.0, 0.0, 0.0
         for k in range(1, 22):
@@ -49,7 +49,7 @@ def _state(
 def _stationary(
     omega: float, zeta: float, u: float, v: float, a: float, slope: float, low: float, high: float
 ) -> float:
-    """Displacement at the zero of the velocity, which is monotone and changes sign in (low, high)."""
+    """Return the displacement at the zero of the velocity, which is monotonic and changes sign in (low, high)."""
     t, best = 0.5 * (low + high), u
     rising = _state(omega, zeta, u, v, a, slope, low)[1] < 0
     for _ in range(60):
@@ -73,7 +73,7 @@ def _peaks_inside(
     """Largest |u| and |v| within one interval.
 
     The forcing is linear there, so the relative acceleration is a free vibration: its zeros are equally
-    spaced and known in closed form. They part the interval into pieces on which v is monotone.
+    spaced and known in closed form. They divide the interval into parts in which v is monotonic.
     """
     omega_d = omega * math.sqrt(1 - zeta * zeta)
     w = -a - 2 * zeta * omega * v - omega * omega * u
@@ -86,7 +86,7 @@ def _peaks_inside(
     if zero <= 0:
         zero += math.pi / omega_d
     end_u, end_v, _ = _state(omega, zeta, u, v, a, slope, dt)
-    # Forced part of u: the line through p0 and p1; its slope is the forced part of v.
+    # The forced part of u is the line through p0 and p1; its slope is the forced part of v.
     p0 = (-a + 2 * zeta / omega * slope) / (omega * omega)
     p1 = p0 - slope * dt / (omega * omega)
     while low < dt:
@@ -119,7 +119,7 @@ def oscillator_peaks(acceleration: NDArray[np.float64], dt: float, omega: float,
         slope = (acceleration[k + 1] - a) / dt
         u1 = keep * u + impulse * v - a * step - slope * ramp
         v1 = rate * v - omega * omega * impulse * u - a * impulse - slope * step
-        # Bounds on the curvature say whether a new peak can hide between the two samples.
+        # Bounds on the curvature decide whether a new peak can occur between the two samples.
         w = -a - 2 * zeta * omega * v - omega * omega * u
         q = (-slope - zeta * omega * w - omega * omega * v) / omega_d
         size = math.hypot(w, q)

@@ -17,20 +17,20 @@ from rockflex.motion._ground_motion import GroundMotion
 class Suite(Value, Sequence[GroundMotion]):
     """An ordered set of motions with unique names: a sequence, and a mapping by name.
 
-    ``suite[0]`` and ``suite["FF-12-a"]`` are motions, ``suite[:10]`` is a suite, ``"FF-12-a" in suite`` tells
+    ``suite[0]`` and ``suite["FF-12-a"]`` are motions, ``suite[:10]`` is a suite, ``"FF-12-a" in suite`` checks
     whether a name occurs, and iteration gives the motions.
 
     Parameters
     ----------
     motions : iterable of GroundMotion
-        The motions, at least one, each with a name of its own.
+        The motions, at least one, with unique names.
     name : str, optional
         Name of the suite.
 
     Raises
     ------
     InputError
-        If there is no motion, something else than a motion, or a name occurs twice.
+        If there is no motion, an element is not a motion, or a name occurs twice.
     """
 
     motions: tuple[GroundMotion, ...]
@@ -80,7 +80,7 @@ class Suite(Value, Sequence[GroundMotion]):
     @overload
     def __getitem__(self, index: slice) -> "Suite": ...
     def __getitem__(self, index: int | str | slice) -> "GroundMotion | Suite":
-        """Return the motion at an index or of a name, or the suite of a slice."""
+        """Return the motion at an index or with a name, or the suite of a slice."""
         if isinstance(index, slice):
             return Suite(self.motions[index], self.name)
         if not isinstance(index, str):

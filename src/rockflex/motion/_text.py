@@ -1,4 +1,4 @@
-"""Text of a record file, and the checks that every format shares."""
+"""Reading the text of a record file, and the checks common to all formats."""
 
 import re
 from pathlib import Path
@@ -15,12 +15,12 @@ from rockflex.motion._record_info import RecordInfo
 
 UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01}
 LIMIT = 5.0  # in g; no recorded ground acceleration comes near it
-# Possessive, as all of these patterns: what has matched is not tried in parts, so that no text takes long.
+# Possessive, like all of these patterns: a match is never retried in part, so no text takes long.
 DECIMAL = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?+\d++)?+")
 
 
 def read_lines(path: str | Path) -> list[str]:
-    """Return the lines of a text file, or raise an error that says why there are none."""
+    """Return the lines of a text file, or raise an error that explains why it cannot be read."""
     file = Path(path)
     if file.is_dir():
         raise InputError(f"{file} is a directory. Read all its records with read_suite({shown(str(file))}).")
@@ -53,7 +53,7 @@ def _decode(data: bytes) -> str | None:
 
 
 def number(token: str, file: str | Path, line: int) -> float:
-    """Return a decimal number (Fortran's D exponent too), or raise an error that names the line."""
+    """Return a decimal number (also with a Fortran D exponent), or raise an error that names the line."""
     if DECIMAL.fullmatch(token):
         value = float(re.sub("[Dd]", "E", token))
         if np.isfinite(value):
@@ -65,7 +65,7 @@ def number(token: str, file: str | Path, line: int) -> float:
 def build_motion(
     file: Path, values: NDArray[np.float64], units: str, dt: float, info: RecordInfo, remedy: str
 ) -> GroundMotion:
-    """Convert to m/s² and refuse amplitudes that only a wrong unit explains."""
+    """Convert to m/s² and reject amplitudes that indicate a wrong unit."""
     acceleration = values * UNITS[units]
     motion = _named(file, acceleration, dt, info)
     if motion.pga > LIMIT * GRAVITY:
@@ -73,8 +73,8 @@ def build_motion(
         smaller = {"g": "m/s² or cm/s²", "m/s2": "cm/s²", "cm/s2": "a smaller unit"}[units]
         raise InputError(
             f"{file}: the peak acceleration is {peak:g} {units}, above {LIMIT:g} g. "
-            f"It looks like {smaller} where {units} was declared. {remedy} If the values are meant, "
-            "build GroundMotion(acceleration, dt) from the array; scaling a motion is free.",
+            f"It looks like {smaller}, although {units} was declared. {remedy} If the values are correct, "
+            "build GroundMotion(acceleration, dt) from the array; motions can be scaled without limit.",
             field="units",
         )
     return motion

@@ -1,9 +1,9 @@
-"""The energy ledger of a history.
+"""The energy ledger (energy balance) of a history.
 
-The simplified equations (Eqs. 15, 23 and 25) are those of a system with the energy
+The simplified equations (Eqs. 15, 23 and 25) describe a system with the energy
 ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'² + ½ Σ m* ω² D² + s m_tot g B θ - ½ L_0^r g θ²
-relative to the moving ground (and that of tendons), on which the ground does the work -∫ a (L_0^r θ' + Σ m* D') dt. The
-complete ones have that of Eqs. 6-8.
+relative to the moving ground, plus the energy of tendons. The work of the ground is -∫ a (L_0^r θ' + Σ m* D') dt. For
+the complete equations the energy is that of Eqs. 6-8.
 """
 
 import math
@@ -19,32 +19,33 @@ from rockflex.solve import ClosedForm
 
 Array = NDArray[np.float64]
 
-REACH = 8.0  # radians of the fastest mode that one Gauss rule spans; its points then number 20 at most
-MOST_PIECES = 10_000  # of an interval: a minute of quadrature for a record of a thousand samples
+REACH = 8.0  # radians of the fastest mode covered by one Gauss rule, which then has at most 20 points
+MOST_PIECES = 10_000  # per interval: a minute of quadrature for a record of a thousand samples
 
 
 @dataclass(frozen=True, eq=False)
 class EnergyLedger(Value):
-    """Energies in J at every node of a history, shape (n_nodes,) each, relative to the moving ground; read-only.
+    """Energies in J at every node of a history, relative to the moving ground; read-only arrays of shape (n_nodes,).
 
-    ``kinetic + strain + gravity + tendons + damped + yielded + lost - input`` keeps its first value; `residual` is what
-    it strays.
+    ``kinetic + strain + gravity + tendons + damped + yielded + lost - input`` is constant; `residual` is its numerical
+    deviation from the initial value.
 
     Parameters
     ----------
     kinetic, strain, gravity
-        Energy of motion, of flexure, and of the raised weight (zero in contact).
+        Kinetic energy, elastic strain energy, and potential energy of the lifted weight (zero in contact).
     tendons
-        What the tendons have taken up since the base stood on the ground.
+        Energy stored in the tendons, relative to the base in contact.
     damped, input
-        Dissipated by modal damping, and put in by the ground, up to each node: quadratures of the exact states, or
-        integrated with the motion.
+        Energy dissipated by modal damping, and work of the ground, up to each node; found by quadrature of the exact
+        states, or integrated with the motion.
     yielded
-        Taken up by the hysteretic spring of a Bouc-Wen superstructure, whose `strain` is that of its elastic share.
+        Energy absorbed by the hysteretic spring of a Bouc-Wen superstructure; `strain` is then that of its elastic
+        part.
     lost
-        Lost in the impacts up to each node.
+        Energy lost in impacts up to each node.
     impact_losses
-        Loss of each impact, shape (n_impacts,).
+        Energy lost in each impact, shape (n_impacts,).
     """
 
     kinetic: Array
@@ -59,30 +60,30 @@ class EnergyLedger(Value):
 
     @property
     def residual(self) -> Array:
-        """Energy that the ledger cannot account for at each node, in J."""
+        """Error of the energy balance at each node, in J."""
         total = self.stored + self.damped + self.yielded + self.lost - self.input
         return total - total[0]
 
     @property
     def stored(self) -> Array:
-        """Energy that may still come back: kinetic, strain, gravity and tendons, in J."""
+        """Recoverable energy: kinetic, strain, gravity and tendons, in J."""
         return self.kinetic + self.strain + self.gravity + self.tendons
 
     @property
     def closing_error(self) -> float:
-        """Largest residual over the largest energy that went through: input, or what was there at the start."""
+        """Largest residual divided by the largest input energy, or by the initial energy if that is larger."""
         start = abs(float(self.stored[0]))
         scale = max(float(np.max(np.abs(self.input))), start)
         return float(np.max(np.abs(self.residual))) / scale if scale > 0.0 else 0.0
 
 
 def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
-    """Ledger of a history; `nodes` as in `History`.
+    """Return the energy ledger of a history; `nodes` as in `History`.
 
     Raises
     ------
     InputError
-        If the model is so fast against the sampling that the quadratures would be too many.
+        If the model is too fast for the sampling: too many quadratures would be needed.
     """
     kinetic, strain, gravity = stored_energies(model, nodes)
     impact = np.flatnonzero(is_impact(model, nodes))
@@ -94,7 +95,7 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
     if model.integrated:
         integrated = (nodes[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
         counted = np.diff(nodes[:, HEADER + model.layout.damped : HEADER + model.layout.yielded + 1], axis=0)
-        # The counters rest while contact is carried in closed form, and jump to where they were when it ends.
+        # The counters are not advanced while contact is solved in closed form, and resume when it ends.
         damped, work, yielded = np.where(integrated, counted.T, (damped, work, yielded))
     return EnergyLedger(
         kinetic=kinetic,
@@ -110,7 +111,7 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
 
 
 def is_impact(model: RockingModel, nodes: Array) -> NDArray[np.bool_]:
-    """True between the two nodes of every impact, shape (n_nodes - 1,)."""
+    """Return True for the interval between the two nodes of every impact, shape (n_nodes - 1,)."""
     spin = model.layout.of(nodes, model.layout.spin)
     time, side = nodes[:, TIME], nodes[:, SIDE]
     same_time, rocking = time[1:] == time[:-1], side[:-1] != 0.0
@@ -118,7 +119,7 @@ def is_impact(model: RockingModel, nodes: Array) -> NDArray[np.bool_]:
 
 
 def _work(model: RockingModel, nodes: Array) -> tuple[Array, Array]:
-    """Energy damped and put in between neighbouring nodes, (n_nodes - 1,) each, by Gauss quadrature."""
+    """Return the damped and the input energy between adjacent nodes, (n_nodes - 1,) each, by Gauss quadrature."""
     p = model.properties
     n = p.n_modes
     nodes = nodes[:, : HEADER + model.layout.core]
@@ -137,12 +138,12 @@ def _work(model: RockingModel, nodes: Array) -> tuple[Array, Array]:
 
 
 def _rule(label: str, fastest: float, longest: float) -> tuple[Array, Array]:
-    """Places in [0, 1] and weights of a composite Gauss rule for states that turn or decay at `fastest` (rad/s)."""
+    """Return points in [0, 1] and weights of a Gauss rule for states with eigenvalues up to `fastest` (rad/s)."""
     pieces = max(math.ceil(fastest * longest / REACH), 1)
     if pieces > MOST_PIECES:
         raise InputError(
-            f"The energy ledger of {label} needs {pieces} quadratures a step, above the limit of {MOST_PIECES}: the "
-            f"model turns or decays at up to {fastest:.3g} rad/s, and steps last up to {longest:.3g} s. Keep fewer "
+            f"The energy ledger of {label} needs {pieces} quadratures per step, above the limit of {MOST_PIECES}: the "
+            f"model vibrates or decays at up to {fastest:.3g} rad/s, and steps last up to {longest:.3g} s. Keep fewer "
             "modes, damp them less, or refine the record."
         )
     places, weights = np.polynomial.legendre.leggauss(8 + math.ceil(1.5 * fastest * longest / pieces))

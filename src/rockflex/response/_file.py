@@ -1,4 +1,4 @@
-"""Responses on disk: one .npz file, arrays as they are and everything else as JSON within it."""
+"""Responses on disk: one .npz file that contains the arrays, and everything else as JSON."""
 
 import io
 import json
@@ -57,7 +57,7 @@ FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_
 
 
 def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: History | None) -> Path:
-    """Write a response to `path`, to which ``.npz`` is added where it lacks; the file appears whole or not at all."""
+    """Write a response to `path`, adding the suffix ``.npz`` if necessary; the file is complete or absent."""
     if path.suffix[1:2].isalpha() and path.suffix.lower() != ".npz":  # "scale 1.5" has no suffix
         raise InputError(
             f"A response is saved as .npz, but {path.name!r} was given. Name it {path.stem + '.npz'!r}; for a "
@@ -90,18 +90,18 @@ def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: 
 
 
 def load(path: Path, kinds: dict[str, type]) -> Kept:
-    """Read what `save` wrote, with peaks of these names and types."""
+    """Read a response written by `save`, with peaks of these names and types."""
     check_regular(path)
     if not path.exists():
         raise InputError(f"No saved response at {path}. Give the path that Response.save returned.")
     try:
-        with zipfile.ZipFile(path) as archive:  # whole members, so that their checksums are compared
+        with zipfile.ZipFile(path) as archive:  # whole members, so that their checksums are verified
             content = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
         arrays = {name: np.load(io.BytesIO(part)) for name, part in content.items()}
         scalars = json.loads(str(arrays["response"]))
         known = scalars["format"] == FORMAT
         kept = _kept(scalars, arrays, kinds) if known else None
-    except Exception as error:  # zipfile, zlib, NumPy and json meet damage with nearly any exception
+    except Exception as error:  # zipfile, zlib, NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"
         raise InputError(f"{path} is not a saved response ({reason}). Give a file that Response.save wrote.") from error
     if kept is None:
@@ -120,7 +120,7 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
         if floors.story_drift.shape != arrays["floor_modes.heights"].shape:
-            raise InputError(f"There are peaks of {floors.story_drift.size} floors and not as many heights.")
+            raise InputError(f"There are peaks of {floors.story_drift.size} floors, but a different number of heights.")
     return peaks, floors, history
 
 
@@ -131,7 +131,7 @@ def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
 
 
 def _described(law: ImpactLaw) -> dict[str, Any]:
-    """An impact law as JSON; of the user's own, what it says of itself."""
+    """Return an impact law as JSON; for a user-defined law only its description."""
     name = type(law).__name__
     if name in LAWS and type(law) is LAWS[name]:
         return {"law": name, **asdict(cast("Any", law))}

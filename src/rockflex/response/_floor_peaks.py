@@ -1,4 +1,4 @@
-"""The peaks above the base of one run."""
+"""The floor peaks of one run."""
 
 from dataclasses import dataclass
 
@@ -14,18 +14,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, init=False)
 class FloorPeaks(Value):
-    """Largest magnitudes over the run, peaks between samples included; read-only arrays.
+    """Largest magnitudes at the floors during a run, including peaks between samples; read-only arrays.
 
     Attributes
     ----------
     story_drift : ndarray, shape (N_floors,)
-        Displacement of each floor less that of the one below, relative to the rotated base, in m.
+        Displacement of each floor minus that of the floor below, relative to the rotated base, in m.
     story_shear : ndarray, shape (N_floors,)
-        Sum of the elastic forces from each floor up, in N.
+        Sum of the elastic forces at and above each floor, in N.
     floor_acceleration : ndarray, shape (N_floors,)
-        Total horizontal acceleration of each floor, in m/s²; of the nonlinear models at samples and events only.
+        Total horizontal acceleration of each floor, in m/s²; for nonlinear models only at samples and events.
     total_floor_displacement : ndarray, shape (N_floors,)
-        Horizontal displacement of each floor relative to the ground in m, the rotation of the base included (Eq. 3).
+        Horizontal displacement of each floor relative to the ground in m, including the rotation of the base (Eq. 3).
 
     Raises
     ------
@@ -54,6 +54,6 @@ class FloorPeaks(Value):
         sizes = [values.size for values in peaks.values()]
         if len(set(sizes)) > 1:
             raise InputError(
-                f"The peaks of the floors must be one a floor each, but {', '.join(peaks)} have the sizes {sizes}."
+                f"There must be one peak of each kind per floor, but {', '.join(peaks)} have the sizes {sizes}."
             )
         vars(self).update(peaks)

@@ -1,4 +1,4 @@
-"""What the floors do: drifts, shears and accelerations along a history."""
+"""Floor histories: drifts, shears, accelerations and displacements."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,9 @@ NAMES = ("story_drift", "story_shear", "total_floor_displacement")
 
 
 def floor_histories(model: RockingModel, floors: FloorModes, states: Array) -> tuple[Array, Array, Array, Array]:
-    """Story drifts (m), story shears (N), total horizontal accelerations (m/s²) and displacements (m).
+    """Return story drifts (m), story shears (N), total horizontal accelerations (m/s²) and displacements (m).
 
-    Shape (n, N_floors) each.
+    Each has the shape (n, N_floors).
     """
     values = values_of(model, floor_quantities(model, floors, NAMES), states)
     drift, shear, displacement = np.split(values, len(NAMES), axis=1)

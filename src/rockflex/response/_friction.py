@@ -1,4 +1,4 @@
-"""The friction that keeps a base from sliding (Silva & Stojadinović 2024, Eq. 20)."""
+"""The friction required to prevent sliding (Silva & Stojadinović 2024, Eq. 20)."""
 
 import math
 from functools import cached_property
@@ -25,9 +25,9 @@ from rockflex.solve import ClosedForm
 
 Array = NDArray[np.float64]
 
-IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has its short spikes
-TURN = 0.2  # radians of the fastest mode from one look to the next
-FEWEST, MOST = 4, 2000  # looks at the interval from one node to the next
+IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
+TURN = 0.2  # radians of the fastest mode between adjacent evaluation points
+FEWEST, MOST = 4, 2000  # evaluation points in the interval between adjacent nodes
 
 
 class Friction:
@@ -38,7 +38,7 @@ class Friction:
     model, nodes
         As in `History`.
     printed
-        Eqs. 21 and 22 as printed, for every model: with Σ m_i (-g + z''_i), of which the magnitude counts.
+        Use Eqs. 21 and 22 as printed, for every model: with the magnitude of Σ m_i (-g + z''_i).
     """
 
     def __init__(self, model: RockingModel, nodes: Array, *, printed: bool = False) -> None:
@@ -48,22 +48,22 @@ class Friction:
         self._rates = accelerations(model, nodes)
         self._linear = None if model.bouc_wen is not None else ClosedForm(model)
         p = model.properties
-        # By which the frequencies rise at most, once uplifted.
+        # Upper bound of the factor by which uplift increases the frequencies.
         scale = max(math.sqrt(p.pivot(side).i_theta / model.free_inertia(side)) for side in (1, -1))
         self._fastest = self._linear.fastest if self._linear else float(p.omega.max(initial=0.0) * scale)
 
     @cached_property
     def reactions(self) -> Reactions:
-        """Forces at the nodes."""
+        """Ground reactions at the nodes."""
         return self._reactions_at(self._nodes, self._rates)
 
     @cached_property
     def demand(self) -> Array:
-        """|ΣF_x| / ΣF_z at the nodes, shape (n_nodes,); infinite where the ground would have to pull."""
+        """|ΣF_x| / ΣF_z at the nodes, shape (n_nodes,); infinite if the ground would have to pull."""
         return _coefficient(self._angle(self.reactions))
 
     def required(self, window: float = 0.0) -> float:
-        """Largest demand of the continuous motion, without the `window` seconds after each impact.
+        """Return the largest demand of the continuous motion, except for `window` seconds after each impact.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class Friction:
         start = self._after(window)
         looks = np.where(self._places[:, None] >= start, self._looks, -1.0)
         for k in np.flatnonzero((start > 0.0) & (start < 1.0)):
-            # The first look that counts stands in for the one before it, which lies in the window.
+            # The first point outside the window also covers the start of the interval, in place of the point before.
             first = int(np.searchsorted(self._places, start[k]))
             looks[first, k] = max(looks[first, k], self._angle_at(int(k), float(start[k])))
         best = float(looks.max())
@@ -88,7 +88,7 @@ class Friction:
         return float(_coefficient(np.array(max(best, 0.0))))
 
     def sliding_time(self, mu: float) -> float | None:
-        """Time at which the demand first exceeds `mu`, in s; None if it never does.
+        """Return the time at which the demand first exceeds `mu`, in s; None if it never does.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class Friction:
         return None
 
     def _first_above(self, k: int, limit: float) -> float | None:
-        """Place in a stretch at which the angle first exceeds a limit."""
+        """Return the place in an interval at which the angle first exceeds a limit."""
         from scipy.optimize import brentq
 
         for look in range(self._places.size):
@@ -124,7 +124,7 @@ class Friction:
         return None
 
     def _peak(self, k: int, look: int, start: float) -> tuple[float, float]:
-        """Place and angle of the peak about one look at a stretch, no earlier than `start`."""
+        """Return place and angle of the peak near one point of an interval, not before `start`."""
         from scipy.optimize import minimize_scalar
 
         low = max(float(self._places[max(look - 1, 0)]), start)
@@ -138,7 +138,7 @@ class Friction:
 
     @cached_property
     def _stretches(self) -> NDArray[np.intp]:
-        """First nodes of the intervals that last, for events take no time."""
+        """First nodes of the intervals of positive length; events have zero length."""
         return np.flatnonzero(np.diff(self._nodes[:, TIME]) > 0.0)
 
     @cached_property
@@ -147,25 +147,25 @@ class Friction:
         pieces = max(math.ceil(self._fastest * longest / TURN), FEWEST)
         if pieces > MOST:
             raise InputError(
-                f"The friction demand of {self._model.label} needs {pieces} looks a step, above the limit of {MOST}: "
-                f"the model turns or decays at up to {self._fastest:.3g} rad/s, and steps last up to {longest:.3g} s. "
-                "Keep fewer modes, damp them less, or refine the record."
+                f"The friction demand of {self._model.label} needs {pieces} points per step, above the limit of "
+                f"{MOST}: the model vibrates or decays at up to {self._fastest:.3g} rad/s, and steps last up to "
+                f"{longest:.3g} s. Keep fewer modes, damp them less, or refine the record."
             )
         return np.linspace(0.0, 1.0, pieces + 1)
 
     @cached_property
     def _looks(self) -> Array:
-        """Angles at places from 0 to 1 of every stretch, shape (n_places, n_stretches)."""
+        """Angles at places from 0 to 1 of every interval, shape (n_places, n_intervals)."""
         rates = self._rates
         return np.stack([self._angles(self._nodes, rates, float(place)) for place in self._places])
 
     @cached_property
     def _rise(self) -> Array:
-        """By how much a peak in each stretch may pass the looks at both of its sides: eight times a parabola's."""
+        """Bound of the height of a peak in each interval above adjacent points: eight times that of a parabola."""
         return np.abs(np.diff(self._looks, 2, axis=0)).max(axis=0)
 
     def _after(self, window: float) -> Array:
-        """Place in each stretch where the window after the last impact ends: 0 if before it, above 1 if beyond."""
+        """Return the place in each interval where the window after the last impact ends: 0 before, above 1 beyond."""
         time = self._nodes[:, TIME]
         begin, length = time[self._stretches], np.diff(time)[self._stretches]
         impacts = np.append(-np.inf, time[1:][is_impact(self._model, self._nodes)])
@@ -173,12 +173,12 @@ class Friction:
         return np.maximum((last + window - begin) / length, 0.0)
 
     def _angle_at(self, k: int, place: float) -> float:
-        """Angle at a place of one stretch."""
+        """Return the angle at a place of one interval."""
         pair = slice(self._stretches[k], self._stretches[k] + 2)
         return float(self._angles(self._nodes[pair], self._rates[pair], place)[0])
 
     def _angles(self, nodes: Array, rates: Array, place: float) -> Array:
-        """Angles at a place of every interval of positive length."""
+        """Return the angles at a place of every interval of positive length."""
         lasting = np.diff(nodes[:, TIME]) > 0.0
         rows, moved = self._between(nodes, rates, place)
         rows = rows[lasting]
@@ -187,9 +187,10 @@ class Friction:
         return self._angle(self._reactions_at(rows, moved[lasting]))
 
     def _between(self, nodes: Array, rates: Array, place: float) -> tuple[Array, Array | None]:
-        """States at a place of every interval, and their accelerations where no state tells (a hysteretic spring).
+        """Return states at a place of every interval, and accelerations if these do not follow from the states.
 
-        Exact where the model is linear; else a polynomial of fifth degree through both nodes.
+        The latter is the case for a hysteretic spring. Linear models are exact; otherwise a polynomial of fifth degree
+        through both nodes is used.
         """
         layout = self._model.layout
         n = layout.modes
@@ -214,7 +215,7 @@ class Friction:
         return (printed_reactions if self._printed else reactions)(self._model, nodes, rates)
 
     def _angle(self, forces: Reactions) -> Array:
-        """Angle of the reaction from the vertical, from 0 to π: tan μ, and it stays finite where the base lifts off."""
+        """Return the angle of the reaction from the vertical, 0 to π; unlike its tangent μ it is always finite."""
         support = np.abs(forces.vertical) if self._printed else forces.vertical
         return np.arctan2(np.abs(forces.horizontal), support)
 
@@ -225,7 +226,7 @@ def _coefficient(angle: Array) -> Array:
 
 
 def _quintic(value: Array, slope: Array, bend: Array, step: Array, place: float) -> tuple[Array, Array, Array]:
-    """Value, slope and bend between neighbouring rows, from those of the rows, (n, K) each."""
+    """Return value, slope and second derivative between adjacent rows, from those of the rows, (n, K) each."""
     h = step[:, None]
     safe = np.where(h > 0.0, h, 1.0)
     start, end = slope[:-1] * h, slope[1:] * h

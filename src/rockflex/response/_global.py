@@ -1,4 +1,4 @@
-"""What every run is asked for, of the structure and of its floors."""
+"""The quantities computed in every run, for the structure and its floors."""
 
 from rockflex.models import Quantities, RockingModel, floor_quantities, quantities, rotation_by_side
 
@@ -7,10 +7,10 @@ FLOORS = ("story_drift", "story_shear", "total_floor_displacement", "floor_accel
 
 
 def asked_of(model: RockingModel, *, floors: bool = False) -> Quantities:
-    """Return what a run of a model is asked for: `GLOBAL`, the rotation to each side, and `FLOORS` if wanted.
+    """Return the quantities for a run of a model: `GLOBAL`, the rotation to each side, and optionally `FLOORS`.
 
-    The rotations are asked for where the base is not the same to both sides. Accelerations of the floors are no
-    linear functionals in large rotations, and come from the history of an integrated model.
+    The rotations to each side are included if the base is not symmetric. Floor accelerations are not linear functionals
+    of the state for large rotations, so for an integrated model they are computed from its history.
     """
     total = quantities(model, GLOBAL)
     if not model.properties.symmetric:
@@ -21,5 +21,5 @@ def asked_of(model: RockingModel, *, floors: bool = False) -> Quantities:
 
 
 def tracked_of_floors(model: RockingModel) -> tuple[str, ...]:
-    """Names of the floors' quantities whose peaks a run tracks."""
+    """Return the names of the floor quantities whose peaks are tracked during a run."""
     return FLOORS[:-1] if model.integrated else FLOORS

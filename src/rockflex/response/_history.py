@@ -21,22 +21,22 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class History(Value):
-    """States at the record's samples and at both sides of every event; all its arrays are read-only.
+    """States at the samples of the record and before and after every event; all arrays are read-only.
 
     Parameters
     ----------
     model
-        The model that ran.
+        The model of the run.
     nodes
-        Shape (n_nodes, 2N + 5); a row is time (s), side of rocking, ground acceleration (m/s²), D (m), D' (m/s),
-        θ (rad), θ' (rad/s). An event is two rows at the same time. Nonlinear models have four columns more: z of
-        Eq. 38, and the energies damped, put in and taken up by the hysteretic spring (J), which are known where the
-        motion was integrated. Kept as a copy.
+        Shape (n_nodes, 2N + 5); each row contains time (s), side of rocking, ground acceleration (m/s²), D (m), D'
+        (m/s), θ (rad) and θ' (rad/s). An event is two rows at the same time. Nonlinear models have four more columns: z
+        of Eq. 38, and the damped, input and hysteretic energy (J), which are known where the motion was integrated.
+        Stored as a copy.
 
     Raises
     ------
     InputError
-        If `nodes` has another shape, or a value that is not finite.
+        If `nodes` has another shape or a value that is not finite.
     """
 
     model: RockingModel
@@ -54,12 +54,12 @@ class History(Value):
 
     @property
     def time(self) -> Array:
-        """Time of the nodes in s, shape (n_nodes,); an event's time stands twice."""
+        """Time of the nodes in s, shape (n_nodes,); the time of an event occurs twice."""
         return self.nodes[:, TIME]
 
     @property
     def side(self) -> Array:
-        """+1 while rocking about the right pivot (θ > 0), -1 about the left one, 0 in contact."""
+        """Side of rocking: +1 about the right pivot (θ > 0), -1 about the left pivot, 0 in contact."""
         return self.nodes[:, SIDE]
 
     @property
@@ -99,7 +99,7 @@ class History(Value):
 
     @property
     def yielding(self) -> Array:
-        """Z of the Bouc-Wen superstructure (Eq. 38), no unit, shape (n_nodes,); zero where it is elastic."""
+        """Hysteretic variable z of the Bouc-Wen model (Eq. 38), dimensionless, shape (n_nodes,); zero if elastic."""
         if not self.model.integrated:
             return np.zeros(self.nodes.shape[0])
         return self.model.layout.of(self.nodes, self.model.layout.hysteresis)
@@ -113,43 +113,43 @@ class History(Value):
     def total_top_displacement(self) -> Array:
         """Horizontal displacement of the top relative to the ground in m, shape (n_nodes,).
 
-        u_top + h_top θ; in the complete models that of Eq. 3, from its place before the base lifted.
+        u_top + h_top θ; in the complete models by Eq. 3, relative to the position before uplift.
         """
         if self.model.properties.top_height is None:
             raise MissingQuantityError(
-                "The height of the top is not known, so there is no total displacement. Give RockingProperties their "
+                "The height of the top is not known, so there is no total displacement. Give RockingProperties the "
                 "top_height, in m above the base."
             )
         return self._global[:, 3]
 
     @property
     def base_moment(self) -> Array:
-        """M_b = Σ m*_n h*_n ω_n² D_n (or Eq. 37's force) in N m, shape (n_nodes,); -R: and that of mass left out."""
+        """M_b = Σ m*_n h*_n ω_n² D_n (or by Eq. 37) in N m, shape (n_nodes,); models with -R add the mass left out."""
         return self._global[:, 1]
 
     @property
     def base_shear(self) -> Array:
-        """V_b = Σ m*_n ω_n² D_n (or Eq. 37's force) in N, shape (n_nodes,); -R: and that of the mass left out."""
+        """V_b = Σ m*_n ω_n² D_n (or by Eq. 37) in N, shape (n_nodes,); models with -R add the mass left out."""
         return self._global[:, 2]
 
     @property
     def uplift_times(self) -> Array:
-        """Times at which the base left the ground, in s, shape (n_uplifts,)."""
+        """Times of uplift in s, shape (n_uplifts,)."""
         return self.time[1:][(self.side[:-1] == 0.0) & (self.side[1:] != 0.0)]
 
     @property
     def impact_times(self) -> Array:
-        """Times at which the rotation returned to zero, in s, shape (n_impacts,)."""
+        """Times of impact, when the rotation returns to zero, in s, shape (n_impacts,)."""
         return self.time[1:][is_impact(self.model, self.nodes)]
 
     @property
     def story_drift(self) -> Array:
-        """Displacement of each floor less that of the one below, relative to the base, in m, (n_nodes, N_floors)."""
+        """Displacement of each floor minus that of the floor below, relative to the base, in m, (n_nodes, N_floors)."""
         return self._floors[0]
 
     @property
     def story_shear(self) -> Array:
-        """Sum of the elastic forces from each floor up, in N, shape (n_nodes, N_floors)."""
+        """Sum of the elastic forces at and above each floor, in N, shape (n_nodes, N_floors)."""
         return self._floors[1]
 
     @property
@@ -159,7 +159,7 @@ class History(Value):
 
     @property
     def total_floor_displacement(self) -> Array:
-        """Horizontal displacement of each floor relative to the ground, as the top's, in m, (n_nodes, N_floors)."""
+        """Horizontal displacement of each floor relative to the ground, as for the top, in m, (n_nodes, N_floors)."""
         return self._floors[3]
 
     @property
@@ -169,29 +169,29 @@ class History(Value):
 
     @property
     def horizontal_reaction(self) -> Array:
-        """What the ground gives the base across, Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_nodes,).
+        """Horizontal ground reaction Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_nodes,).
 
-        In the simplified models for small rotations, m_tot a + L_0^r θ'' + Σ m* D''.
+        In the simplified models, for small rotations: m_tot a + L_0^r θ'' + Σ m* D''.
         """
         return self._friction.reactions.horizontal
 
     @property
     def vertical_reaction(self) -> Array:
-        """What the ground gives the base upward, Σ m_i (g + z''_i), in N, shape (n_nodes,).
+        """Vertical ground reaction Σ m_i (g + z''_i), in N, positive upwards, shape (n_nodes,).
 
-        Eq. 22 with the sign of the weight mended; as printed, it is less by 2 m_tot g. Tendons add their pull. In the
-        simplified models for small rotations, m_tot (g + s B θ'').
+        This is Eq. 22 with the sign of the weight corrected; as printed, it is smaller by 2 m_tot g. Tendon forces are
+        included. In the simplified models, for small rotations: m_tot (g + s B θ'').
         """
         return self._friction.reactions.vertical
 
     @property
     def friction_demand(self) -> Array:
-        """|ΣF_x| / ΣF_z of Eq. 20, no unit, shape (n_nodes,); infinite where the base would lose contact."""
+        """|ΣF_x| / ΣF_z of Eq. 20, dimensionless, shape (n_nodes,); infinite if the base would lose contact."""
         return self._friction.demand
 
     @cached_property
     def required_friction(self) -> float:
-        """Largest friction demand of the run, between nodes too; infinite if the base would lose contact.
+        """Largest friction demand of the run, including between nodes; infinite if the base would lose contact.
 
         Raises
         ------
@@ -201,14 +201,14 @@ class History(Value):
         return self._friction.required()
 
     def required_friction_excluding_impacts(self, window: float = IMPACT_WINDOW, printed: bool = False) -> float:
-        """Largest friction demand without the instants after each impact, in which it has short spikes.
+        """Return the largest friction demand except for the time after each impact, when it has short spikes.
 
         Parameters
         ----------
         window
-            Seconds after each impact that do not count; with zero all do. If none is left, the result is zero.
+            Seconds after each impact to exclude; with zero nothing is excluded. If no time remains, the result is zero.
         printed
-            Take Eq. 22 as printed, Σ m_i (-g + z''_i) with one sign wrong, by its magnitude; for comparison.
+            Use the magnitude of Eq. 22 as printed, Σ m_i (-g + z''_i), which has a wrong sign; for comparison.
 
         Raises
         ------
@@ -218,7 +218,7 @@ class History(Value):
         return self._friction_by(printed).required(window)
 
     def sliding_time(self, mu: float, printed: bool = False) -> float | None:
-        """Time in s at which the friction demand first exceeds `mu`, where sliding would start; None if it never does.
+        """Return the time in s at which the friction demand first exceeds `mu` and sliding would start, or None.
 
         Parameters
         ----------
@@ -236,12 +236,12 @@ class History(Value):
 
     @cached_property
     def energy(self) -> EnergyLedger:
-        """Where the energy is, where it came from and where it went.
+        """Energy balance of the run; see `EnergyLedger`.
 
         Raises
         ------
         InputError
-            If the model is too fast for the sampling: the ledger's quadratures would be too many.
+            If the model is too fast for the sampling: too many quadratures would be needed.
         """
         return energy_ledger(self.model, self.nodes)
 
@@ -269,9 +269,9 @@ class History(Value):
         floors = self.model.properties.floors
         if floors is None:
             raise MissingQuantityError(
-                "The structure's properties name no floors, so there are no story drifts, story shears, floor "
+                "The properties of the structure include no floors, so there are no story drifts, story shears, floor "
                 "accelerations or floor displacements. Simulate a Frame or a LumpedStructure, or give "
-                "RockingProperties its floors."
+                "RockingProperties their floors."
             )
         histories = floor_histories(self.model, floors, self.nodes)
         for values in histories:

@@ -1,4 +1,4 @@
-"""What one run answers: peaks, when they occurred, how the run ended and, where kept, its history."""
+"""The result of one run: peaks and their times, how the run ended and, optionally, its history."""
 
 import math
 from collections.abc import Callable
@@ -27,7 +27,7 @@ Quantity = TypeVar("Quantity")
 
 
 class _OfHistory(Generic[Quantity]):
-    """A quantity of the history that is the response's own, by the same name."""
+    """A quantity of the history that is available on the response under the same name."""
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -42,7 +42,7 @@ class _OfHistory(Generic[Quantity]):
             return self
         if response.history is None:
             raise MissingQuantityError(
-                f'This response keeps peaks only, so it has no {self.name}. Simulate with output="history".'
+                f'This response contains only peaks, so it has no {self.name}. Simulate with output="history".'
             )
         return getattr(response.history, self.name)
 
@@ -51,14 +51,14 @@ class _OfHistory(Generic[Quantity]):
 class Response(Value):
     """The response of one structure to one motion.
 
-    All peaks are the largest magnitudes of the continuous motion, between samples too. A response that keeps its
-    history has the history's quantities as its own: `time`, `side`, `ground_acceleration`, `modal_displacement`,
+    All peaks are the largest magnitudes of the continuous motion, including those between samples. A response with a
+    history also has the quantities of the history: `time`, `side`, `ground_acceleration`, `modal_displacement`,
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
     `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
     `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `tendon_force`,
     `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
-    `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. One that keeps peaks only has
-    none of them: `hasattr` is False, and to ask for one is an `InputError` that says so.
+    `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. A response with peaks
+    only has none of them: `hasattr` returns False, and accessing one raises an `InputError`.
 
     Parameters
     ----------
@@ -67,42 +67,41 @@ class Response(Value):
     motion
         Name of the ground motion.
     status
-        ``"no_uplift"``, ``"rocking"`` (the base was off the ground) or ``"overturned"`` (|θ| reached π/2, where the
-        run stopped). A run that starts uplifted is rocking from the start.
+        ``"no_uplift"``, ``"rocking"`` (the base was off the ground) or ``"overturned"`` (|θ| reached π/2, which ends
+        the run). A run that starts uplifted counts as rocking.
     max_rotation, time_of_max_rotation
-        Largest |θ| in rad, and when, in s.
+        Largest |θ| in rad, and its time in s.
     max_top_displacement, time_of_max_top_displacement
-        Largest |u_top| relative to the rotating base in m, and when.
+        Largest |u_top| relative to the rotating base in m, and its time.
     max_base_moment, time_of_max_base_moment
-        Largest |M_b| of the elastic forces in N m, and when; zero for a rigid block, which has none.
+        Largest |M_b| of the elastic forces in N m, and its time; zero for a rigid block, which has no elastic forces.
     max_base_shear, time_of_max_base_shear
-        Largest |V_b| of the elastic forces in N, and when; zero for a rigid block.
+        Largest |V_b| of the elastic forces in N, and its time; zero for a rigid block.
     max_total_top_displacement, time_of_max_total_top_displacement
-        Largest horizontal displacement of the top relative to the ground in m, what the rotation of the base carries it
-        included, and when: u_top + h_top θ, in the complete models by Eq. 3. NaN where the height of the top is not
-        known.
+        Largest horizontal displacement of the top relative to the ground in m, including the rotation of the base, and
+        its time: u_top + h_top θ, in the complete models by Eq. 3. NaN if the height of the top is not known.
     max_horizontal_reaction, time_of_max_horizontal_reaction
-        Largest |ΣF_x| that the ground must hold in N (Eq. 21), and when: the base's mass, the damping forces and the
-        mass of modes left out are in it, other than in `max_base_shear`. What an impact gives in an instant is not.
+        Largest horizontal ground reaction |ΣF_x| in N (Eq. 21), and its time. Unlike `max_base_shear` it includes the
+        mass of the base, damping forces and the mass of modes left out. Impulses at impacts are not included.
     min_vertical_reaction, time_of_min_vertical_reaction
-        Least vertical force between base and ground in N (Eq. 22 with the sign of the weight mended), and when.
-        Where it is negative the model pulls the base down, which no ground can: the pivot would lift.
+        Smallest vertical force between base and ground in N (Eq. 22 with the sign of the weight corrected), and its
+        time. If it is negative, the model would need the ground to pull the base down; in reality the pivot would lift.
     max_tendon_force
-        Largest force of any tendon in N; zero without tendons.
+        Largest tendon force in N; zero without tendons.
     tendon_utilisation
-        Largest force over yield force of any tendon; zero without tendons, NaN where no yield force is known. Tendons
-        stay elastic, so a run with more than 1 is not to be trusted.
+        Largest ratio of force to yield force of any tendon; zero without tendons, NaN if no yield force is given.
+        Tendons stay elastic in the model, so results with a ratio above 1 are not valid.
     n_uplifts, n_impacts
-        How often the base left the ground, and how often it came back, during the run. A start off the ground is no
-        uplift, so there may then be one impact more than there are uplifts.
+        Numbers of uplifts and of impacts during the run. An initial rotation does not count as an uplift, so there can
+        be one more impact than uplifts.
     nominal_overturning
-        Whether |θ| passed 0.7 atan(B/h*_1) (Section 3.3).
+        Whether |θ| exceeded 0.7 atan(B/h*_1) (Section 3.3).
     end_time
         Time of the last state in s.
     settled
-        Whether the run ended because nothing more could happen (``free_vibration="settle"``).
+        Whether the run ended at rest (``free_vibration="settle"``).
     floors
-        Peaks above the base, where the structure names its floors and a history was asked for; else None.
+        Floor peaks if the structure has floors and ``output="history"`` was requested; otherwise None.
     history
         The time history, or None with ``output="peaks"``.
     """
@@ -164,7 +163,7 @@ class Response(Value):
     energy = _OfHistory[EnergyLedger]()
 
     def __post_init__(self) -> None:
-        pass  # no arrays of its own to make read-only, and every run of a study makes one
+        pass  # there are no arrays to make read-only, and every run of a study creates a response
 
     def __repr__(self) -> str:
         return (
@@ -174,17 +173,17 @@ class Response(Value):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the run asks of the ground or of its tendons that they cannot do, a sentence each."""
+        """Warnings if the ground or the tendons cannot provide the forces that the run assumes, one text each."""
         return warnings_of(self.model, self.peaks())
 
     def peaks(self) -> dict[str, Any]:
-        """Every scalar by its name, as a row of a table or a JSON object."""
+        """Return every scalar by its name, for a table row or a JSON object."""
         return {name: getattr(self, name) for name in PEAKS}
 
     def save(self, path: str | Path) -> Path:
-        """Write the response, history included, to one ``.npz`` file, and return its path; see `load`.
+        """Write the response including its history to an ``.npz`` file, and return its path; see `load`.
 
-        The suffix is added to a path that has none.
+        The suffix is added if the path has none.
 
         Raises
         ------
@@ -211,7 +210,7 @@ KINDS: dict[str, type] = {name: Response.__annotations__[name] for name in PEAKS
 
 
 def respond(model: RockingModel, motion: str, solution: Solution, *, floors: bool = False) -> Response:
-    """Name what a solver returned; its rows are those of `asked_of`, with those of the floors or without."""
+    """Return the response for a solution whose rows are those of `asked_of`, with or without the floors."""
     p = model.properties
     rotation, peaks = float(solution.peaks[0]), solution.peaks[1:]
     right = left = rotation
@@ -255,6 +254,6 @@ def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> Floor
     found = dict(zip(names, np.split(peaks, len(names)), strict=True))
     floors = model.properties.floors
     if "floor_acceleration" not in found and floors is not None and solution.nodes is not None:
-        # No linear functional in large rotations: the largest stands at a sample or an event.
+        # Not a linear functional for large rotations: take the largest value at samples and events.
         found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.nodes)).max(axis=0)
     return FloorPeaks(**found)

@@ -1,4 +1,4 @@
-"""The forces of the tendons that hold a base down."""
+"""Tendon forces."""
 
 import math
 
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def tendon_forces(model: RockingModel, nodes: Array) -> Array:
-    """Force of each tendon in N, shape (n_nodes, n_tendons); `nodes` as in `History`."""
+    """Return the force of each tendon in N, shape (n_nodes, n_tendons); `nodes` as in `History`."""
     p = model.properties
     rotation = model.layout.of(nodes, model.layout.rotation)
     stretch = stretch_per_arm(model, np.abs(rotation))
@@ -24,9 +24,9 @@ def tendon_forces(model: RockingModel, nodes: Array) -> Array:
 
 
 def largest_tendon_force(model: RockingModel, right: float, left: float) -> tuple[float, float]:
-    """Largest force of any tendon in N, and over its yield force, up to a rotation |θ| to each side.
+    """Return the largest tendon force in N, and the largest ratio to a yield force, up to rotations |θ| to each side.
 
-    Zero without tendons; the latter is NaN where no yield force is known.
+    Both are zero without tendons; the ratio is NaN if no yield force is given.
     """
     p = model.properties
     if not p.tendons:

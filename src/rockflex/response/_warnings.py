@@ -1,11 +1,11 @@
-"""What a run asks of the ground or of its tendons that they cannot do, in words."""
+"""Warnings about forces that the ground or the tendons cannot provide."""
 
 from collections.abc import Mapping
 from typing import Any
 
 
 def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return a sentence or two for each; `peaks` are those of a `Response` by their names."""
+    """Return one text per warning; `peaks` are those of a `Response` by name."""
     found: list[str] = []
     if peaks["min_vertical_reaction"] < 0.0:
         found.append(
@@ -16,6 +16,6 @@ def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
     if peaks["tendon_utilisation"] > 1.0:
         found.append(
             f"A tendon carries {peaks['tendon_utilisation']:.4g} times its yield force. Tendons stay elastic in the "
-            "model, so the run is not to be used."
+            "model, so the results are not valid."
         )
     return tuple(found)

@@ -1,4 +1,4 @@
-"""Solvers: one engine for all models, exact where a phase is linear, and integrated to some ten digits where not."""
+"""Solvers: one engine for all models, exact for linear phases, and integrated to about ten digits for the others."""
 
 from rockflex.solve._pace import Pace, Work, pace_of
 from rockflex.solve._solution import Solution

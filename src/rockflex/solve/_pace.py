@@ -1,8 +1,9 @@
-"""The work of a run, estimated before it and counted while it goes on.
+"""The work of a run, estimated in advance and counted during the run.
 
-Work is told in seconds of one core. It is counted, not timed: so many samples, looks into a sample, power series and
-tried steps, each at its price below. So the same run is refused, or stopped, on every machine and under every load.
-The prices were measured; on a common processor of 2024 a run takes between a third and three times its work.
+Work is expressed in seconds of one core. It is counted rather than timed: samples, looks into a sample, power series
+and attempted steps, each at a fixed price. The same run is therefore rejected or stopped on every machine and under
+every load. The prices were measured; on a typical processor of 2024 a run takes between a third and three times its
+work.
 """
 
 import math
@@ -13,25 +14,25 @@ import numpy as np
 from rockflex.models import RockingModel
 from rockflex.solve.layout import Array
 
-LOOKS = 0.8  # into a sample, for each radian beyond the first by which the fastest vibration turns in it
-SEARCH = 0.1  # looks into a sample whatever turns in it
-TURN = 1.0  # rad of the fastest vibration in a tried step
-RELAXING = 6.0  # e-folds of a hysteresis that flows, in a tried step
+LOOKS = 0.8  # into a sample, per radian beyond the first by which the phase of the fastest vibration advances
+SEARCH = 0.1  # looks into a sample in any case
+TURN = 1.0  # rad of the fastest vibration per attempted step
+RELAXING = 6.0  # e-folds of the relaxing hysteresis per attempted step
 MICRO = 1e-6
 
 
 @dataclass(frozen=True)
 class Work:
-    """About how much work a run is, in s of one core, by what makes it so much.
+    """Estimated work of a run, in s of one core, by cause.
 
     Attributes
     ----------
     samples
-        What every sample takes, fast vibrations aside.
+        Work for every sample, apart from fast vibrations.
     vibration
-        What the fastest vibration takes.
+        Work for the fastest vibration.
     yielding
-        What a spring takes that yields fast.
+        Work for a rapidly yielding spring.
     """
 
     samples: float
@@ -40,29 +41,29 @@ class Work:
 
     @property
     def total(self) -> float:
-        """The work of the run in s; infinite where no number holds it."""
+        """Total work of the run in s; infinite if it overflows."""
         found = self.samples + self.vibration + self.yielding
         return math.inf if math.isnan(found) else found
 
 
 @dataclass(frozen=True)
 class Pace:
-    """What the work of a model grows with.
+    """The properties that determine the work of a model.
 
     Attributes
     ----------
     modes
         Number of modes.
     rows
-        Number of responses whose peaks are wanted.
+        Number of rows whose peaks are computed.
     fastest
-        Its highest circular frequency in rad/s, on the ground or uplifted: on a very narrow base far above ω_N.
+        Highest circular frequency in rad/s, in contact or uplifted; on a very narrow base far above ω_N.
     integrated
-        Whether it is integrated in steps while it rocks.
+        Whether rocking is integrated step by step.
     flow
-        Rate in 1/s at which the hysteresis relaxes while it flows, for each m/s of the spring's velocity.
+        Relaxation rate in 1/s of the flowing hysteresis per m/s of spring velocity.
     dense
-        Whether its rocking phase does not uncouple, so that its bounds are computed point by point.
+        Whether the rocking phase cannot be uncoupled, so that its bounds are computed point by point.
     """
 
     modes: int
@@ -73,7 +74,7 @@ class Pace:
     dense: bool = False
 
     def prices(self, *, history: bool) -> Array:
-        """Return what one sample, one look, one power series and one tried step take, in s, as `Log.work` has them."""
+        """Return the work in s of a sample, a look, a power series and an attempted step, as in `Log.work`."""
         pairs, rows = self.modes + 1, self.rows
         both = rows * pairs
         sample = 0.04 + 0.01 * pairs + 0.0005 * both
@@ -85,9 +86,9 @@ class Pace:
         return MICRO * np.array([sample, look, series, step])
 
     def work(self, samples: float, dt: float, velocity: float = 0.0, *, history: bool) -> Work:
-        """Estimate the work of a run over `samples` steps of `dt` s, rocking all along.
+        """Estimate the work of a run over `samples` steps of `dt` s with continuous rocking.
 
-        `velocity` is the mean speed of the ground in m/s, which matters where a spring yields.
+        `velocity` is the mean ground speed in m/s, which matters for a yielding spring.
         """
         sample, look, _, step = self.prices(history=history).tolist()
         turned = self.fastest * dt
@@ -98,21 +99,21 @@ class Pace:
         return Work(samples * (sample + look * SEARCH), samples * looks + self._tables(turned))
 
     def energy(self, samples: float, dt: float) -> float:
-        """Return about how much work the energies of a run are, after the run, in s."""
+        """Estimate the work in s of computing the energies after the run."""
         turned = self.fastest * dt
         each = 1.5 + 0.5 * self.modes + turned * (3.5 + 0.4 * turned) * (1.0 + self.modes / 10.0)
         return MICRO * samples * each
 
     def _tables(self, turned: float) -> float:
-        """Work of the bounds of a phase that does not uncouple: one product of matrices a point of the finest grid."""
+        """Return the work for the bounds of a dense phase: one matrix product per point of the finest grid."""
         pairs = self.modes + 1
         return MICRO * 2.0 * max(turned, 1.0) * (8.0 + 0.01 * self.rows * pairs**2) if self.dense else 0.0
 
 
 def pace_of(model: RockingModel, rows: int) -> Pace:
-    """Return the pace of a model of which the peaks of so many rows are wanted, the rotation included.
+    """Return the pace of a model for the given number of rows, including the rotation.
 
-    The highest frequency is a bound that needs no eigenvalues and is one per cent too high, or less.
+    The highest frequency is a bound that needs no eigenvalues and is at most one per cent too high.
     """
     p = model.properties
     squares = p.omega**2
@@ -125,12 +126,12 @@ def pace_of(model: RockingModel, rows: int) -> Pace:
 
 
 def _highest_square(squares: Array, moments: Array, inertia: float, stiffness: float) -> float:
-    """Return a bound of the highest ω² of oscillators ω_n², a_n = m*_n h*_n², on a base that rocks.
+    """Return a bound of the highest ω² of oscillators with ω_n² and a_n = m*_n h*_n² on a rocking base.
 
-    The frequencies obey λ (I - Σ a_n) = k + Σ a_n ω_n² + Σ a_n ω_n⁴/(λ - ω_n²). All ω_n of the last sum are put at the
-    highest, which is exact for one mode and leaves a quadratic equation for λ - ω_N².
+    The frequencies obey λ (I - Σ a_n) = k + Σ a_n ω_n² + Σ a_n ω_n⁴/(λ - ω_n²). Setting all ω_n in the last sum to
+    the highest is exact for one mode and gives a quadratic equation for λ - ω_N².
     """
-    free = inertia - float(moments.sum())  # the inertia that is left to rotate: what has no mode
+    free = inertia - float(moments.sum())  # the inertia that belongs to no mode
     highest = float(squares.max(initial=0.0))
     if not free > 0.0:
         return math.inf

@@ -1,4 +1,4 @@
-"""What a solver returns, whichever engine found it."""
+"""The result of a solver."""
 
 from dataclasses import dataclass
 
@@ -10,23 +10,24 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solution:
-    """One run: the peaks of every row, the events' count and, where kept, the nodes of its history.
+    """The result of one run: the peaks of all rows, event counts and, optionally, the nodes of the history.
 
     Parameters
     ----------
     overturned, settled
-        How the run ended: at a quarter turn, or at rest (neither: at the end of the time asked for).
+        How the run ended: at a rotation of π/2, or at rest; neither means at the end of the given time.
     end_time
         Time of the last state, s.
     peaks, peak_times
         Largest magnitude of each row and its time (s), shape (F,); row 0 is the rotation.
     lost_support, time_of_lost_support
-        Largest fall of the vertical reaction below its value at rest, N; negative where it never rested. And when, s.
+        Largest decrease of the vertical reaction below its value at rest in N (negative if it was always above), and
+        its time in s.
     n_uplifts, n_impacts
         Number of uplifts and of impacts.
     nodes
-        One row a node: time, side, ground acceleration, D (N), D' (N), θ, θ'. Both sides of every jump are nodes.
-        None where only peaks were asked for.
+        One row per node: time, side, ground acceleration, D (N), D' (N), θ, θ'. There are nodes before and after every
+        jump. None if only peaks were requested.
     """
 
     overturned: bool

@@ -1,4 +1,4 @@
-"""What is asked of a run, whether it is too much, and what is said where it is."""
+"""The specification of a run, the check of its work against a limit, and the messages if it is exceeded."""
 
 import math
 from dataclasses import dataclass, replace
@@ -11,33 +11,33 @@ from rockflex.models import HEADER, RockingModel
 from rockflex.solve._pace import Pace, Work, pace_of
 
 HISTORY = 4e9  # bytes
-SWIFT = 10.0  # rad in a time step, from which on it matters whether the fastest vibration swings
+SWIFT = 10.0  # rad per time step, beyond which overdamped fast motions are excluded
 UNITS = (("years", 3.2e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 0.0))
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
 
 
 class WorkLimitError(InputError):
-    """A run that would take longer than it may, or whose history would not fit in memory."""
+    """A run that would exceed the work limit, or whose history would not fit in memory."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """One run, as far as its work depends on it.
+    """The parts of a run that determine its work.
 
     Attributes
     ----------
     model
         The model.
     pace
-        What its work grows with.
+        The properties of the model that determine the work.
     record
         Samples of the ground acceleration in m/s², shape (n,).
     dt
-        Their distance in s.
+        Sampling step in s.
     free_vibration
         Seconds after the record; None until settled.
     history
-        Whether every state is kept.
+        Whether every state is stored.
     """
 
     model: RockingModel
@@ -48,7 +48,7 @@ class Task:
     history: bool = False
 
     def work(self) -> Work:
-        """Estimate the work of the run; one that is to settle is taken to need the slowest period for it."""
+        """Estimate the work of the run; the time to settle is taken as the longest period."""
         speed = float(np.abs(np.cumsum(self.record)).mean()) * self.dt if self.pace.flow else 0.0
         samples = self.record.size + self._free / self.dt
         tables = self.pace.work(0.0, self.dt, history=self.history).vibration
@@ -59,9 +59,9 @@ class Task:
 
     @property
     def fastest(self) -> float:
-        """Circular frequency in rad/s of the fastest vibration that swings.
+        """Circular frequency in rad/s of the fastest vibration that is not overdamped.
 
-        On a very narrow base the fastest root is that of a motion damped far beyond swinging, which is no work.
+        On a very narrow base the fastest root belongs to a strongly overdamped motion, which needs no work.
         """
         known = self.pace.fastest
         if self.pace.integrated or known * self.dt < SWIFT:
@@ -69,7 +69,7 @@ class Task:
         return min(known, pace_of(self.model, self.pace.rows).fastest)
 
     def check(self, limit: float | None) -> None:
-        """Raise `WorkLimitError` if the run is about more work than `limit` s (None: any), or its history too large."""
+        """Raise `WorkLimitError` if the work exceeds `limit` s (None: no limit), or the history is too large."""
         if limit is not None:
             work = self.work()
             if work.total > limit:
@@ -81,38 +81,38 @@ class Task:
             self.check_room(self.record.size + (0.0 if self.free_vibration is None else self.free_vibration / self.dt))
 
     def check_room(self, nodes: float) -> None:
-        """Raise `WorkLimitError` if a history of so many nodes takes too much memory."""
+        """Raise `WorkLimitError` if a history with this number of nodes takes too much memory."""
         size = 8.0 * nodes * (HEADER + self.model.layout.core)
         if size > HISTORY:
             raise WorkLimitError(
                 f"The history of {self.model.label} would have {nodes:.3g} states and take {size / 1e9:.3g} GB, but "
-                f'{HISTORY / 1e9:g} GB is the most. Give output="peaks", less free_vibration, or a longer time step.'
+                f'the limit is {HISTORY / 1e9:g} GB. Use output="peaks", less free_vibration, or a longer time step.'
             )
 
     def stopped(self, time: float, limit: float | None) -> tuple[str, str]:
-        """What is said of a run that has done all the work that it may, at `time`, and how to mend it."""
+        """Return the message for a run that reached its work limit at `time`, and the remedy."""
         end = self.record.size * self.dt + (self.free_vibration or 0.0)
         aim = "until it settles" if self.free_vibration is None else f"to {end:.6g} s"
         what = (
             f"{self.model.label} was stopped at {time:.6g} s of a run {aim}: work_limit = {limit:g} s of computing is "
             "used up."
         )
-        return what, f"What makes it long: {self.reason(self.work())} {LIFT}"
+        return what, f"The reason: {self.reason(self.work())} {LIFT}"
 
     def reason(self, work: Work) -> str:
-        """Say what makes the run long, and how to make it shorter."""
+        """Return why the run is long, and how to shorten it."""
         spring = self.model.bouc_wen
         if spring is not None and work.yielding > max(work.vibration, work.samples):
             return (
-                f"its spring, with yield_displacement = {spring.yield_displacement:g} m, yields over and over in every "
-                "time step under so strong a motion. Give a weaker motion (scale), or a larger yield_displacement."
+                f"its spring, with yield_displacement = {spring.yield_displacement:g} m, yields repeatedly in every "
+                "time step under such a strong motion. Give a weaker motion (scale), or a larger yield_displacement."
             )
         if work.vibration > work.samples:
             fastest = self.fastest
             return (
-                f"its fastest vibration, {fastest:.3g} rad/s, turns by {fastest * self.dt:.3g} rad in every time step "
-                f"of {self.dt:g} s. Give fewer modes, a longer period, or a wider base (half_width, or aspect_ratio): "
-                "the narrower the base, the faster it vibrates while it rocks."
+                f"its fastest vibration, {fastest:.3g} rad/s, advances by {fastest * self.dt:.3g} rad in every time "
+                f"step of {self.dt:g} s. Give fewer modes, a longer period, or a wider base (half_width, or "
+                "aspect_ratio): the narrower the base, the faster it vibrates while it rocks."
             )
         if self._free > self.record.size * self.dt:
             asked = f"free_vibration = {self.free_vibration:g} s" if self.free_vibration is not None else (
@@ -129,7 +129,7 @@ class Task:
 
     @property
     def _free(self) -> float:
-        """Seconds of free vibration that are counted on."""
+        """Estimated duration of the free vibration in s."""
         if self.free_vibration is not None:
             return self.free_vibration
         slowest = float(self.model.properties.omega.min(initial=math.inf))
@@ -137,7 +137,7 @@ class Task:
 
 
 def _lasting(seconds: float) -> str:
-    """Seconds, in a unit that suits them."""
+    """Return a duration with a suitable unit."""
     if not math.isfinite(seconds):
         return "endless time"
     unit, size = next(each for each in UNITS if seconds >= 2.0 * each[1])

@@ -1,7 +1,8 @@
-"""What carries the motion over one stretch of time: a power series where the phase is linear, else a Runge-Kutta step.
+"""Advancing the motion over one stretch of time: by a power series in a linear phase, otherwise by a Runge-Kutta step.
 
-A carrier begins a stretch and gives the guard's polynomial over it, then raises the peaks up to where the stretch is
-cut, and puts the motion there. Models without a vector field (`steps` is None) are compiled with the series alone.
+A stretch is started, the polynomial of the guard over it is found, peaks are updated up to the point where the stretch
+ends, and the motion is moved to that point. Models without a vector field (`steps` is None) are compiled with the
+series only.
 """
 
 import math
@@ -36,9 +37,9 @@ from rockflex.solve.peaks import raise_peak, raise_to
 
 @inlined_kernel
 def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) -> float:
-    """Begin a stretch over the `rest` of a linear phase's unit, or of the sample; return its length.
+    """Start a stretch over the `rest` of the unit of a linear phase, or of the sample; return its length.
 
-    It is `step.FAILED` where no step is short enough.
+    The length is `step.FAILED` if no step is short enough.
     """
     if steps is None:
         return rest.length
@@ -51,7 +52,7 @@ def begin(system: System, steps: Integrator | None, at: Progress, rest: Span) ->
 def first_exit(
     system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion
 ) -> tuple[float, int, float]:
-    """Where the phase ends within the stretch, by the polynomial of its guard: see `phase_exit`."""
+    """Return where the phase ends within the stretch, from the polynomial of its guard; see `phase_exit`."""
     if steps is None:
         return exit_of_series(system, at, span, motion)
     if system.phases[at.phase].linear:
@@ -61,7 +62,7 @@ def first_exit(
 
 @inlined_kernel
 def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> tuple[float, int, float]:
-    """Where a linear phase ends, by the power series of its guard."""
+    """Return where a linear phase ends, from the power series of its guard."""
     expand(system, at.phase, motion, span, at.lift)
     row_series(system, at.phase, GUARD, motion, span)
     return phase_exit(system, at, motion.polys)
@@ -69,12 +70,12 @@ def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> 
 
 @inlined_kernel
 def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Stages) -> tuple[float, int, float]:
-    """Where an integrated phase ends, by the polynomial of its guard over the step."""
+    """Return where an integrated phase ends, from the polynomial of its guard over the step."""
     p, polys = at.phase, room.polys
     extend(flow, system.phases[p].side, span, room)
     row_poly(system, p, GUARD, span, room)
     if not math.isnan(at.lift):
-        # θ and θ' start from zero and θ'' from what the guard says, all of them exactly.
+        # θ and θ' start exactly from zero, and θ'' exactly from the value given by the guard.
         polys[GUARD, 0] = polys[GUARD, 1] = 0.0
         polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
     return phase_exit(system, at, polys)
@@ -91,9 +92,9 @@ def move(
     log: Log,
     motion: Motion,
 ) -> None:
-    """Put the motion at the fraction `stop` of the stretch, and raise the peaks up to there.
+    """Move the motion to the fraction `stop` of the stretch, and update the peaks up to there.
 
-    `turns`: a hysteretic spring turns there.
+    `turns` means that a hysteretic spring reverses there.
     """
     if steps is None or system.phases[at.phase].linear:
         move_by_series(system, at, span, stop, log, motion)
@@ -105,7 +106,7 @@ def move(
 
 @inlined_kernel
 def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
-    """Put the motion at `stop` by its power series."""
+    """Move the motion to `stop` by its power series."""
     p = at.phase
     if system.phases[p].side != 0.0:
         raise_peak(motion.polys, GUARD, stop, span, log)
@@ -121,7 +122,7 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
 
 @inlined_kernel
 def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: float, log: Log, room: Stages) -> None:
-    """Put the motion at `stop` by the step's polynomials."""
+    """Move the motion to `stop` by the polynomials of the step."""
     p = at.phase
     side = system.phases[p].side
     if side != 0.0:
@@ -140,7 +141,7 @@ def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: flo
 
 @kernel
 def free_inertia(system: System, steps: Integrator | None, phase: int, state: Array) -> float:
-    """What is left to the rotation while the modes move freely: I_θ - Σ m* h*², and what D adds in complete models."""
+    """Return the inertia of the rotation with free modes: I_θ - Σ m* h*², in complete models plus terms of D."""
     if steps is None:
         return 1.0 / system.base[phase, FLEXIBILITY, 0, 0]
     return inertia_left(steps.flow.field, system.phases[phase].side, state)
@@ -148,7 +149,7 @@ def free_inertia(system: System, steps: Integrator | None, phase: int, state: Ar
 
 @kernel
 def turning_rate(system: System, steps: Integrator | None, phase: int, ground: float, motion: Motion) -> float:
-    """θ'' in a phase that the motion may go on with, at θ = 0."""
+    """Return θ'' at θ = 0 in a phase in which the motion may continue."""
     if steps is None:
         n = system.layout.modes
         moment = system.push[phase, CONSTANT, 0] + system.push[phase, DRIVE, 0] * ground

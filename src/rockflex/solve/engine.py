@@ -1,4 +1,4 @@
-"""A model made ready for records, and the loop that carries a run through, slice by slice."""
+"""A model prepared for runs, and the loop that executes a run slice by slice."""
 
 import math
 from contextlib import AbstractContextManager
@@ -39,18 +39,19 @@ from rockflex.solve.run import run
 from rockflex.solve.status import Status
 
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
-MOST_SAMPLES = 2.0**62  # of free vibration: more than any machine will live to see
-EVENTS = 512  # states of a history between samples that there is room for at first
-SLICE = 0.1  # of work, in s, between two looks at whether the run is to stop
+MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
+EVENTS = 512  # initial room in a history for states between samples
+SLICE = 0.1  # of work in s, between checks whether to stop the run
 TOLERANCE = 1e-10  # relative, of a step
 TREMOR = 0.01  # m/s²
 
-# One each, for each has its own set of types: the former knows no vector field, and is compiled without the integrator.
+# Separate entries, because their argument types differ: the first has no vector field and is compiled without
+# integrator.
 _closed_form, _integrated = Entry(run), Entry(run)
 
 
 def preparing(model: RockingModel) -> AbstractContextManager[None]:
-    """Tell failures of arithmetic, met while an engine is made ready, in terms of the model's parameters."""
+    """Report arithmetic failures during the preparation of an engine in terms of the parameters of the model."""
     return computable(lambda: _described(model))
 
 
@@ -64,38 +65,38 @@ def _described(model: RockingModel) -> str:
 
 
 class Engine:
-    """A model with its phases, compiled as they are met, for every time step met so far.
+    """A model with its phases, compiled as needed, for every time step used so far.
 
     Parameters
     ----------
     model
-        The model's parameters.
+        The model.
     quantities
-        What is asked of the motion: the peaks of these are kept.
+        Quantities whose peaks are computed.
     tolerance
-        Relative error allowed in a step where the motion is integrated.
+        Relative error tolerance per step of integrated phases.
     """
 
     def __init__(self, model: RockingModel, quantities: Quantities, tolerance: float = TOLERANCE) -> None:
         self.model = model
-        self._n_rows = 2 + len(quantities)  # and the guard, which is the rotation, and the loss of support
+        self._n_rows = 2 + len(quantities)  # plus the guard, which is the rotation, and the loss of support
         self._impact, self._failures = impact_of(model.law, model.properties)
         with preparing(model):
             self._phases = CompiledPhases(model, quantities)
-            # Of a model that is integrated all phases are few and cheap; else each waits until it is met.
+            # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
             for side in model.sides if model.integrated else (0,):
                 self._phases.place(model.start(side))
             self._flow = _flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
 
     @cached_property
     def pace(self) -> Pace:
-        """What the work of its runs grows with."""
+        """The properties that determine the work of runs."""
         return pace_of(self.model, self._n_rows)
 
     def task(
         self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None = 0.0, *, history: bool = False
     ) -> Task:
-        """What `run` is asked with these arguments, to estimate its work by."""
+        """Return the task of a run with these arguments, which estimates its work."""
         return Task(self.model, self.pace, acceleration, dt, free_vibration, history)
 
     def run(
@@ -111,20 +112,20 @@ class Engine:
     ) -> Solution:
         """Run one record, then `free_vibration` seconds (None: until settled), from a state [D.., D'.., θ, θ'].
 
-        `work_limit` is the most work in s, see `Pace`, that the run may be and do; None sets no limit. After every
-        `slice_of_work`, in s, the run may be interrupted: by Ctrl-C, or where `stopping_when` says so.
+        `work_limit` is the limit of the estimated and the actual work in s, see `Pace`; None means no limit. After
+        every `slice_of_work`, in s, the run can be interrupted by Ctrl-C or `stopping_when`.
 
         Raises
         ------
         WorkLimitError
-            If the run is estimated to be more work than that.
+            If the estimated work exceeds the limit.
         InputError
-            If the time step is absurd, or the user's impact law fails.
+            If the time step is too long, or a user-defined impact law fails.
         SolverError
-            If impacts accumulate without end, the motion does not settle, an impact would gain energy, or the run has
-            done all the work that it may.
+            If impacts accumulate without end, the motion does not settle, an impact would gain energy, or the run
+            reached its work limit.
         RunStoppedError
-            If it was asked to stop.
+            If the run was stopped from outside.
         """
         task = self.task(acceleration, dt, free_vibration, history=history)
         task.check(work_limit)
@@ -176,7 +177,7 @@ class Engine:
         return self._solution(status, at, dt, log, history=history)
 
     def _place(self, side: int) -> int:
-        """Place of the phase in which a run begins."""
+        """Return the index of the phase in which a run starts."""
         key = self.model.start(side)
         if self._phases.knows(key):
             return self._phases.place(key)
@@ -186,7 +187,7 @@ class Engine:
     def _course(self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
         return Course(
-            record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),  # the type compiled for
+            record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),  # the compiled type
             quiet=QUIET,
             dt=dt,
             free=math.ceil(min(after / dt, MOST_SAMPLES) - 1e-9),
@@ -194,7 +195,7 @@ class Engine:
         )
 
     def _room(self, system: System, state: Array, motion: Motion | None) -> Motion:
-        """Room for the motion; where it was there before, with as many terms as the phases now need."""
+        """Return the work arrays of the motion, enlarged to the number of terms that the phases need."""
         terms = int(system.phases["terms"].max(initial=4))
         if motion is None:
             return motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
@@ -216,7 +217,7 @@ class Engine:
         return carry(system, steps, self._impact, course, at, log, motion)
 
     def _patience(self) -> float:
-        """Longest free vibration that is waited for, s."""
+        """Return the longest free vibration until settled, s."""
         p = self.model.properties
         slowest = float(p.omega.min(initial=math.inf))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
@@ -237,7 +238,7 @@ class Engine:
         )
 
     def _spent(self, at: Progress, dt: float, state: Array, task: Task, work_limit: float | None) -> None:
-        """Raise: the run has done all the work that it may."""
+        """Raise the error of a run that reached its work limit."""
         what, mend = task.stopped(_samples(at) * dt, work_limit)
         self._raise(what, mend, state)
 
@@ -250,7 +251,7 @@ class Engine:
             failure = self._failures.pop()
             raise InputError(f"{Status.BROKEN.what.format(law=law)}: {failure}") from failure
         ended = Status.INFINITE if status >= 0 else Status(status)
-        # A failure inside a sample is told with the sample's end.
+        # A failure inside a sample is reported with the time at the end of the sample.
         time = (_samples(at) + (ended not in (Status.UNSETTLED, Status.INFINITE))) * dt
         self._raise(ended.what.format(label=self.model.label, law=law, time=time), ended.mend, state)
 
@@ -260,12 +261,12 @@ class Engine:
 
 
 def _samples(at: Progress) -> int:
-    """How many samples the run has come."""
+    """Return the number of completed samples."""
     return int(at.offset + at.index)
 
 
 def _flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) -> Flow:
-    """What the integrated phases of a model need beside their rows."""
+    """Return the parameters of the integrated phases of a model."""
     own = VERTICAL if model.complete else LINEAR
     kinds = quantities.kinds if model.complete else np.full(len(quantities), LINEAR, dtype=np.int64)
     return Flow(
@@ -279,7 +280,7 @@ def _flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) ->
 
 
 def _scale(model: RockingModel) -> Array:
-    """Sizes of D, D', θ, θ' and z below which errors do not matter: what a ground acceleration of `TREMOR` does."""
+    """Return the sizes of D, D', θ, θ' and z due to an acceleration of `TREMOR`; smaller errors do not matter."""
     p = model.properties
     rotation = TREMOR / GRAVITY * p.m_tot * p.half_width / p.l0r
     fall = math.sqrt(p.l0r * GRAVITY / p.i_theta)

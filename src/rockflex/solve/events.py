@@ -1,4 +1,4 @@
-"""The motion carried from event to event: the first root of a guard, a jump, and the phase that follows."""
+"""Advancing the motion from event to event: the first root of a guard, a jump, and the next phase."""
 
 import numpy as np
 
@@ -38,14 +38,14 @@ BROKEN, CHATTER, GAINED, STALLED = (
 )
 
 MOST_EVENTS = 20_000  # in one sample
-GAIN = 1e-9  # of the energy before an impact, that rounding may add
-SNAP = 1e-10  # of a unit: an event this close to its end is left to the next unit, which starts on it
-RESUME = 1e-7  # where contact is searched again after a guard that was touched but not passed
+GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
+SNAP = 1e-10  # of a unit: an event this close to the end is handled at the start of the next unit
+RESUME = 1e-7  # where the search in contact resumes after a guard that was touched but not passed
 
 
 @kernel
 def enter(system: System, at: Progress, phase: int) -> None:
-    """Go on in another phase from the present state; in a linear one the walk over the grid goes on at `at.place`."""
+    """Continue in another phase from the present state; in a linear phase the grid is resumed at `at.place`."""
     at.phase, at.tuned, at.stated, at.started = phase, False, True, False
     levels = system.phases[phase].levels
     at.place = min(int(at.begun / unit_of(system, levels)), (1 << levels) - 1)
@@ -53,19 +53,19 @@ def enter(system: System, at: Progress, phase: int) -> None:
 
 @kernel
 def start_crossing(at: Progress, fresh_rows: bool) -> None:
-    """Begin to cross event by event; with `fresh_rows` it is not known which rows may hide a peak."""
+    """Start advancing event by event; with `fresh_rows` it is not known which rows may have a peak."""
     at.crossing, at.fresh_rows, at.onset, at.lift, at.resume = True, fresh_rows, INSIDE, np.nan, 0.0
 
 
 @kernel
 def beside(side: float) -> int:
-    """Place in `System.beside` of the phase with the base on a side."""
+    """Return the offset from `BESIDE` of the phase with the base on a side."""
     return 0 if side == 0.0 else (1 if side > 0.0 else 2)
 
 
 @kernel
 def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) -> int:
-    """Place of the phase that is needed after an event and was not met yet; -1 where none is lacking."""
+    """Return the place of a phase needed after an event but not yet compiled; -1 if there is none."""
     p = at.phase
     if event == LANDS:
         for place in range(3):
@@ -81,10 +81,10 @@ def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) 
 def cross(
     system: System, steps: Integrator | None, impact: Impact, sample: Span, at: Progress, log: Log, motion: Motion
 ) -> int:
-    """Carry the state on from `at.begun`, event by event, to a place on the grid or to the sample's end.
+    """Advance the state from `at.begun`, event by event, to a point of the grid or to the end of the sample.
 
-    It ends on the grid where the phase is linear and nothing else is to happen up to there. Where it pauses, `at` holds
-    all that it must know to go on.
+    It ends on the grid if the phase is linear and no further event occurs before that point. If it pauses, `at`
+    contains everything needed to continue.
     """
     while at.begun < sample.length:
         if log.work[LEFT] < 0.0 or room_left(log) < 0:
@@ -199,9 +199,9 @@ def cross(
 def land(
     system: System, steps: Integrator | None, impact: Impact, phase: int, ground: float, motion: Motion
 ) -> tuple[int, float]:
-    """Apply the impact law; return status and the side to which the rotation goes on, 0 for contact.
+    """Apply the impact law; return the status and the side on which the rotation continues, 0 for contact.
 
-    It stays in contact once its next excursion would be too short to count.
+    The base stays in contact if the next excursion would be too short to count.
     """
     state, spin_place = motion.state, system.layout.spin
     before = kinetic_energy(impact, free_inertia(system, steps, phase, state), state)

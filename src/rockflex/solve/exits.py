@@ -1,4 +1,4 @@
-"""Where a phase ends within a stretch of time: the first root of its guard's polynomial, over [0, 1]."""
+"""The end of a phase within a stretch of time: the first root of the polynomial of its guard over [0, 1]."""
 
 import numpy as np
 
@@ -7,18 +7,18 @@ from rockflex.solve.layout import GUARD, Array, Progress, System
 from rockflex.solve.polynomials import evaluate, first_descent
 
 LOW, HIGH = 0, 1  # the limits of a guard
-BEFORE = -1.0  # the phase was over before it began
+BEFORE = -1.0  # the phase ended before it started
 
-# How a rotation that starts within the stretch leaves zero: the order of its first term there.
+# How a rotation leaves zero at the start of the stretch: the order of its first nonzero term.
 INSIDE, PASSING, LIFTED, TOUCHED = 0, 1, 2, 3
 
 
 @kernel
 def phase_exit(system: System, at: Progress, polys: Array) -> tuple[float, int, float]:
-    """Where the guard first passes a limit, which one, and by how much it then lies beyond it.
+    """Return where the guard first passes a limit, which limit, and by how much it then exceeds it.
 
-    The place is inf where it passes none. It is `BEFORE` where a moment in contact is beyond a limit to begin with, or
-    where a rotation never left zero.
+    The place is inf if no limit is passed. It is `BEFORE` if a moment in contact exceeds a limit from the start, or if
+    a rotation never left zero.
     """
     p = at.phase
     side, low, high = system.phases[p].side, system.phases[p].low, system.phases[p].high
@@ -45,7 +45,7 @@ def phase_exit(system: System, at: Progress, polys: Array) -> tuple[float, int, 
 
 @kernel
 def band_exit(polys: Array, low: float, high: float, start: float) -> tuple[float, int]:
-    """Where the guard reaches one of two limits (Eq. 24), and which."""
+    """Return where the guard reaches one of two limits (Eq. 24), and which one."""
     work = polys.shape[0] - 1
     exit_at, exit_bound = np.inf, LOW
     play = 0.0
@@ -67,7 +67,7 @@ def band_exit(polys: Array, low: float, high: float, start: float) -> tuple[floa
 
 @kernel
 def landing(polys: Array, side: float, zeros: int) -> float:
-    """Where the rotation returns to zero; `BEFORE` where it never left. Its `zeros` at 0 are divided out."""
+    """Return where the rotation returns to zero; `BEFORE` if it never left. Its `zeros` at 0 are divided out."""
     work, terms = polys.shape[0] - 1, polys.shape[1]
     for k in range(terms):
         polys[work, k] = side * polys[GUARD, k + zeros] if k + zeros < terms else 0.0
@@ -80,7 +80,7 @@ def landing(polys: Array, side: float, zeros: int) -> float:
 
 @kernel
 def overturning(polys: Array, side: float, limit: float) -> float:
-    """Where the rotation reaches its limit, a quarter turn; inf where it does not."""
+    """Return where the rotation reaches its limit of π/2; inf if it does not."""
     work, reach = polys.shape[0] - 1, 0.0
     for k in range(polys.shape[1]):
         reach += abs(polys[GUARD, k])

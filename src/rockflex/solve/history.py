@@ -1,15 +1,15 @@
-"""The states of a history: every sample, and both sides of every jump."""
+"""Storing the states of a history: at every sample, and before and after every jump."""
 
 from rockflex._kernel import kernel
 from rockflex.models import GROUND, HEADER, SIDE, TIME
 from rockflex.solve.layout import KEPT, Array, Log
 
-MARGIN = 8  # states that a stretch between two pauses may add, at most
+MARGIN = 8  # largest number of states added between two pauses
 
 
 @kernel
 def keep(log: Log, time: float, side: float, ground: float, state: Array) -> None:
-    """Add a state to the history, where there is one."""
+    """Add a state to the history, if there is one."""
     if log.history.shape[0] == 0:
         return
     k = log.tally[KEPT]
@@ -23,7 +23,7 @@ def keep(log: Log, time: float, side: float, ground: float, state: Array) -> Non
 
 @kernel
 def room_left(log: Log) -> int:
-    """How many states may still be kept before the history must grow."""
+    """Return how many more states can be stored before the history must be enlarged."""
     if log.history.shape[0] == 0:
         return MARGIN
     return log.history.shape[0] - log.tally[KEPT] - MARGIN

@@ -1,4 +1,4 @@
-"""Stopping runs from outside: whoever started them can ask for it, and they end within a slice of their work."""
+"""Stopping runs from outside: they end within one slice of work after the request."""
 
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ _ASKED: ContextVar[Callable[[], bool] | None] = ContextVar("asked", default=None
 
 
 class RunStoppedError(Exception):
-    """A run that was stopped because it was asked to: no failure of the model, and no result."""
+    """A run that was stopped on request: not a failure of the model, but no result either."""
 
 
 @contextmanager
@@ -25,7 +25,7 @@ def stopping_when(asked: Callable[[], bool]) -> Generator[None]:
 
 
 def asked_to_stop() -> Callable[[], bool]:
-    """Return the question that the runs of this thread are stopped by, for those that it starts in other threads."""
+    """Return the stop condition of the runs in this thread, to pass on to other threads."""
     return _ASKED.get() or _never
 
 
@@ -34,12 +34,12 @@ def _never() -> bool:
 
 
 def check_interruption() -> None:
-    """Check whether the present run was asked to stop.
+    """Check whether the present run should stop.
 
     Raises
     ------
     RunStoppedError
-        If it was.
+        If it should.
     """
     asked = _ASKED.get()
     if asked is not None and asked():

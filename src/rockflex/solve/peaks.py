@@ -1,22 +1,22 @@
-"""The peaks of a run, raised wherever the motion is looked at."""
+"""The peaks of a run, updated wherever the motion is examined."""
 
 from rockflex._kernel import kernel
 from rockflex.solve.layout import GUARD, Array, Log, Motion, Span, System
 from rockflex.solve.polynomials import bend, evaluate, first_descent
 
 ROUNDING = 1e-16
-MOST_TURNS = 64  # of a row within a unit, in which no mode turns by more than a radian
+MOST_TURNS = 64  # extremes of a row within a unit, in which the phase of no mode advances by more than a radian
 
 
 @kernel
 def size_of(value: float, row: int, log: Log) -> float:
-    """What the peak of a row is the largest of: the magnitude, or for the last row the loss of support."""
+    """Return the size whose largest value is the peak: the magnitude; for the last row the loss of support."""
     return value if row == log.peaks.size - 1 else abs(value)
 
 
 @kernel
 def raise_row(row: int, value: float, time: float, log: Log) -> None:
-    """Note one value of a row."""
+    """Update the peak of a row with one value."""
     size = size_of(value, row, log)
     if size > log.peaks[row]:
         log.peaks[row] = size
@@ -25,14 +25,14 @@ def raise_row(row: int, value: float, time: float, log: Log) -> None:
 
 @kernel
 def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
-    """Note the values at the end of a step in which nothing hid."""
+    """Update the peaks with the values at the end of a step without hidden peaks."""
     for f in range(0 if side != 0.0 else 1, values.size):
         raise_row(f, values[f], time, log)
 
 
 @kernel
 def raise_peak(polys: Array, row: int, stop: float, span: Span, log: Log) -> None:
-    """Raise a row's peak to the largest size of its polynomial over [0, stop]; the last polynomial is for work."""
+    """Update the peak of a row from its polynomial over [0, stop]; the last polynomial is a work array."""
     time, step = span.time, span.length
     reach = 0.0
     for k in range(polys.shape[1]):
@@ -46,7 +46,7 @@ def raise_peak(polys: Array, row: int, stop: float, span: Span, log: Log) -> Non
         log.times[row] = time + (step * stop if last >= first else 0.0)
     if max(first, last) + bend(polys, row, stop) * stop * stop / 8.0 <= log.peaks[row]:
         return
-    # From rest a row grows like a power of time; the slope's zeros at 0 are divided out, else they are found for ever.
+    # From rest a row grows like a power of time; zeros of the slope at 0 are divided out, or they would be found again.
     work, terms, zeros = polys.shape[0] - 1, polys.shape[1], 1
     while zeros < terms - 1 and abs(polys[row, zeros]) <= ROUNDING * reach:
         zeros += 1
@@ -65,7 +65,7 @@ def raise_peak(polys: Array, row: int, stop: float, span: Span, log: Log) -> Non
 
 @kernel
 def raise_to(system: System, phase: int, row: int, ground: float, time: float, log: Log, motion: Motion) -> None:
-    """Raise a row's peak to its size in the present state: all that a row without an inner peak needs."""
+    """Update the peak of a row with the present state, which is sufficient without a peak inside the stretch."""
     rows, moving = system.plain_rows, system.plain_rows.shape[2] - 2
     value = rows[phase, row, moving] * ground + rows[phase, row, moving + 1]
     for i in range(moving):
@@ -75,6 +75,6 @@ def raise_to(system: System, phase: int, row: int, ground: float, time: float, l
 
 @kernel
 def raise_to_state(system: System, phase: int, ground: float, time: float, log: Log, motion: Motion) -> None:
-    """Raise all peaks to the present state."""
+    """Update all peaks with the present state."""
     for f in range(GUARD if system.phases[phase].side != 0.0 else 1, log.peaks.size):
         raise_to(system, phase, f, ground, time, log, motion)

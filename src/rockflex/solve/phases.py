@@ -1,4 +1,4 @@
-"""The phases of a model, compiled as they are met, and their tables for a time step."""
+"""The phases of a model, compiled as they are needed, and their tables for a time step."""
 
 from threading import RLock
 
@@ -10,22 +10,22 @@ from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
 from rockflex.solve.layout import BESIDE, EVENT, FOLLOWING, FOLLOWS, LINKS, Array, System
 
-MOST_LEVELS = 8  # that there is room for before they are needed
-CAPACITY = 3  # phases that there is room for at first: contact, and rocking on either side
+MOST_LEVELS = 8  # largest number of levels allocated in advance
+CAPACITY = 3  # initial number of phases: contact, and rocking on either side
 
 
 class CompiledPhases:
-    """All phases of one model that were met so far.
+    """All phases of one model that were needed so far.
 
-    Threads may run on the same phases: a phase is entered under a lock, at a place that no run knows of before it is
-    whole.
+    Threads may share the phases: a phase is entered under a lock, at an index that no run uses before the entry is
+    complete.
 
     Parameters
     ----------
     model
         The model.
     quantities
-        What is asked of the motion.
+        Quantities whose peaks are computed.
     """
 
     def __init__(self, model: RockingModel, quantities: Quantities) -> None:
@@ -35,12 +35,12 @@ class CompiledPhases:
         self._phases: list[Phase] = []
         self._bases: list[Basis | None] = []
         self._rows: list[Array] = []
-        self._twins: list[int] = []  # place of a phase whose motion differs by constant forces alone; -1
+        self._twins: list[int] = []  # index of a phase that differs only in constant forces; -1
         self._places: dict[Key, int] = {}
         self._systems: dict[float, tuple[System, int]] = {}  # by time step, with the number of phases entered
 
     def place(self, key: Key) -> int:
-        """Place of a phase in the tables; it is compiled if it was not met before."""
+        """Return the index of a phase in the tables; it is compiled if necessary."""
         known = self._places.get(key)
         if known is not None:
             return known
@@ -57,7 +57,7 @@ class CompiledPhases:
             known = None if twin < 0 else self._bases[twin]
             if known is None:
                 known = basis_of(model, phase.arrow, model.accelerations(key))
-            # Every phase takes the constant forces in the same way: the bits must not depend on which was met first.
+            # All phases include constant forces in the same way, so that the order of compilation does not affect bits.
             basis = with_constant(known, phase.arrow) if phase.arrow.free else known
         self._phases.append(phase)
         self._bases.append(basis)
@@ -67,13 +67,13 @@ class CompiledPhases:
         return self._places[key]
 
     def knows(self, key: Key) -> bool:
-        """Whether a phase was met before."""
+        """Return whether a phase is already compiled."""
         return key in self._places
 
     def meet(self, phase: int, lacking: int) -> None:
-        """Compile the phase that a run lacks: `Progress.lacking`, at a place of `beside` or, after those, `follows`.
+        """Compile the phase that a run needs, given by `Progress.lacking`: an offset from `BESIDE` or `FOLLOWS`.
 
-        Of two that may follow both are compiled: a base that has lifted on one side will mostly lift on the other.
+        If two phases can follow, both are compiled: a base that lifts on one side usually lifts on the other.
         """
         known = self._phases[phase]
         if lacking < FOLLOWING:
@@ -84,14 +84,14 @@ class CompiledPhases:
                 self.place(leads.key)
 
     def known_system(self, dt: float) -> System | None:
-        """Tables of all phases met so far, for one time step; None where they are not ready."""
+        """Return the tables of all phases compiled so far, for one time step; None if they are not ready."""
         system, entered = self._systems.get(dt, (None, 0))
         return system if entered == len(self._phases) else None
 
     def system(self, dt: float, fastest: float) -> System:
-        """Tables of all phases met so far, for one time step; `fastest` bounds the frequencies that are still to come.
+        """Return the tables of all phases compiled so far, for one time step.
 
-        In rad/s; the tables only grow where the bound was too low.
+        `fastest` is a bound for the frequencies of later phases in rad/s; if it is too low, the tables are enlarged.
         """
         with self._lock:
             known = self.known_system(dt)
@@ -117,13 +117,13 @@ class CompiledPhases:
             if basis is not None:
                 check_step(basis, dt)
             put_phase(system, p, self._phases[p], basis, self._rows[p], self._twins[p])
-        # Runs that go on with the tables as they were must not come to a phase that they made no room for.
+        # Runs that continue with the previous tables must not reach a phase for which they have no room.
         system = system._replace(links=self._links(system.links.shape[0]))
         self._systems[dt] = system, count
         return system
 
     def _alike(self, arrow: Arrow) -> int:
-        """Place of a phase whose motion differs by constant forces alone; -1 where there is none."""
+        """Return the index of a phase that differs only in constant forces; -1 if there is none."""
         for place, other in enumerate(self._phases):
             if other.arrow is not None and other.arrow.alike(arrow):
                 return place
@@ -131,16 +131,16 @@ class CompiledPhases:
 
     @property
     def dense(self) -> bool:
-        """Whether some phase met so far does not uncouple, so that its bounds are computed point by point."""
+        """Whether some phase so far cannot be uncoupled, so that its bounds are computed point by point."""
         return any(basis.dense for basis in self._bases if basis is not None)
 
     @property
     def fastest(self) -> float:
-        """Largest eigenvalue magnitude of the linear phases met so far, rad/s."""
+        """Largest eigenvalue magnitude of the linear phases so far, rad/s."""
         return max((basis.fastest for basis in self._bases if basis is not None), default=0.0)
 
     def _links(self, capacity: int) -> NDArray[np.int64]:
-        """Return what happens at the limits of every phase, and which phase leads to which, as far as they were met."""
+        """Return the events at the limits of every phase, and the phases that follow, as far as they are compiled."""
         links = np.full((capacity, LINKS), -1, dtype=np.int64)
         for p, phase in enumerate(self._phases):
             for place in range(3):
@@ -151,5 +151,5 @@ class CompiledPhases:
         return links
 
     def _beside(self, phase: Phase, place: int) -> Key:
-        """The same branches, with the base in contact, on its right pivot or on its left one."""
+        """Return the same branches with the base in contact, on its right pivot or on its left pivot."""
         return ((0, 1, -1)[place], *phase.key[1:])

@@ -1,4 +1,4 @@
-"""Polynomials as the carriers make them, one a row: their values, and their first root on an interval."""
+"""Polynomials, one per row: their values, and their first root in an interval."""
 
 import math
 
@@ -7,13 +7,13 @@ import numpy as np
 from rockflex._kernel import kernel
 from rockflex.solve.layout import Array
 
-SHIFT = 40  # steps after which a polynomial is developed anew
-MOST_STEPS = 10_000  # a few do; only a root touched to a high order takes more, and then this close is close enough
+SHIFT = 40  # steps after which a polynomial is expanded about a new point
+MOST_STEPS = 10_000  # usually a few suffice; only a multiple root takes more, and this is then close enough
 
 
 @kernel
 def evaluate(polys: Array, row: int, u: float) -> tuple[float, float]:
-    """Value and derivative of the polynomial `polys[row]` at `u` (Horner)."""
+    """Return value and derivative of the polynomial `polys[row]` at `u` (Horner)."""
     value = polys[row, polys.shape[1] - 1]
     slope = 0.0
     for k in range(polys.shape[1] - 2, -1, -1):
@@ -24,7 +24,7 @@ def evaluate(polys: Array, row: int, u: float) -> tuple[float, float]:
 
 @kernel
 def bend(polys: Array, row: int, u: float) -> float:
-    """Bound of the second derivative's magnitude over [0, u]."""
+    """Return a bound of the magnitude of the second derivative over [0, u]."""
     total = 0.0
     for k in range(polys.shape[1] - 1, 1, -1):
         total = total * u + k * (k - 1.0) * abs(polys[row, k])
@@ -33,7 +33,7 @@ def bend(polys: Array, row: int, u: float) -> float:
 
 @kernel
 def rootless(value: float, slope: float, curvature: float) -> float:
-    """Length from a point on over which a function, not negative there, cannot fall below zero."""
+    """Return the length over which a function that is not negative at a point cannot fall below zero."""
     root = math.sqrt(max(slope * slope + 2.0 * curvature * value, 0.0))
     if slope < 0.0:
         return 2.0 * value / (root - slope)
@@ -42,12 +42,11 @@ def rootless(value: float, slope: float, curvature: float) -> float:
 
 @kernel
 def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
-    """First point of [start, stop] where a polynomial, not negative at `start`, falls to zero; inf if none.
+    """Return the first point in [start, stop] where a polynomial, not negative at `start`, falls to zero, or inf.
 
-    Each step is the longest over which the bound of the second derivative forbids a root. Near a simple root
-    that is Newton's step, always from the safe side, so no root can be passed over. Where that is slow, roots or turns
-    crowd ahead, and the bound has lost touch with the polynomial: `polys[row]` is then developed anew about the point
-    reached.
+    Each step is the longest over which the bound of the second derivative excludes a root. Near a simple root this is
+    Newton's step, always from the safe side, so no root can be missed. If convergence is slow, roots or extremes are
+    close together and the bound is too pessimistic: `polys[row]` is then expanded about the current point.
     """
     curvature = bend(polys, row, stop)
     base, u = 0.0, start
@@ -58,7 +57,7 @@ def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
         step = rootless(value, slope, curvature)
         if u + step >= stop:
             return np.inf
-        # Where a polynomial is flat at first, the bound over what lies just ahead is much the lesser one.
+        # If the polynomial is flat at first, a bound over a short range ahead is much smaller.
         ahead = min(max(2.0 * u, u + 8.0 * step), stop)
         near = rootless(value, slope, bend(polys, row, ahead))
         if u + near >= stop and ahead == stop:

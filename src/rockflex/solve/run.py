@@ -1,8 +1,8 @@
-"""One run: the record, then free vibration for as long as it is asked for, or until nothing more can happen.
+"""One run: the record, then free vibration for the specified time, or until no further event or peak is possible.
 
-The one event loop. In each phase the motion is carried over whole samples as long as nothing can hide in them; a sample
-that may hide something is walked on a grid; and a step of that in which a guard may be passed is crossed event by
-event. The kernel returns wherever its slice of work ends, and when called again goes on there, bit for bit.
+This is the event loop. In each phase the motion is advanced over whole samples while no event or peak can occur inside
+them. A sample in which one may occur is traversed on a grid, and a step of the grid in which a guard may be passed is
+advanced event by event. The kernel returns when its slice of work is used up, and continues there, bit for bit.
 """
 
 import math
@@ -38,15 +38,15 @@ from rockflex.solve.status import Status
 
 ENDED, SETTLED, UNSETTLED = int(Status.ENDED), int(Status.SETTLED), int(Status.UNSETTLED)
 
-BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: a stretch begins; over whole samples; a closer look at one
-BLOCK = 4096  # samples that are carried at once, at most
+BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: start of a stretch; whole samples; closer look at one sample
+BLOCK = 4096  # largest number of samples advanced at once
 
 
 @python_kernel
 def run(
     system: System, steps: Integrator | None, impact: Impact, course: Course, at: Progress, log: Log, motion: Motion
 ) -> int:
-    """Carry the motion on from where it is; return how the run ended, or why it stops in between."""
+    """Continue the motion; return how the run ended, or why it is interrupted."""
     rate = 1.0 / course.dt
     while True:
         remaining = course.free + course.record.size - 1 - at.offset
@@ -90,7 +90,7 @@ def run(
 def begin_piece(
     system: System, steps: Integrator | None, course: Course, ground: float, at: Progress, log: Log, motion: Motion
 ) -> bool:
-    """Prepare for a stretch of acceleration; True where a run that is to settle has done so."""
+    """Prepare for a stretch of acceleration; return True if a run until settled has settled."""
     time, side = at.offset * course.dt, system.phases[at.phase].side
     at.started = False
     if system.phases[at.phase].linear:
@@ -99,7 +99,7 @@ def begin_piece(
         at.tuned = True
         if at.offset > 0 and course.settle and side == 0.0 and settled(system, at, log, motion):
             return True
-    if ground != at.last:  # the start, or a jump of the acceleration at the record's end
+    if ground != at.last:  # the start, or a jump of the acceleration at the end of the record
         keep(log, time, side, ground, motion.state)
         if steps is None:
             raise_to_state(system, at.phase, ground, time, log, motion)
@@ -113,7 +113,7 @@ def begin_piece(
 
 @kernel
 def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
-    """True where free vibration in contact can neither lift the base again nor raise a peak."""
+    """Return True if free vibration in contact can neither lift the base again nor increase a peak."""
     p, pairs = at.phase, motion.norms.size
     for f in range(log.peaks.size):
         bound = 0.0
@@ -129,7 +129,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
 def carry(
     system: System, steps: Integrator | None, piece: Array, dt: float, at: Progress, log: Log, motion: Motion
 ) -> bool:
-    """Carry the motion over whole samples; True where the next one needs a closer look."""
+    """Advance the motion over whole samples; return True if the next one needs a closer look."""
     if steps is not None and not system.phases[at.phase].linear:
         return step_through(system, steps.flow, piece, dt, at, log, steps.room)
     first = at.index

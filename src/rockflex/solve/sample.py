@@ -1,4 +1,4 @@
-"""The closer look: one sample walked on a dyadic grid, in the largest steps in which nothing can hide."""
+"""The closer look: one sample traversed on a dyadic grid, in the largest steps without hidden events or peaks."""
 
 from rockflex._kernel import inlined_kernel
 from rockflex.models import Impact
@@ -24,11 +24,11 @@ def cross_sample(
     log: Log,
     motion: Motion,
 ) -> int:
-    """Carry the motion over the rest of a sample, at whose end the ground's acceleration becomes `last`.
+    """Advance the motion over the rest of a sample, at the end of which the ground acceleration is `last`.
 
-    In a linear phase `motion.w` holds the motion at `at.place` of the grid. A state that is `at.stated` is as true as
-    `w` or truer: a rotation that has just left zero is far below the rounding of a modal sum. The walk depends on the
-    guard alone, not on which peaks are asked for, so neither does the motion.
+    In a linear phase `motion.w` contains the motion at `at.place` of the grid. If `at.stated` is true, the state is at
+    least as accurate as `w`: a rotation that has just left zero is far below the rounding error of a modal sum. The
+    steps depend only on the guard, not on which peaks are requested, and so does the motion.
     """
     while at.begun < sample.length:
         p = at.phase

@@ -1,19 +1,19 @@
-"""How a run ends, or why it stops in between: every status is its own message."""
+"""How a run ends, or why it is interrupted; every failure includes its message."""
 
 from enum import IntEnum
 
 
 class Status(IntEnum):
-    """What the kernels return; those below zero are failures, with what is said of them and how to mend it.
+    """The status returned by kernels; negative values are failures, with a message and a remedy.
 
-    The texts know `label` of the model, `law` of its impacts, and `time` in s.
+    The placeholders in the texts are the `label` of the model, the impact `law`, and the `time` in s.
     """
 
     what: str
     mend: str
 
     def __new__(cls, value: int, what: str = "", mend: str = "") -> "Status":
-        """Make a member that is a number to the kernels."""
+        """Create a member that is a number in kernels."""
         member = int.__new__(cls, value)
         member._value_ = value
         member.what, member.mend = what, mend
@@ -33,11 +33,11 @@ class Status(IntEnum):
     GAINED = (
         -3,
         "The impact law {law} returns energy in the sample before {time:.6g} s.",
-        "A law can only lose energy: mend its `after`, or lower its restitution.",
+        "A law can only lose energy: correct its `after`, or lower its restitution.",
     )
     STALLED = (
         -4,
-        "The motion of {label} cannot be followed in the sample before {time:.6g} s: no step is short enough.",
+        "The motion of {label} cannot be integrated in the sample before {time:.6g} s: no step is short enough.",
         "Check the parameters.",
     )
     UNSETTLED = (

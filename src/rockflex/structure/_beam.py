@@ -22,55 +22,57 @@ from rockflex.structure._sections import LumpedMasses, Sections, on_beam
 
 _N_ELEMENTS = 1000
 _MOST_ELEMENTS = 10_000
-_RITZ_SHAPES = 5  # at least; as many as Eq. 36 has
+_RITZ_SHAPES = 5  # at least: the number in Eq. 36
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Beam(Assembled, Value):
     """A cantilever with distributed mass on a rigid base that can rock.
 
-    What varies along the height is a number, a function of heights (n,) in m that returns values (n,), or a table
-    ``(heights, values)`` from the base to the top, linear between its rows; two rows at one height are a jump.
-    The formulas are those of Silva & Stojadinović 2024, Table 2, with integrals for the sums, and Eq. 33 for I_θ.
+    A property that varies along the height is given as a number, as a function of heights (n,) in m that returns values
+    (n,), or as a table ``(heights, values)`` from the base to the top, linear between its rows; two rows at the same
+    height are a jump. The formulas are those of Silva & Stojadinović 2024, Table 2, with integrals in place of sums,
+    and Eq. 33 for I_θ.
 
     Attributes
     ----------
     height : float
         Height H in m.
     mass : number, function or table
-        Mass a unit length m(z) in kg/m, positive.
+        Mass per unit length m(z) in kg/m, positive.
     bending_stiffness : number, function or table
         EI(z) in N m², positive.
     half_width : float
-        Half the width B of the base in m.
+        Half-width B of the base in m.
     damping_ratio : ndarray, shape (n_modes,)
-        Damping ratio of each mode in [0, 1); one number stands for all modes.
+        Damping ratio of each mode in [0, 1); a single number applies to all modes.
     shear_stiffness : number, function or table, optional
-        GA_s(z) in N, positive (Timoshenko's beam). Default: no deformation in shear.
+        GA_s(z) in N, positive (Timoshenko beam). Default: no shear deformation.
     rotary_inertia : number, function or table, optional
-        Rotary inertia of the section a unit length, ρI, in kg m, zero or positive. Default: none.
+        Rotary inertia of the section per unit length, ρI, in kg m, zero or positive. Default: none.
     lumped_masses : LumpedMasses, optional
-        Bodies along the height.
+        Masses attached along the height.
     base_mass : float
         Mass m_0 of the base in kg, zero or positive.
     rotary_in_modes : bool
-        Whether the rotary inertia takes part in the modes too (the consistent choice), or in I_θ alone, as
-        the paper has it for its chimney.
+        Whether the rotary inertia is included in the modes too (the consistent choice), or only in I_θ, as in the
+        paper's chimney.
     method : {"fe", "ritz"}
-        Finite elements, or Rayleigh-Ritz. Rayleigh-Ritz has no deformation in shear.
+        Finite elements or Rayleigh-Ritz. Rayleigh-Ritz neglects shear deformation.
     n_modes : int
-        Number of modes that the structure has, 200 at most.
+        Number of modes, at most 200.
     n_elements : int, optional
-        Equal finite elements, from `n_modes` to 10 000; cut further where needed. Default: 1000. For "fe" alone.
+        Number of equal finite elements, from `n_modes` to 10 000; they are subdivided where needed. Default: 1000. Only
+        for "fe".
     shapes : RitzShapes, optional
-        At least `n_modes` shapes. Default: those of Eq. 36, five or `n_modes`. For "ritz" alone.
+        At least `n_modes` shapes. Default: five shapes of Eq. 36, or `n_modes` if that is more. Only for "ritz".
     sections : Sections
-        What was given, as profiles along the height; not an argument.
+        The given properties as profiles along the height; not an argument.
 
     Raises
     ------
     InputError
-        If a value is outside its range, a table does not reach the top, or an argument does not go with the method.
+        If a value is outside its range, a table does not reach the top, or an argument does not apply to the method.
     """
 
     height: float
@@ -145,7 +147,7 @@ class Beam(Assembled, Value):
         for name, other in lacking[self.method].items():
             if getattr(self, name) is not None:
                 raise InputError(
-                    f'{name} does not go with method="{self.method}". Leave it out, or take method="{other}".',
+                    f'{name} does not apply to method="{self.method}". Leave it out, or use method="{other}".',
                     field=name,
                 )
         if self.n_elements is not None:
@@ -154,7 +156,8 @@ class Beam(Assembled, Value):
             found = instance("shapes", self.shapes, RitzShapes).check(self.height)
             if found < self.n_modes:
                 raise InputError(
-                    f"shapes must hold at least n_modes = {self.n_modes} shapes, but it holds {found}.", field="shapes"
+                    f"shapes must contain at least n_modes = {self.n_modes} shapes, but it contains {found}.",
+                    field="shapes",
                 )
 
 

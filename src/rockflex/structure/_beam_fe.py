@@ -11,25 +11,25 @@ from rockflex.structure._sections import Sections
 
 Float = NDArray[np.float64]
 
-_POINTS = 4  # exact for cubic shapes with mass and stiffness of the first degree
-_HEAVIEST = 1e40  # body, of the mass of the beam: further up rounding decides whether its modes are found
+_POINTS = 4  # exact for cubic shapes with linearly varying mass and stiffness
+_HEAVIEST = 1e40  # times the mass of the beam: for a heavier body, rounding decides whether the modes are found
 
 
 def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassNormalisedModes:
     """Return the first modes of the beam by two-node elements with consistent mass.
 
-    The elements are cubic (Hermite); with shear stiffness they are those of Timoshenko's beam whose deflection is
-    cubic and rotation quadratic, linked so that a uniform element is exact under end forces. The error of a frequency
-    falls with the fourth power of the element length, and with shear stiffness, since the shear strain of an element
-    is constant, with the second. Elements are cut at stations, lumped masses and kinks of tables.
+    The elements are cubic (Hermite). With shear stiffness they are Timoshenko elements with cubic deflection and
+    quadratic rotation, linked so that a uniform element is exact under end forces. The error of a frequency falls with
+    the fourth power of the element length; with shear stiffness it falls with the second power, because the shear
+    strain of an element is constant. Elements are divided at stations, lumped masses and kinks of tables.
 
-    The stiffness is kept as K = A^T A: a cantilever is statically determinate, so A is square, and K^-1 = A^-1 A^-T
-    keeps the digits that a factor of K would lose as the fourth power of the number of elements.
+    The stiffness is stored as K = A^T A: a cantilever is statically determinate, so A is square. K^-1 = A^-1 A^-T
+    retains the digits that factorising K would lose, which grow with the fourth power of the number of elements.
 
     Raises
     ------
     LinAlgError
-        If a body is too heavy for the beam that carries it, or the modes cannot be found.
+        If a body is too heavy for the beam, or the modes cannot be found.
     """
     stations = np.linspace(0.0, beam.height, N_STATIONS)
     lumped = beam.lumped
@@ -78,7 +78,7 @@ def _check_bodies(beam: Sections, mass: float) -> None:
 
 
 def _elements(beam: Sections, nodes: Float) -> tuple[Float, Float, float]:
-    """Return the roots of the stiffness (E, 2, 4), the masses (E, 4, 4), and ∫ of the rotary inertia."""
+    """Return the stiffness factors (E, 2, 4), the mass matrices (E, 4, 4), and the integral of the rotary inertia."""
     z, w = gauss(nodes, _POINTS)
     length = np.diff(nodes)
     bending, mass, rotary = beam.bending_stiffness.at(z), beam.mass.at(z), beam.rotary_at(z)
@@ -107,7 +107,8 @@ def _elements(beam: Sections, nodes: Float) -> tuple[Float, Float, float]:
         ],
         axis=-1,
     ) / whole  # fmt: skip
-    # Against its chord an element deforms in two ways, kept apart: the mean of the end rotations and their difference.
+    # Relative to its chord an element has two independent deformations: the mean of the end rotations and their
+    # difference.
     ways = np.stack([(12.0 * x - 6.0) / (1.0 + f), one], axis=-1) / span[..., None]
     natural = np.einsum("eg,egi,egj->eij", w * bending, ways, ways)
     if shear is not None:

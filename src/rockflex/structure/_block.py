@@ -11,7 +11,7 @@ from rockflex.modal import RockingProperties
 
 @computable("The inertia of a block with this half_diagonal and mass")
 def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> RockingProperties:
-    """Properties of a homogeneous rectangular block, for the models "rigid" and "rigid-C".
+    """Return the properties of a homogeneous rectangular block, for the models "rigid" and "rigid-C".
 
     I_θ = 4/3 m R², B = R sin α, L_0^r = m R cos α; the frequency parameter is p² = 3 g/(4 R). Housner's coefficient
     1 - 2 m B²/I_θ is 1 - 1.5 sin² α (Housner 1963, Bull. Seism. Soc. Am. 53(2), 403-417).
@@ -23,7 +23,7 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
     half_diagonal
         R in m, positive.
     mass
-        m in kg, positive; rotations do not depend on it.
+        m in kg, positive; the rotations do not depend on it.
 
     Raises
     ------

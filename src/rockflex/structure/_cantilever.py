@@ -1,4 +1,4 @@
-"""A uniform cantilever with a body at its tip."""
+"""A uniform cantilever with a mass at its tip."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,34 +19,33 @@ _N_MODES = 5
 
 @dataclass(frozen=True, eq=False)
 class CantileverWithTipMass(Assembled, Value):
-    """A uniform column that carries a body at its tip, clamped to a base that can rock.
+    """A uniform column with a mass at its tip, clamped to a base that can rock.
 
     Attributes
     ----------
     height : float
         Height H of the tip in m.
     tip_mass : float
-        Mass of the body in kg.
+        Mass at the tip in kg.
     bending_stiffness : float
         EI of the column in N m².
     base_mass : float
         Mass m_0 of the base in kg, zero or positive.
     half_width : float
-        Half the width B of the base in m.
+        Half-width B of the base in m.
     damping_ratio : float or ndarray, shape (n_modes,)
-        Damping ratio of every mode, or of each, in [0, 1).
+        Damping ratio in [0, 1): one number for all modes, or one per mode.
     mass_per_length : float
         Mass of the column in kg/m, zero or positive.
     tip_inertia : float
-        Rotary inertia of the body about its own axis in kg m², zero or positive.
+        Rotary inertia of the tip mass about its own axis in kg m², zero or positive.
     n_modes : int, optional
-        Number of modes that the structure has. Default: 5; without mass in the column all of them, one, or two with
-        `tip_inertia`.
+        Number of modes. Default: 5; for a massless column all its modes: one, or two with `tip_inertia`.
 
     Raises
     ------
     InputError
-        If a value is outside its range, or there are not as many modes.
+        If a value is outside its range, or the structure has fewer modes than `n_modes`.
     """
 
     height: float
@@ -72,7 +71,7 @@ class CantileverWithTipMass(Assembled, Value):
 
     @cached_property
     def built(self) -> Beam | ModalStructure:
-        """The beam that the column is, or the body alone on two freedoms where the column has no mass."""
+        """The column as a beam; for a massless column, the tip mass with two degrees of freedom."""
         if self.mass_per_length > 0.0:
             return Beam(
                 height=self.height,

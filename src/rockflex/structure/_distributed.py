@@ -1,4 +1,4 @@
-"""Integrals along the height, and forces gathered at stations."""
+"""Integrals along the height, and distributed forces lumped at stations."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,13 +6,13 @@ from numpy.typing import NDArray
 Float = NDArray[np.float64]
 
 N_STATIONS = 21
-"""Stations of a structure with distributed mass, base and top included."""
+"""Number of stations of a structure with distributed mass, including base and top."""
 
-_APART = 1e-9  # of the height: closer nodes are one
+_APART = 1e-9  # of the height: nodes closer than this are merged
 
 
 def mesh(height: float, n_elements: int, *others: Float) -> Float:
-    """Return `n_elements` equal elements from 0 to `height`, cut at the other heights too, as nodes in m."""
+    """Return the nodes in m of `n_elements` equal elements from 0 to `height`, divided at the other heights too."""
     nodes = np.unique(np.concatenate([np.linspace(0.0, height, n_elements + 1), *others]))
     nodes = nodes[(nodes >= 0.0) & (nodes <= height)]
     apart = np.append(True, np.diff(nodes) > _APART * height)
@@ -29,10 +29,10 @@ def gauss(nodes: Float, n_points: int) -> tuple[Float, Float]:
 
 
 def gathered(stations: Float, z: Float, forces: Float, moments: Float) -> Float:
-    """Return forces at the stations (S, n) with the resultants of forces and moments (P, n) at heights z (P,).
+    """Return forces at the stations (S, n) statically equivalent to forces and moments (P, n) at heights z (P,).
 
-    A force is shared by the stations around it as by the ends of a simple beam, and a moment becomes a couple there:
-    the sum of the forces, and that of their moments about the base, stay as they were.
+    A force is distributed to the two adjacent stations like the reactions of a simply supported beam, and a moment
+    becomes a couple there, so the sum of the forces and the sum of their moments about the base do not change.
     """
     panel = np.clip(np.searchsorted(stations, z, side="right") - 1, 0, stations.size - 2)
     length = np.diff(stations)[panel][:, None]

@@ -1,4 +1,4 @@
-"""A structure that does not stand in the middle of its base."""
+"""A structure placed off the middle of its base."""
 
 from dataclasses import dataclass, replace
 from typing import SupportsIndex
@@ -12,11 +12,11 @@ from rockflex.structure._based import Based, is_structure
 
 @dataclass(frozen=True, init=False)
 class Eccentric:
-    """A structure whose masses lie on an axis beside the middle of its base.
+    """A structure whose masses lie on a vertical axis off the middle of its base.
 
-    It turns about the right edge of the base at the distance B - e from the axis, and about the left one at B + e:
-    inertia and resisting moment differ from side to side, and the base lifts sooner where it is short of weight. The
-    modes on a fixed base stay as they are. A structure known by its `RockingProperties` alone takes its `eccentricity`
+    It rotates about the right edge of the base, at a distance B - e from the axis, or about the left edge, at B + e.
+    Inertia and resisting moment differ between the two sides, and the base lifts sooner about the nearer edge. The
+    modes on a fixed base do not change. For a structure given only by its `RockingProperties`, set `eccentricity`
     there.
 
     Attributes
@@ -24,13 +24,13 @@ class Eccentric:
     structure
         Any structure: a `Frame`, a `TaperedTower`, a `Restrained` one ...
     eccentricity : float
-        How far the axis stands to the right of the middle of the base, in m; smaller than half its width, to either
-        side.
+        Distance e of the axis to the right of the middle of the base in m; negative to the left. Its magnitude is
+        smaller than B.
 
     Raises
     ------
     InputError
-        If the eccentricity is no number or not within the base, or `structure` is none.
+        If the eccentricity is not a number or not within the base, or `structure` is not a structure.
     """
 
     structure: Based
@@ -40,16 +40,16 @@ class Eccentric:
         if not is_structure(structure):
             raise InputError(
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
-                "take their eccentricity themselves: RockingProperties(..., eccentricity=...).",
+                "have an eccentricity of their own: RockingProperties(..., eccentricity=...).",
                 field="structure",
             )
         vars(self).update(structure=structure, eccentricity=finite("eccentricity", eccentricity, "m"))
-        self.rocking(1)  # whether the axis stands within the base, and tendons do
+        self.rocking(1)  # checks that the axis and the tendons are within the base
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all of them."""
+        """Return the first `n_modes` modes on a fixed base (default: all)."""
         return self.structure.modal(n_modes)
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all."""
+        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all)."""
         return replace(self.structure.rocking(n_modes), eccentricity=self.eccentricity)

@@ -1,4 +1,4 @@
-"""A frame whose stories differ."""
+"""A frame with different stories."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,7 +21,7 @@ Float = NDArray[np.float64]
 class FishBone(Assembled, Value):
     """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
 
-    The column stands for all columns of a story and the half beams for all beams of a floor; members are
+    The column represents all columns of a story and the half beams all beams of a floor. Members are
     inextensible, masses are lumped at the floors, and the rotations of the floors are condensed out.
 
     Attributes
@@ -33,14 +33,14 @@ class FishBone(Assembled, Value):
     column_stiffness : ndarray, shape (N,)
         EI_i of each story in N m²: the sum over its columns.
     beam_stiffness : ndarray, shape (N,)
-        Rotational stiffness of the beams of each floor in N m/rad, from zero to infinity, both included. A bay that
-        bends antisymmetrically gives 12 EI_b/L_b; half beams on rollers give the same.
+        Rotational stiffness of the beams of each floor in N m/rad, from zero to infinity, both included. It is
+        12 EI_b/L_b for a bay in antisymmetric bending; half beams on rollers give the same.
     base_mass : float
         Mass m_0 of the base in kg, zero or positive.
     half_width : float
-        Half the width B of the base in m.
+        Half-width B of the base in m.
     damping_ratio : float or ndarray, shape (N,)
-        Damping ratio of every mode, or of each, in [0, 1).
+        Damping ratio in [0, 1): one number for all modes, or one per mode.
 
     Raises
     ------
@@ -49,8 +49,8 @@ class FishBone(Assembled, Value):
 
     Notes
     -----
-    A number in place of an array holds for all stories. With equal stories, EI_i = 2 EI_c and
-    beam_stiffness = 12 ρ EI_i/L_i it is `Frame`.
+    A number in place of an array applies to all stories. With equal stories, EI_i = 2 EI_c and
+    beam_stiffness = 12 ρ EI_i/L_i it is the same as `Frame`.
     """
 
     story_heights: Float
@@ -77,7 +77,7 @@ class FishBone(Assembled, Value):
         _check_signs("story_heights", lengths, "m")
         if n == 0:
             raise InputError(
-                "story_heights must hold at least one height in m, but none was given.", field="story_heights"
+                "story_heights must contain at least one height in m, but none was given.", field="story_heights"
             )
         vars(self).update(
             story_heights=lengths,
@@ -97,7 +97,7 @@ class FishBone(Assembled, Value):
 
     @cached_property
     def lumped(self) -> LumpedStructure:
-        """The structure that the frame assembles: floor masses, condensed stiffness, floor heights."""
+        """The assembled structure: floor masses, condensed stiffness, floor heights."""
         return LumpedStructure(
             self.masses,
             condensed_stiffness(self.story_heights, self.column_stiffness, self.beam_stiffness),
@@ -115,7 +115,7 @@ class FishBone(Assembled, Value):
 
 @computable("The stiffness of a frame with these story heights, column and beam stiffnesses")
 def condensed_stiffness(story_heights: Float, column_stiffness: Float, beam_stiffness: Float) -> Float:
-    """Lateral stiffness of the floors in N/m, shape (N, N), rotations condensed out; arguments as in `FishBone`."""
+    """Return the condensed lateral stiffness of the floors in N/m, shape (N, N); arguments as in `FishBone`."""
     n = story_heights.size
     sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
     for i, (length, stiffness) in enumerate(zip(story_heights, column_stiffness, strict=True)):
@@ -123,7 +123,7 @@ def condensed_stiffness(story_heights: Float, column_stiffness: Float, beam_stif
         sway[ends] += 12.0 * stiffness / length**3 * np.array([[1.0, -1.0], [-1.0, 1.0]])
         coupling[ends] += 6.0 * stiffness / length**2 * np.array([[1.0, 1.0], [-1.0, -1.0]])
         bending[ends] += 2.0 * stiffness / length * np.array([[2.0, 1.0], [1.0, 2.0]])
-    turning = np.flatnonzero(np.isfinite(beam_stiffness)) + 1  # a rigid beam holds its floor
+    turning = np.flatnonzero(np.isfinite(beam_stiffness)) + 1  # rigid beams prevent the floor from rotating
     rotational = bending[np.ix_(turning, turning)] + np.diag(beam_stiffness[turning - 1])
     tied = coupling[1:, turning]
     stiffness = sway[1:, 1:] - tied @ np.linalg.solve(rotational, tied.T)

@@ -1,4 +1,4 @@
-"""A regular frame, from the shear building to a pair of cantilevers."""
+"""A regular frame, from a pair of cantilevers to a shear building."""
 
 import math
 from dataclasses import dataclass
@@ -23,14 +23,14 @@ Float = NDArray[np.float64]
 class Frame(Assembled):
     """A frame of one bay and N equal stories, with columns clamped to a base that can rock.
 
-    Columns and beams are inextensible, each of uniform stiffness, and alike in all stories; the masses are
-    lumped at the floors. The stiffness is scaled to the period asked for, and the base made as wide as the
-    aspect ratio asks (Silva & Stojadinović 2024, Section 3.2 and Table 1).
+    Columns and beams are inextensible, of uniform stiffness, and the same in all stories; the masses are
+    lumped at the floors. The stiffness is scaled to give the specified period, and the base width follows from the
+    aspect ratio (Silva & Stojadinović 2024, Section 3.2 and Table 1).
 
     Attributes
     ----------
     n_stories : int
-        Number of stories N, 1000 at most.
+        Number of stories N, at most 1000.
     story_height : float
         Column length L_c in m; floor i is at i L_c.
     story_mass : float
@@ -53,10 +53,10 @@ class Frame(Assembled):
 
     Notes
     -----
-    Sway is antisymmetric, so the two joints of a floor turn by the same angle φ and a beam of stiffness
-    EI_b/L_b bends in double curvature with the end moments 6 (EI_b/L_b) φ: to that rotation it adds
-    12 EI_b/L_b = 12 ρ (2 EI_c/L_c). Two columns give 2 EI_c/L_c times the usual terms of a clamped bar. In
-    units of 2 EI_c/L_c³, with φ L_c for the rotations, only ρ is left of the beam: neither the width of
+    Sway is antisymmetric, so the two joints of a floor rotate by the same angle φ and a beam of stiffness
+    EI_b/L_b bends in double curvature with end moments 6 (EI_b/L_b) φ. It adds the rotational stiffness
+    12 EI_b/L_b = 12 ρ (2 EI_c/L_c). The two columns contribute 2 EI_c/L_c times the usual terms of a clamped bar. In
+    units of 2 EI_c/L_c³, with φ L_c for the rotations, the beam enters only through ρ: neither the width of
     the bay nor EI_b matters by itself.
     """
 
@@ -94,13 +94,13 @@ class Frame(Assembled):
 
     @property
     def half_width(self) -> float:
-        """Half the width B = h*_1/aspect_ratio of the base in m."""
+        """Half-width B = h*_1/aspect_ratio of the base in m."""
         _, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
         return float(unit_modes.effective_height[0]) * self.story_height / self.aspect_ratio
 
     @cached_property
     def lumped(self) -> LumpedStructure:
-        """The structure that the frame assembles: floor masses, condensed stiffness, floor heights."""
+        """The assembled structure: floor masses, condensed stiffness, floor heights."""
         unit_stiffness, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
         given = f"story_mass = {self.story_mass:g} kg and period = {self.period:g} s"
         with computable(f"The stiffness of a frame with {given}"):

@@ -1,4 +1,4 @@
-"""What a rigid motion of the base does to each freedom of a structure."""
+"""How each degree of freedom of a structure moves with the base."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,23 +14,23 @@ from rockflex.structure._matrix_files import Given, numbers
 
 Float = NDArray[np.float64]
 Heights = Given | Mapping[int, float]
-"""Height of every freedom in m, or a map from the index of each that translates horizontally to its height."""
+"""Height of every degree of freedom in m, or a map {index: height} of those that translate horizontally."""
 
 
 @dataclass(frozen=True, eq=False)
 class Freedoms:
-    """Freedoms that translate horizontally, and those that rotate in the plane; others stay still.
+    """The degrees of freedom that translate horizontally or rotate in the plane; the base does not move the others.
 
     Attributes
     ----------
     translates : ndarray of int, shape (T,)
-        Indices of the freedoms that translate, by rising height.
+        Indices of the horizontal translations, in order of height.
     heights : ndarray, shape (T,)
         Their heights above the base in m.
     rotates : ndarray of int, shape (R,)
-        Indices of the rotations.
+        Indices of the rotations in the plane.
     size : int
-        Number N of freedoms.
+        Number N of degrees of freedom.
     """
 
     translates: NDArray[np.intp]
@@ -40,7 +40,7 @@ class Freedoms:
 
     @classmethod
     def of(cls, heights: Heights, rotations: Sequence[SupportsIndex], size: int) -> "Freedoms":
-        """Return the freedoms of a structure with `size` of them.
+        """Return the degrees of freedom of a structure that has `size` of them.
 
         Raises
         ------
@@ -55,27 +55,29 @@ class Freedoms:
             where = list(range(values.size))
             if values.size != size:
                 raise InputError(
-                    f"heights must hold one height for each of the {size} freedoms, but {values.size} were given. "
-                    "Where some do not translate horizontally, give a map {index: height} of those that do.",
+                    f"heights must contain one height for each of the {size} degrees of freedom, but {values.size} "
+                    "were given. If some do not translate horizontally, give a map {index: height} of those that do.",
                     field="heights",
                 )
         if not isinstance(rotations, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
-                f"rotations must be a sequence of indices of freedoms, but {type(rotations).__name__} was given.",
+                f"rotations must be a sequence of indices of degrees of freedom, but {type(rotations).__name__} was "
+                "given.",
                 field="rotations",
             )
         turning = [whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
         twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
         if twice:
             raise InputError(
-                f"rotations must name each freedom once, and none that has a height, but {twice[0]} is named twice. "
-                "Give heights as a map {index: height} of the freedoms that translate horizontally.",
+                f"rotations must list each degree of freedom once, and none that has a height, but {twice[0]} is "
+                "listed twice. Give heights as a map {index: height} of the degrees of freedom that translate "
+                "horizontally.",
                 field="rotations",
             )
         if values.min(initial=np.inf) <= 0.0 or values.size == 0:
             lowest = f"{values.min():g} m" if values.size else "none"
             raise InputError(
-                f"heights must be positive, in m above the base, at least one of them, but {lowest} was given. "
+                f"heights must contain at least one height in m above the base, all positive, but {lowest} was given. "
                 "A mass at the base belongs to base_mass.",
                 field="heights",
             )
@@ -83,18 +85,19 @@ class Freedoms:
         return cls(np.array(where, dtype=np.intp)[order], values[order], np.array(turning, dtype=np.intp), size)
 
     def kept(self, keep: NDArray[np.bool_]) -> "Freedoms":
-        """Return the freedoms of the structure that keeps only some of its own.
+        """Return the degrees of freedom of the structure reduced to some of them.
 
         Raises
         ------
         InputError
-            If none of those that translate is kept.
+            If none of the remaining ones translates.
         """
         number = np.cumsum(keep) - 1
         moves, turns = keep[self.translates], keep[self.rotates]
         if not moves.any():
             raise InputError(
-                "mass must move with at least one freedom that translates horizontally, but all have none.",
+                "mass must be assigned to at least one degree of freedom that translates horizontally, but it is zero "
+                "for all of them.",
                 field="mass",
             )
         return Freedoms(
@@ -104,8 +107,8 @@ class Freedoms:
     def modes(self, omega: Float, shapes: Float, mass: Float) -> MassNormalisedModes:
         """Return the modes, with φ^T M φ = 1, and their participation; `mass` is (N, N).
 
-        Freedoms at one height are one station, with their mean ordinate and the sum of their forces. Rotations
-        with mass carry moments at heights that are not known: there are no forces at stations then.
+        Degrees of freedom at the same height form one station, with their mean ordinate and the sum of their forces. If
+        a rotation has mass, its moment acts at an unknown height, so there are no forces at stations.
         """
         translation, rotation = np.zeros(self.size), np.zeros(self.size)
         translation[self.translates] = 1.0

@@ -1,4 +1,4 @@
-"""Structures from the matrices, or from the modes, of any finite element program."""
+"""Structures from the matrices or the modes of any finite element program."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,7 +18,7 @@ from rockflex.structure._modal_structure import ModalStructure
 
 Float = NDArray[np.float64]
 
-_ORTHOGONAL = 1e-5  # room for printed digits
+_ORTHOGONAL = 1e-5  # tolerance for values with few printed digits
 
 
 def from_matrices(
@@ -32,47 +32,47 @@ def from_matrices(
     damping_ratio: ArrayLike,
     n_modes: SupportsIndex | None = None,
 ) -> ModalStructure:
-    """Return a structure from its mass and stiffness matrices, base held.
+    """Return a structure from its mass and stiffness matrices on a fixed base.
 
-    A unit rotation of the base moves a freedom at height h by h, and a rotation by 1; the ground moves the freedoms
-    that translate horizontally. Others, out of the plane or vertical on the axis, are moved by neither. Freedoms
-    without mass are condensed out exactly.
+    A unit rotation of the base displaces a horizontal degree of freedom at height h by h, and a rotational one by 1;
+    the ground displaces only the horizontal ones. Neither affects the others, such as out-of-plane degrees of freedom
+    or vertical ones on the axis. Massless degrees of freedom are condensed out exactly.
 
     Parameters
     ----------
     mass : array_like (N,) or (N, N), or path
-        Masses or mass matrix in kg (kg m² for rotations), without the base; rows of zeros are allowed.
+        Masses or mass matrix in kg (kg m² for rotations), excluding the base; rows of zeros are allowed.
     stiffness : array_like (N, N), or path
         Symmetric positive definite stiffness in N/m (N m/rad for rotations).
     heights : array_like (N,), path, or mapping
-        Height of each freedom above the base in m, where all translate horizontally; else a map
-        ``{index: height}`` of those that do. The highest with mass is the top.
+        Height of each degree of freedom above the base in m, if all translate horizontally; otherwise a map
+        ``{index: height}`` of those that do. The highest one with mass is the top.
     rotations : sequence of int
-        Indices of the rotations in the plane, positive as the base's: a positive one moves what is above it along
-        the positive translations.
+        Indices of the rotations in the plane, with the sign of the base rotation: a positive rotation displaces the
+        structure above it in the direction of the positive translations.
     base_mass, half_width : float
-        Mass m_0 of the base in kg, zero or positive, and half its width B in m.
+        Mass m_0 of the base in kg, zero or positive, and its half-width B in m.
     damping_ratio : array_like
-        Damping ratio in [0, 1) of every mode, or one for each mode kept.
+        Damping ratio in [0, 1): one number for all modes, or one per retained mode.
     n_modes : int, optional
-        Number of modes that the structure has, the lowest first, counting those that take part. Default: all.
+        Number of modes to retain, the lowest first, not counting modes that are not excited. Default: all.
 
     Returns
     -------
     ModalStructure
-        Its properties have `floors` where no rotation has mass.
+        Its properties include `floors` if no rotation has mass.
 
     Raises
     ------
     InputError
-        If a file cannot be read, the shapes do not fit, a matrix is not symmetric positive (definite), or a mode has
+        If a file cannot be read, the shapes do not match, a matrix is not symmetric positive (definite), or a mode has
         no coordinate D_n.
 
     Notes
     -----
-    Paths end in ``.npz`` (an array named as the argument), ``.mtx`` or ``.csv``. The matrices are taken as dense. Mass
-    that couples a freedom to the base itself, as consistent matrices have it in the lowest elements, is not in the
-    matrices of a held base and so is not seen: use lumped masses, or short elements at the base.
+    Paths end in ``.npz`` (an array with the name of the argument), ``.mtx`` or ``.csv``. The matrices are treated as
+    dense. Mass that couples a degree of freedom to the base itself, as consistent mass matrices have in the lowest
+    elements, is missing from the matrices of a fixed base: use lumped masses, or short elements at the base.
     """
     k_given = numbers("stiffness", stiffness)
     size = np.shape(k_given)[0] if dimensions(k_given) == 2 else 1
@@ -104,12 +104,12 @@ def from_modes(
     damping_ratio: ArrayLike,
     n_modes: SupportsIndex | None = None,
 ) -> ModalStructure:
-    """Return a structure from its modes on a fixed base, of any normalisation, and its mass.
+    """Return a structure from its mass and its modes on a fixed base, in any normalisation.
 
     Parameters
     ----------
     omega : array_like, shape (n,), or path
-        Circular frequencies in rad/s, rising.
+        Circular frequencies in rad/s, in ascending order.
     shapes : array_like, shape (N, n), or path
         Mode shapes as columns, orthogonal with respect to the mass.
     mass, heights, rotations, base_mass, half_width, damping_ratio, n_modes
@@ -122,13 +122,14 @@ def from_modes(
     Raises
     ------
     InputError
-        If a file cannot be read, the shapes do not fit, the frequencies fall, or two mode shapes are not orthogonal.
+        If a file cannot be read, the shapes do not match, the frequencies are not in ascending order, or two mode
+        shapes are not orthogonal.
     """
     w = finite_vector("omega", numbers("omega", omega), "rad/s")
     falls = np.flatnonzero(np.diff(w, prepend=0.0) < 0.0)
     if w.size == 0 or w[0] <= 0.0 or falls.size:
         raise InputError(
-            f"omega must hold positive frequencies in rad/s that do not fall, but {w} was given. Sort the modes.",
+            f"omega must contain positive frequencies in rad/s in ascending order, but {w} was given. Sort the modes.",
             field="omega",
         )
     given = numbers("shapes", shapes)
@@ -142,7 +143,8 @@ def from_modes(
     if not (own > 0.0).all():
         i = int(np.argmin(own))
         raise InputError(
-            f"Mode shape {i + 1} moves no mass (φ^T M φ = {own[i]:.3g}). Check the order of the freedoms in both.",
+            f"Mode shape {i + 1} moves no mass (φ^T M φ = {own[i]:.3g}). Check that both "
+            "have the same order of degrees of freedom.",
             field="mass",
         )
     cosines = products / np.sqrt(np.outer(own, own)) - np.eye(w.size)
@@ -150,8 +152,8 @@ def from_modes(
         i, j = sorted(int(each) for each in np.unravel_index(np.argmax(np.abs(cosines)), cosines.shape))
         raise InputError(
             f"The mode shapes must be orthogonal with respect to the mass, but φ_{i + 1}^T M φ_{j + 1} is "
-            f"{cosines[i, j]:.3g} of what their norms allow. Give the mass that the modes were computed with, freedoms "
-            "in the same order, and shapes with enough digits.",
+            f"{cosines[i, j]:.3g} times the product of their norms. Give the mass that the modes were computed with, "
+            "the degrees of freedom in the same order, and shapes with enough digits.",
             field="shapes",
         )
     return _structure(freedoms.modes(w, phi / np.sqrt(own), m), base_mass, half_width, damping_ratio, n_modes)
@@ -188,18 +190,19 @@ def _mass_matrix(given: ArrayLike, size: int) -> Float:
         values = finite_vector("mass", given, "kg")
         if values.size != size:
             raise InputError(
-                f"mass must hold one mass for each of the {size} freedoms, but {values.size} were given.", field="mass"
+                f"mass must contain one mass for each of the {size} degrees of freedom, but {values.size} were given.",
+                field="mass",
             )
         m = np.diag(values)
     own = np.diag(m)
     if own.min() < 0.0:
         i = int(np.argmin(own))
-        raise InputError(f"mass must not be negative, but that of freedom {i} is {own[i]:g}.", field="mass")
+        raise InputError(f"mass must not be negative, but it is {own[i]:g} at degree of freedom {i}.", field="mass")
     return m
 
 
 def _modes(stiffness: Float, mass: Float) -> tuple[Float, Float]:
-    """Frequencies as singular values of C^T L^-T, with K = C C^T and M = L L^T."""
+    """Return the frequencies as singular values of C^T L^-T, with K = C C^T and M = L L^T, and the mode shapes."""
     root = np.linalg.cholesky(mass)
     _, omega, vectors = np.linalg.svd(np.linalg.solve(root, np.linalg.cholesky(stiffness)).T)
     return omega[::-1].copy(), np.asarray(np.linalg.solve(root.T, vectors.T)[:, ::-1], dtype=np.float64)

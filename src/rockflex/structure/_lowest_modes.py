@@ -1,4 +1,4 @@
-"""Lowest modes of a statically determinate beam, whatever the masses that it carries."""
+"""Lowest modes of a statically determinate beam with arbitrary masses."""
 
 import math
 from collections.abc import Callable
@@ -11,22 +11,22 @@ from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator
 Float = NDArray[np.float64]
 
 _MISFIT = 1e-6
-_SPREAD = 1e6  # of ω² in one search: rounding of the lowest mode then leaves ten digits of the highest
-_RESTARTS = 100  # where modes of a light beam drown in the rounding of a heavy body they never converge
-_REMOVALS = 4  # each leaves 1e-16 of what is removed: enough for any beam that `finite_element_modes` takes
+_SPREAD = 1e6  # of ω² in one search: rounding in the lowest mode then leaves ten digits of the highest
+_RESTARTS = 100  # modes of a light beam that are below the rounding of a heavy body never converge
+_REMOVALS = 4  # each leaves 1e-16 of the removed part: enough for any beam that `finite_element_modes` accepts
 
 
 def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) -> tuple[Float, Float]:
     """Return ω (n,) and mass-normalised shapes (F, n) of the lowest modes, from the stiffness A^T A and the mass.
 
-    `root` is A (F, F), for freedoms that are deflections and rotations in turn, from the base up.
+    `root` is A (F, F); the degrees of freedom are alternating deflections and rotations, from the base up.
 
     Raises
     ------
     LinAlgError
-        If A is singular, or a mode misses its equation.
+        If A is singular, or a mode does not satisfy its equation.
     """
-    # In heights, masses and stiffnesses of the beam itself, whatever the units that they were given in.
+    # Scaled by height, stiffness and mass of the beam, so that the given units do not matter.
     unit = diags_array(np.tile([1.0, 1.0 / height], mass.shape[0] // 2))
     root, mass = csc_array(root @ unit), csc_array(unit @ mass @ unit)
     stiff, heavy = float(abs(root).max()), float(mass.diagonal().max())
@@ -51,17 +51,17 @@ def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) 
     bent = np.column_stack([flexibility(force) for force in moved.T])
     misfits = omega**2 * np.einsum("in,in->n", moved, bent) - 1.0  # zero for modes, else positive
     if not (misfits < _MISFIT).all():
-        raise np.linalg.LinAlgError(f"a mode misses its equation by {misfits.max():.1g}")
+        raise np.linalg.LinAlgError(f"a mode has a relative residual of {misfits.max():.1g}")
     return omega * (stiff / math.sqrt(heavy)), unit @ vectors / math.sqrt(heavy)
 
 
 def _beside(
     known: Float, stiffness: csc_array, mass: csc_array, flexibility: Callable[[Float], Float], wanted: int
 ) -> Float:
-    """Return the lowest modes beside the known ones: those wanted, or the first of them where they lie far apart.
+    """Return the lowest modes other than the known ones: as many as wanted, or only the first if they lie far apart.
 
-    A heavy body on a light column gives a first mode so flexible that its rounding exceeds the flexibility of all
-    others. They are found once it is known, by taking it out of every vector.
+    A heavy body on a light column gives a first mode so flexible that its rounding error exceeds the flexibility of all
+    other modes. These are found afterwards, by removing the first mode from every vector.
     """
     moved = mass @ known
 
@@ -78,7 +78,7 @@ def _beside(
 
     size = mass.shape[0]
     inverse = LinearOperator(mass.shape, matvec=bent, dtype=np.float64)
-    start = without_known(np.ones(size))  # the same digits every time
+    start = without_known(np.ones(size))  # fixed, for reproducible digits
     directions = min(size - known.shape[1], max(2 * wanted + 1, 20))
     try:
         squares, shapes = eigsh(

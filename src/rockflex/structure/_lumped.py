@@ -19,30 +19,30 @@ Float = NDArray[np.float64]
 class LumpedStructure(Value):
     """Any linear structure with N masses above a rigid base that can rock.
 
-    The horizontal displacements of the masses relative to the base are its freedoms (Silva & Stojadinović
-    2024, Fig. 1 and Eq. 1); all others are condensed out. Sequences become read-only arrays. Modes are
-    computed once, on the first call that needs them.
+    Its degrees of freedom are the horizontal displacements of the masses relative to the base (Silva & Stojadinović
+    2024, Fig. 1 and Eq. 1); all others must be condensed out. Sequences become read-only arrays. The modes are
+    computed once, when they are first needed.
 
     Attributes
     ----------
     masses : ndarray, shape (N,) or (N, N)
-        Masses, or symmetric positive definite mass matrix, in kg, without the base.
+        Masses, or symmetric positive definite mass matrix, in kg, excluding the base.
     stiffness : ndarray, shape (N, N)
-        Symmetric positive definite stiffness in N/m, base held.
+        Symmetric positive definite stiffness in N/m on a fixed base.
     heights : ndarray, shape (N,)
-        Heights of the masses above the base in m, positive and strictly rising.
+        Heights of the masses above the base in m, positive and strictly increasing.
     base_mass : float
         Mass m_0 of the base in kg, zero or positive.
     half_width : float
-        Half the width B of the base in m.
+        Half-width B of the base in m.
     damping_ratio : ndarray, shape (N,)
-        Damping ratio of each mode in [0, 1); one number stands for all modes.
+        Damping ratio of each mode in [0, 1); a single number applies to all modes.
 
     Raises
     ------
     InputError
-        If the shapes do not fit, a value is not finite or outside its range, the heights fall, or a matrix
-        is not symmetric positive definite.
+        If the shapes do not match, a value is not finite or outside its range, the heights do not increase, or a
+        matrix is not symmetric positive definite.
     """
 
     masses: Float
@@ -78,7 +78,7 @@ class LumpedStructure(Value):
         return float(self.heights[-1])
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all N of them.
+        """Return the first `n_modes` modes on a fixed base (default: all N).
 
         Raises
         ------
@@ -88,14 +88,14 @@ class LumpedStructure(Value):
         return self._modes if n_modes is None else self._modes.truncated(n_modes)
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all).
 
-        Modes that take part in neither base shear nor base moment are left out and not counted.
+        Modes that contribute neither to the base shear nor to the base moment are left out and not counted.
 
         Raises
         ------
         InputError
-            If there are not as many modes, or one among them takes part in the base moment alone.
+            If the structure has fewer modes than `n_modes`, or one of them contributes only to the base moment.
         """
         return self._rocking if n_modes is None else self._with_modes(n_modes)
 

@@ -13,28 +13,28 @@ from rockflex.structure._matrix_market import read_matrix_market
 
 Float = NDArray[np.float64]
 Given: TypeAlias = ArrayLike | str | Path
-"""Numbers, or the path of a file that holds them."""
+"""Numbers, or the path of a file that contains them."""
 
-MOST = 20_000  # freedoms of a sparse matrix, which takes 3 GB when dense
+MOST = 20_000  # degrees of freedom of a sparse matrix: 3 GB as a dense one
 _SUFFIXES = (".npz", ".mtx", ".csv")
 
 
 def numbers(name: str, given: Given) -> ArrayLike:
-    """Return what was given, read from its file if it is a path.
+    """Return the given numbers, read from a file if a path was given.
 
-    Files are told by their suffix: ``.npz`` (the array of that name, the only one, or a sparse matrix as SciPy saves
-    it), ``.mtx`` (Matrix Market) and ``.csv`` (rows of numbers between commas; one row or column is a vector).
+    The suffix decides the format: ``.npz`` (the array of that name, the only array, or a sparse matrix as saved by
+    SciPy), ``.mtx`` (Matrix Market) or ``.csv`` (rows of comma-separated numbers; a single row or column is a vector).
 
     Raises
     ------
     InputError
-        If the file is missing, of another kind, or does not hold such numbers.
+        If the file is missing, has another format, or does not contain such numbers.
     """
     if not isinstance(given, str | Path):
         return given
     path = path_of(name, given)
     if path.suffix.lower() not in _SUFFIXES:
-        raise InputError(f"{name}: {path} must be one of {', '.join(_SUFFIXES)}, told by its suffix.", field=name)
+        raise InputError(f"{name}: the suffix of {path} must be one of {', '.join(_SUFFIXES)}.", field=name)
     check_regular(path, name)
     if not path.exists():
         raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).", field=name)
@@ -42,15 +42,13 @@ def numbers(name: str, given: Given) -> ArrayLike:
         array = _READERS[path.suffix.lower()](name, path)
     except InputError:
         raise
-    except Exception as error:  # the readers of damaged files raise many kinds
-        raise InputError(
-            f"{name}: {path} does not hold a matrix of numbers that can be read: {error}.", field=name
-        ) from error
+    except Exception as error:  # readers of damaged files raise many types of exception
+        raise InputError(f"{name}: no matrix of numbers can be read from {path}: {error}.", field=name) from error
     return array.ravel() if 1 in array.shape and array.shape != (1, 1) else array
 
 
 def checksum(name: str, path: Path) -> str:
-    """SHA-256 of the shape and the numbers (little-endian doubles) of a file; raises as `numbers` does."""
+    """Return the SHA-256 of the shape and the numbers (little-endian doubles) of a file; errors as in `numbers`."""
     array = np.asarray(numbers(name, path), dtype="<f8")
     digest = hashlib.sha256(repr(array.shape).encode())
     digest.update(array.tobytes())
@@ -66,7 +64,7 @@ def _from_npz(name: str, path: Path) -> Float:
             return _dense(name, path, load_npz(path))
         if name not in keys and len(keys) != 1:
             raise InputError(
-                f'{name}: {path} must hold an array "{name}", or one array alone, but it holds {keys}.', field=name
+                f'{name}: {path} must contain an array "{name}" or a single array, but it contains {keys}.', field=name
             )
         return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
 
@@ -78,8 +76,9 @@ def _from_mtx(name: str, path: Path) -> Float:
 def _dense(name: str, path: Path, matrix: Any) -> Float:
     if max(matrix.shape) > MOST:
         raise InputError(
-            f"{name}: {path} holds a sparse matrix of the shape {matrix.shape}, but matrices are taken as dense, with "
-            f"{MOST} freedoms at most. Condense it to the freedoms that carry mass, or give its modes to from_modes.",
+            f"{name}: {path} contains a sparse matrix of shape {matrix.shape}, but matrices are treated as dense, with "
+            f"at most {MOST} degrees of freedom. Condense it to the degrees of freedom with mass, or give its modes to "
+            "from_modes.",
             field=name,
         )
     return np.asarray(matrix.toarray(), dtype=np.float64)

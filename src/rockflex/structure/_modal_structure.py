@@ -14,16 +14,16 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ModalStructure(Value):
-    """A structure known by its modes; `from_matrices` and `from_modes` return it.
+    """A structure given by its modes, as returned by `from_matrices` and `from_modes`.
 
     Attributes
     ----------
     modes : MassNormalisedModes
-        Its modes, without those that neither the ground nor the rotation of the base excites.
+        Its modes, except those excited neither by the ground nor by the rotation of the base.
     base_mass : float
         Mass m_0 of the base in kg.
     half_width : float
-        Half the width B of the base in m.
+        Half-width B of the base in m.
     damping_ratio : ndarray, shape (n,)
         Damping ratio of each mode.
     """
@@ -34,22 +34,22 @@ class ModalStructure(Value):
     damping_ratio: Float
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
+        """Return the first `n_modes` modes on a fixed base (default: all).
 
         Raises
         ------
         InputError
-            If `n_modes` is not from 1 to the structure's own.
+            If `n_modes` is not from 1 to the structure's number of modes.
         """
         modes = self.modes.modal()
         return modes if n_modes is None else modes.truncated(n_modes)
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all).
 
         Raises
         ------
         InputError
-            If there are not as many modes.
+            If the structure has fewer modes than `n_modes`.
         """
         return self.modes.rocking(self.base_mass, self.half_width, self.damping_ratio, n_modes)

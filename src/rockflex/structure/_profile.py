@@ -14,10 +14,10 @@ from rockflex._values import Value
 Float = NDArray[np.float64]
 
 Along: TypeAlias = float | Callable[[Float], ArrayLike] | tuple[ArrayLike, ArrayLike]
-"""A number, a function of heights (n,) that returns values (n,), or a table (heights, values), linear between."""
+"""A number, a function of heights (n,) that returns values (n,), or a table (heights, values) to interpolate."""
 
 _LOOKS = 65
-_ROOM = 1e-9  # of the height: printed digits of a table's last row
+_ROOM = 1e-9  # of the height: tolerance for printed digits in the last row of a table
 
 
 @dataclass(frozen=True)
@@ -43,14 +43,14 @@ class Interpolated(Value):
 
 @dataclass(frozen=True, eq=False)
 class Profile(Value):
-    """Values along the height, checked whenever they are read.
+    """Values along the height, checked whenever they are evaluated.
 
     Attributes
     ----------
     name, unit : str
-        What it is, for messages.
+        Name and unit of the property, for messages.
     function : callable
-        Values at heights.
+        Returns the values at given heights.
     kinks : ndarray
         Heights in m where the values are not smooth.
     zero : bool
@@ -65,7 +65,7 @@ class Profile(Value):
 
     @property
     def given(self) -> Along:
-        """The number, the function, or the table as read-only arrays, from which it was made."""
+        """The number, the function, or the table (as read-only arrays) that was given."""
         if isinstance(self.function, Constant):
             return self.function.value
         if isinstance(self.function, Interpolated):
@@ -82,12 +82,12 @@ class Profile(Value):
         """
         flat = z.ravel()
         try:
-            with np.errstate(all="ignore"):  # what is not finite is refused below
+            with np.errstate(all="ignore"):  # values that are not finite are rejected below
                 values = np.broadcast_to(np.asarray(self.function(flat), dtype=np.float64), flat.shape)
         except (TypeError, ValueError) as error:
             raise InputError(
-                f"{self.name} must return one number for each of the heights it is given, an array of shape "
-                f"{flat.shape}, but it did not: {error}.",
+                f"{self.name} must return one number for each height, an array of shape {flat.shape}, but it did not: "
+                f"{error}.",
                 field=self.name,
             ) from error
         allowed = (values >= 0.0) if self.zero else (values > 0.0)
@@ -104,12 +104,12 @@ class Profile(Value):
 
 
 def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = False) -> Profile:
-    """Return what was given as a profile from the base to `height`.
+    """Return the given property as a profile from the base to `height`.
 
     Raises
     ------
     InputError
-        If a table does not run from the base to the top or its heights fall, or a value is not positive.
+        If a table does not extend from the base to the top, its heights decrease, or a value is not positive.
     """
     if callable(given):
         result = Profile(name, unit, given, np.zeros(0), zero)
@@ -129,28 +129,30 @@ def _table(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: s
     values = finite_vector(f"{name}, values", given[1], unit, field=name)
     if z.size != values.size or z.size < 2:
         raise InputError(
-            f"{name} must hold one value for each height of its table, and two rows or more, but {z.size} heights and "
-            f"{values.size} values were given.",
+            f"{name} must contain one value for each height of its table, and at least two rows, but {z.size} heights "
+            f"and {values.size} values were given.",
             field=name,
         )
     falls = np.flatnonzero(z[1:] < z[:-1])
     if falls.size:
         i = int(falls[0])
         raise InputError(
-            f"{name}: the heights of a table must not fall, but {z[i + 1]:g} m follows {z[i]:g} m. Sort the rows; "
-            "two rows at one height are a jump.",
+            f"{name}: the heights of a table must not decrease, but {z[i + 1]:g} m follows {z[i]:g} m. Sort the rows; "
+            "two rows at the same height are a jump.",
             field=name,
         )
     if z[0] > _ROOM * height or z[-1] < height * (1.0 - _ROOM):
         raise InputError(
-            f"{name}: a table must run from the base (0 m) to the top ({height:g} m), but it runs from {z[0]:g} m to "
-            f"{z[-1]:g} m. Add the rows that are missing.",
+            f"{name}: a table must extend from the base (0 m) to the top ({height:g} m), but it covers {z[0]:g} m to "
+            f"{z[-1]:g} m. Add the missing rows.",
             field=name,
         )
     low = values < 0.0 if zero else values <= 0.0
     if low.any():
         i = int(np.flatnonzero(low)[0])
         kind = "zero or positive" if zero else "positive"
-        raise InputError(f"{name} must be {kind}, but its table holds {values[i]:g} {unit} at {z[i]:g} m.", field=name)
+        raise InputError(
+            f"{name} must be {kind}, but its table contains {values[i]:g} {unit} at {z[i]:g} m.", field=name
+        )
     inside = z[(z > 0.0) & (z < height)]
     return Profile(name, unit, Interpolated(z, values), np.unique(inside), zero)

@@ -14,21 +14,21 @@ from rockflex.structure._based import Based, is_structure
 class Restrained:
     """A structure whose base is held down by unbonded post-tensioned tendons.
 
-    They raise the resisting moment and give the rotation a restoring stiffness (Silva & Stojadinović 2024, Section
-    4.1); modes on a fixed base stay as they are. A structure known by its `RockingProperties` alone takes `tendons`
-    there.
+    The tendons increase the resisting moment and add a restoring rotational stiffness (Silva & Stojadinović 2024,
+    Section 4.1); the modes on a fixed base do not change. For a structure given only by its `RockingProperties`, set
+    `tendons` there.
 
     Attributes
     ----------
     structure
         Any structure: a `Frame`, a `TaperedTower`, an `Eccentric` one ...
     tendons : tuple of Tendon
-        Where and how many you like, within the base.
+        Any number of tendons, at any positions within the base.
 
     Raises
     ------
     InputError
-        If a tendon stands outside the base, or `structure` is none.
+        If a tendon is outside the base, or `structure` is not a structure.
     """
 
     structure: Based
@@ -38,16 +38,16 @@ class Restrained:
         if not is_structure(structure):
             raise InputError(
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
-                "take their tendons themselves: RockingProperties(..., tendons=...).",
+                "have tendons of their own: RockingProperties(..., tendons=...).",
                 field="structure",
             )
         vars(self).update(structure=structure, tendons=tendon_set(tendons))
-        self.rocking(1)  # whether they stand within the base
+        self.rocking(1)  # checks that they are within the base
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base, or all of them."""
+        """Return the first `n_modes` modes on a fixed base (default: all)."""
         return self.structure.modal(n_modes)
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all."""
+        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all)."""
         return replace(self.structure.rocking(n_modes), tendons=self.tendons)

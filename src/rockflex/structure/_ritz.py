@@ -27,8 +27,8 @@ _INDEPENDENT = 1e-13  # smallest eigenvalue of the mass matrix of shapes of unit
 class RitzShapes(Value):
     """Shape functions ψ_j(z) of a cantilever with their first two derivatives.
 
-    Each is a function of heights (P,) in m and returns (P, n), one column a shape. A shape and its slope vanish at the
-    base; the forces at the top need not.
+    Each attribute is a function of heights (P,) in m that returns an array (P, n), one column per shape. A shape and
+    its slope vanish at the base; it need not satisfy the force conditions at the top.
 
     Attributes
     ----------
@@ -41,22 +41,22 @@ class RitzShapes(Value):
     curvature: Callable[[Float], ArrayLike]
 
     def at(self, z: Float) -> tuple[Float, Float, Float]:
-        """Return ψ, ψ' and ψ'' at heights (P,), shape (P, n) each.
+        """Return ψ, ψ' and ψ'' at heights (P,), each of shape (P, n).
 
         Raises
         ------
         InputError
-            If a shape is not such an array of finite numbers.
+            If a function does not return such an array of finite numbers.
         """
         rows: list[Float] = []
         for name in ("value", "slope", "curvature"):
-            with np.errstate(all="ignore"):  # what is not finite is refused below
+            with np.errstate(all="ignore"):  # values that are not finite are rejected below
                 array = np.asarray(getattr(self, name)(z), dtype=np.float64)
             if array.ndim != 2 or array.shape[0] != z.size or (rows and array.shape != rows[0].shape):
                 expected = rows[0].shape if rows else f"({z.size}, n_shapes)"
                 raise InputError(
-                    f"shapes.{name} must return one row a height and one column a shape, {expected}, but it returned "
-                    f"an array of shape {array.shape}.",
+                    f"shapes.{name} must return one row per height and one column per shape, {expected}, but it "
+                    f"returned an array of shape {array.shape}.",
                     field="shapes",
                 )
             if not np.isfinite(array).all():
@@ -65,12 +65,12 @@ class RitzShapes(Value):
         return rows[0], rows[1], rows[2]
 
     def check(self, height: float) -> int:
-        """Return the number of shapes.
+        """Check the shapes and return their number.
 
         Raises
         ------
         InputError
-            If a shape moves or turns at the base, or its derivatives are not those of the shape.
+            If a shape is not zero or not horizontal at the base, or the derivatives do not belong to it.
         """
         ends = np.array([0.0, height])
         z, w = gauss(np.linspace(0.0, height, _PANELS + 1), _POINTS)
@@ -94,7 +94,7 @@ class RitzShapes(Value):
 
 @dataclass(frozen=True, eq=False)
 class CosineShapes(Value):
-    """1 - cos(r z) at heights (P,), one column a rate r in rad/m."""
+    """1 - cos(r z) at heights (P,), one column per rate r in rad/m."""
 
     rates: Float
 
@@ -122,17 +122,17 @@ def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
     Raises
     ------
     InputError
-        If the height or the number is not positive.
+        If the height or the number of shapes is not positive.
     """
     h = positive("height", height, "m")
     numbers = np.arange(1, whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1, dtype=np.float64)
-    with computable(f"The shapes of a structure of the height {h:g} m"):
+    with computable(f"The shapes of a structure {h:g} m high"):
         rates = (2.0 * numbers - 1.0) * math.pi / (2.0 * h)
     return RitzShapes(CosineShapes(rates), CosineSlopes(rates), CosineCurvatures(rates))
 
 
 def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalisedModes:
-    """Return the first modes of the beam in the space of the shapes, by Gauss quadrature.
+    """Return the first Rayleigh-Ritz modes of the beam, integrated by Gauss quadrature.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalis
     z, w = points.ravel(), weights.ravel()
     value, slope, curvature = shapes.at(z)
     stiffness = curvature.T @ ((w * beam.bending_stiffness.at(z))[:, None] * curvature)
-    # Lumped masses are points of their own.
+    # Lumped masses are additional points.
     at_lumped, slope_lumped, _ = shapes.at(lumped.heights)
     z_all = np.concatenate([z, lumped.heights])
     value, slope = np.vstack([value, at_lumped]), np.vstack([slope, slope_lumped])
@@ -177,6 +177,7 @@ def _check_independent(mass: Float) -> None:
     smallest = float(np.linalg.eigvalsh(mass / np.outer(size, size))[0]) if size.all() else 0.0
     if smallest < _INDEPENDENT:
         raise InputError(
-            f"The {size.size} Ritz shapes are linearly dependent (smallest eigenvalue of their mass matrix, each of "
-            f"unit mass: {smallest:.2g}). Leave out those that the others can form, or take shapes further apart."
+            f"The {size.size} Ritz shapes are linearly dependent (smallest eigenvalue of their mass matrix, each "
+            f"scaled to unit mass: {smallest:.2g}). Leave out combinations of other shapes, or choose more distinct "
+            "ones."
         )

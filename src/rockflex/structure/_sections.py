@@ -1,4 +1,4 @@
-"""What a beam is made of along its height."""
+"""Properties of a beam along its height."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -16,16 +16,16 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, init=False)
 class LumpedMasses(Value):
-    """Bodies fixed to a beam.
+    """Masses fixed to a beam.
 
     Attributes
     ----------
     heights : ndarray, shape (P,)
-        Heights above the base in m, from above 0 to the height of the beam.
+        Heights above the base in m, above zero and at most the height of the beam.
     masses : ndarray, shape (P,)
         Masses in kg, positive.
     rotary : ndarray, shape (P,)
-        Rotary inertia of each body about its own axis in kg m², zero or positive. Default: none.
+        Rotary inertia of each mass about its own axis in kg m², zero or positive. Default: none.
 
     Raises
     ------
@@ -44,7 +44,7 @@ class LumpedMasses(Value):
         j = finite_vector("lumped_masses.rotary", j, "kg m²", field="lumped_masses")
         if not z.size == m.size == j.size:
             raise InputError(
-                f"lumped_masses must hold one mass, and one rotary inertia, for each of its {z.size} heights, but "
+                f"lumped_masses must contain one mass and one rotary inertia for each of its {z.size} heights, but "
                 f"{m.size} and {j.size} were given.",
                 field="lumped_masses",
             )
@@ -65,7 +65,7 @@ class LumpedMasses(Value):
 
 @dataclass(frozen=True, eq=False)
 class Sections(Value):
-    """Profiles and bodies of a beam.
+    """Profiles and lumped masses of a beam.
 
     Attributes
     ----------
@@ -74,11 +74,11 @@ class Sections(Value):
     mass, bending_stiffness : Profile
         m in kg/m and EI in N m².
     shear_stiffness, rotary_inertia : Profile or None
-        GA_s in N and the rotary inertia in kg m; None for no deformation in shear, and none at all.
+        GA_s in N and the rotary inertia in kg m; None for no shear deformation and no rotary inertia.
     lumped : LumpedMasses
-        Bodies, perhaps none.
+        Lumped masses; may be empty.
     rotary_in_modes : bool
-        Whether rotary inertia takes part in the modes.
+        Whether the modes include the rotary inertia.
     """
 
     height: float
@@ -95,7 +95,7 @@ class Sections(Value):
 
     @property
     def kinks(self) -> Float:
-        """Heights in m at which a table has a row."""
+        """Heights in m of the rows of all tables."""
         each = (self.mass, self.bending_stiffness, self.shear_stiffness, self.rotary_inertia)
         return np.concatenate([profile.kinks for profile in each if profile is not None])
 
@@ -105,12 +105,12 @@ class Sections(Value):
 
 
 def on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
-    """Return the bodies given, or none, that lie on a beam.
+    """Return the lumped masses of a beam; None stands for no masses.
 
     Raises
     ------
     InputError
-        If one lies above the top.
+        If one is above the top.
     """
     bodies: Any = LumpedMasses([], []) if given is None else given
     if not isinstance(bodies, LumpedMasses):

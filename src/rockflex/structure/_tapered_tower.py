@@ -1,4 +1,4 @@
-"""A tower in the form of a hollow truncated cone."""
+"""A tower shaped like a hollow truncated cone."""
 
 import math
 from dataclasses import dataclass
@@ -18,19 +18,19 @@ from rockflex.structure._beam import Beam
 
 Float = NDArray[np.float64]
 
-_N_ELEMENTS = 2000  # as many as the paper takes
+_N_ELEMENTS = 2000  # as in the paper
 
 
 @dataclass(frozen=True, eq=False)
 class TaperedTower(Assembled, Value):
-    """A hollow truncated cone with a wall of one thickness (Silva & Stojadinović 2024, Section 4.1.1).
+    """A hollow truncated cone with a wall of constant thickness (Silva & Stojadinović 2024, Section 4.1.1).
 
     Attributes
     ----------
     height : float
         Height in m.
     base_radius, top_radius : float
-        Outer radius at the base and at the top in m, linear between. Half the width B of the base is `base_radius`.
+        Outer radius at the base and at the top in m, linear in between. The half-width B is `base_radius`.
     wall : float
         Thickness of the wall in m, at most the smaller radius.
     density : float
@@ -38,20 +38,20 @@ class TaperedTower(Assembled, Value):
     elastic_modulus : float
         Young's modulus in N/m².
     damping_ratio : float or ndarray, shape (n_modes,)
-        Damping ratio of every mode, or of each, in [0, 1).
+        Damping ratio in [0, 1): one number for all modes, or one per mode.
     method : {"ritz", "fe"}
         Rayleigh-Ritz with the shapes of Eq. 36 (five, or `n_modes` if more), or 2000 finite elements.
     n_modes : int
-        Number of modes that the structure has, 200 at most.
+        Number of modes, at most 200.
 
     Raises
     ------
     InputError
-        If a value is outside its range, or the wall is thicker than a radius.
+        If a value is outside its range, or the wall is thicker than the smaller radius.
 
     Notes
     -----
-    The rotary inertia of the sections is part of I_θ (Eq. 33), and takes no part in the modes.
+    The rotary inertia of the sections is included in I_θ (Eq. 33), but not in the modes.
     """
 
     height: float
@@ -79,7 +79,7 @@ class TaperedTower(Assembled, Value):
         if self.wall > radius:
             raise InputError(
                 f"wall must be at most the smaller radius, {name} = {radius:g} m, but {self.wall:g} m was given. "
-                "It is the thickness of the wall, not a diameter; a solid tower has a wall of its radius.",
+                "It is the wall thickness, not a diameter; for a solid tower it equals the radius.",
                 field="wall",
             )
         vars(self).update(n_modes=self.beam.n_modes, damping_ratio=self.beam.damping_ratio)
@@ -87,7 +87,7 @@ class TaperedTower(Assembled, Value):
     @cached_property
     @computable("The sections of a tower with these radii, wall, density and elastic_modulus")
     def beam(self) -> Beam:
-        """The cantilever that the tower is."""
+        """The tower as a cantilever beam."""
         ring = (self.height, self.base_radius, self.top_radius, self.wall)
         return Beam(
             height=self.height,
@@ -104,7 +104,7 @@ class TaperedTower(Assembled, Value):
 
     @property
     def half_width(self) -> float:
-        """Half the width B of the base in m."""
+        """Half-width B of the base in m."""
         return self.base_radius
 
     @property
@@ -115,7 +115,7 @@ class TaperedTower(Assembled, Value):
 
 @dataclass(frozen=True)
 class _Ring:
-    """The ring that a section is, at any height: height and radii of the tower and its wall in m, and a factor."""
+    """The annular section at any height: height, radii and wall of the tower in m, and a factor."""
 
     height: float
     base_radius: float

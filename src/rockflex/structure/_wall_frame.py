@@ -1,4 +1,4 @@
-"""A wall and a frame that move together: the coupled flexure and shear beam."""
+"""A coupled wall and frame: the combined flexural and shear beam."""
 
 import math
 from dataclasses import dataclass
@@ -24,20 +24,20 @@ _LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 
 @dataclass(frozen=True, eq=False)
 class WallFrame(Assembled, Value):
-    """A uniform wall in flexure beside a uniform frame in shear, tied all along the height.
+    """A uniform flexural wall coupled to a uniform shear frame over the full height.
 
     EI u'''' - GA u'' = m ω² u: the coupled beam of Miranda & Taghavi (2005, Journal of Structural Engineering 131(2),
-    203-211), with modes in closed form. The stiffness is scaled to the period asked for, and the base made as wide as
-    the aspect ratio asks, as in `Frame`.
+    203-211), with modes in closed form. The stiffness is scaled to give the specified period, and the base width
+    follows from the aspect ratio, as in `Frame`.
 
     Attributes
     ----------
     height : float
         Height H in m.
     mass : float
-        Mass m H of wall and frame in kg, uniform along the height.
+        Total mass m H of wall and frame in kg, uniform along the height.
     stiffness_parameter : float
-        α = H √(GA/EI), from 0 (a wall alone: flexure) to infinity (a frame alone: shear), both included.
+        α = H √(GA/EI), from 0 (wall only: flexure) to infinity (frame only: shear), both included.
     base_mass : float
         Mass m_0 of the base in kg, zero or positive.
     period : float
@@ -45,9 +45,9 @@ class WallFrame(Assembled, Value):
     aspect_ratio : float
         h*_1/B.
     damping_ratio : float or ndarray, shape (n_modes,)
-        Damping ratio of every mode, or of each, in [0, 1).
+        Damping ratio in [0, 1): one number for all modes, or one per mode.
     n_modes : int
-        Number of modes that the structure has, 200 at most.
+        Number of modes, at most 200.
 
     Raises
     ------
@@ -81,7 +81,7 @@ class WallFrame(Assembled, Value):
 
     @property
     def half_width(self) -> float:
-        """Half the width B = h*_1/aspect_ratio of the base in m."""
+        """Half-width B = h*_1/aspect_ratio of the base in m."""
         return float(self._modes.moment[0] / self._modes.shear[0]) / self.aspect_ratio
 
     @property
@@ -95,7 +95,7 @@ class WallFrame(Assembled, Value):
     def _modes(self) -> MassNormalisedModes:
         alpha = self.stiffness_parameter
         roots = np.array([_root(n, alpha) for n in range(1, self.n_modes + 1)])
-        partners = np.sqrt(alpha**2 + roots**2)  # of the hyperbolic functions, steepest in the highest mode
+        partners = np.sqrt(alpha**2 + roots**2)  # β of the hyperbolic functions, steepest in the highest mode
         layer = _LAYER / partners[-1] if math.isfinite(alpha) else np.zeros(0)
         points, weights = gauss(mesh(1.0, max(_PANELS, 4 * self.n_modes), layer, 1.0 - layer), _POINTS)
         x, mass = points.ravel(), self.mass * weights.ravel()
@@ -119,7 +119,7 @@ class WallFrame(Assembled, Value):
 
 
 def _root(n: int, alpha: float) -> float:
-    """Return γ_n of sin γx, from the condition that the top is free."""
+    """Return γ_n of sin γx from the boundary conditions of a free top."""
     if math.isinf(alpha):
         return (n - 0.5) * math.pi
 
@@ -132,12 +132,12 @@ def _root(n: int, alpha: float) -> float:
             2.0 * both * (fall + math.cos(g)) + alpha**4 * math.cos(g) + alpha**2 * g * b * math.sin(g) * math.tanh(b)
         )
 
-    # At nπ the cosine is ±1 and rules, so there is one sign change between.
+    # At nπ the cosine is ±1 and dominates, so there is exactly one sign change in between.
     return float(brentq(frequency, max((n - 1) * math.pi, 1e-6), n * math.pi, xtol=1e-15, rtol=1e-14))
 
 
 def _shape(x: Float, g: float, alpha: float) -> Float:
-    """Return sin γx - η cos γx - (γ/β) sinh βx + η cosh βx, with the rising exponential taken from the top."""
+    """Return sin γx - η cos γx - (γ/β) sinh βx + η cosh βx, with the growing exponential measured from the top."""
     if math.isinf(alpha):
         return np.sin(g * x)
     b = math.hypot(alpha, g)

@@ -1,8 +1,8 @@
-"""The question before a step's continuous extension: whether an event or a new peak can hide inside the step.
+"""Checks whether an event or a new peak can occur inside a step, before its continuous extension is computed.
 
-Every row is compared with the cubic through its values and slopes at both ends. A step that the error control accepts
-turns no mode by more than about a radian, over which a row strays from that cubic by a few hundredths of the cubic's
-own bend (for a harmonic of ω: (ωh)²/48); a fifth of the bend is allowed for.
+Every row is compared with the cubic through its values and slopes at both ends. In a step accepted by the error control
+the phase of no mode advances by more than about a radian. Over this range a row deviates from the cubic by a few
+hundredths of the curvature of the cubic (for a harmonic of ω: (ωh)²/48); a fifth of the curvature is allowed for.
 """
 
 from rockflex._kernel import inlined_kernel
@@ -15,7 +15,7 @@ from rockflex.solve.peaks import raise_peaks, size_of
 
 @inlined_kernel
 def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:
-    """True where the step just taken holds no event and no new peak but at its end, which is then noted."""
+    """Return True if the step contains no event and no new peak except at its end; the latter is recorded."""
     rows, side, step = system.plain_rows, system.phases[phase].side, span.length
     n, modes = rows.shape[2] - 2, flow.field.modes.shape[1]
     if flow.field.hysteretic:
@@ -45,7 +45,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, 
                 after += weight * room.rates[LAST, i]
         low, high = stretch(first, last, step * before, step * after)
         if f != GUARD:
-            # At the ends a peak is no secret: it is noted below.
+            # Peaks at the ends are known; they are recorded below.
             known = max(log.peaks[f], max(size_of(first, f, log), size_of(last, f, log)))
             hidden = max(size_of(high, f, log), size_of(low, f, log)) > known
         elif side == 0.0:

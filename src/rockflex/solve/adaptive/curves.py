@@ -1,7 +1,7 @@
-"""Rows of a complete model that are no linear functionals while it rocks: whether they hide a peak, and where it is.
+"""Peaks of the nonlinear ("curved") rows of a complete model while it rocks: whether one can occur, and where.
 
-They are told at any instant from the motion and its rates, and have their own rates from a second look a little later,
-which only those that come near their peaks are given.
+These rows are evaluated from the motion and its rates. Their own rates come from a second evaluation shortly
+afterwards, which is done only for rows that are close to their peaks.
 """
 
 import numpy as np
@@ -27,16 +27,16 @@ from rockflex.solve.layout import Array, Log, Span, System
 from rockflex.solve.peaks import raise_row, size_of
 
 STRAY = 0.2
-NEAR = 0.7  # of its peak: what a row must come near to be looked at twice
-LIGHT = 0.05  # of the vertical reaction at rest: a smaller loss of support is no measure of what is near
-AHEAD = 1e-4  # of a step, to the second look
-LOOKS = 8  # across a stretch that may hide a peak
-CLOSER = 4  # times that the look at a peak is narrowed to an eighth
+NEAR = 0.7  # fraction of its peak that a row must reach for the second evaluation
+LIGHT = 0.05  # of the vertical reaction at rest: smallest scale for the loss of support
+AHEAD = 1e-4  # of a step, between the two evaluations
+LOOKS = 8  # evaluations across a stretch that may contain a peak
+CLOSER = 4  # times that the interval around a peak is reduced to an eighth
 
 
 @kernel
 def is_curved(flow: Flow, f: int, side: float) -> bool:
-    """Whether a row is no linear functional now."""
+    """Return whether a row is nonlinear at present."""
     return side != 0.0 and flow.kinds[f] != LINEAR
 
 
@@ -44,7 +44,7 @@ def is_curved(flow: Flow, f: int, side: float) -> bool:
 def tell(
     system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array
 ) -> None:
-    """Fill in the values of the curved rows; of the last one, as in `Log`, the loss of support."""
+    """Compute the values of the curved rows; the last one is the loss of support, as in `Log`."""
     n, last, side = flow.field.modes.shape[1], system.plain_rows.shape[2] - 2, system.phases[phase].side
     posture = posture_of(flow.field, side, acceleration, motion, rates)
     for f in range(1, values.size):
@@ -61,9 +61,9 @@ def tell(
 
 @kernel
 def stretch(first: float, last: float, before: float, after: float) -> tuple[float, float]:
-    """Least and largest value that a smooth function may have over [0, 1], from its values and slopes at the ends."""
+    """Return bounds of a smooth function over [0, 1] from its values and slopes at the ends."""
     slack = STRAY * (abs(last - first - before) + abs(last - first - after))
-    if before * after > 0.0 and min(abs(before), abs(after)) > 8.0 * slack:  # it rises or falls all along
+    if before * after > 0.0 and min(abs(before), abs(after)) > 8.0 * slack:  # it is monotonic
         return min(first, last), max(first, last)
     low, high = cubic_range(first, last, before, after)
     return low - slack, high + slack
@@ -80,9 +80,9 @@ def curves_hide(
     log: Log,
     room: Stages,
 ) -> bool:
-    """Whether a curved row may hide a new peak between the motion and `end`, over a span.
+    """Return whether a curved row may have a new peak between the motion and `end`, over a span.
 
-    The peaks at the start are noted, for forces jump at events; the values at the end are left in
+    Peaks at the start are recorded, because forces jump at events. The values at the end are stored in
     `room.rows[AT_ENDS]`, and `room.doubt` marks the rows in question.
     """
     there = span.ground + span.slope * span.length
@@ -133,7 +133,7 @@ def look_ahead(
     values: Array,
     room: Stages,
 ) -> None:
-    """Values of the curved rows a little later."""
+    """Compute the values of the curved rows shortly afterwards."""
     later = ground + span.slope * AHEAD * span.length
     for i in range(motion.size):
         room.vectors[PLACE, i] = motion[i] + AHEAD * span.length * rates[i]
@@ -190,7 +190,7 @@ def raise_curve(
 
 @kernel
 def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Span, room: Stages) -> float:
-    """Value of a curved row at the fraction `u` of a step."""
+    """Return the value of a curved row at the fraction `u` of a step."""
     ground = span.ground + span.slope * span.length * u
     place_at(u, room, room.vectors[PLACE])
     field_rates(
@@ -202,7 +202,7 @@ def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Spa
 
 @kernel
 def values_of_rows(system: System, flow: Flow, phase: int, ground: float, room: Stages) -> None:
-    """Fill `room.rows[TOLD]` with all rows at the present motion, where a stretch of acceleration begins."""
+    """Compute all rows for the present motion, at the start of a stretch of acceleration, in `room.rows[TOLD]`."""
     side, rows = system.phases[phase].side, system.plain_rows
     n = rows.shape[2] - 2
     if flow.field.hysteretic:

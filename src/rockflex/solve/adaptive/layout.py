@@ -1,4 +1,4 @@
-"""The arrays that the Runge-Kutta steps need, beside those of `rockflex.solve.layout`.
+"""The arrays for the Runge-Kutta steps, in addition to those of `rockflex.solve.layout`.
 
 The state of an integrated model is [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic].
 """
@@ -12,45 +12,45 @@ from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
 from rockflex.solve.layout import Array, Progress
 
-TERMS = 8  # of the polynomial across a step
+TERMS = 8  # of the polynomial over a step
 
-# Places in `Stages.vectors`: the state at the end of the step, within it, and where a stretch of it ends, with the
-# rates of the latter two; and in `Stages.rows`: at the start of the step and at its end, a little after each, and
-# within it.
+# Indices in `Stages.vectors`: the state at the end of the step, the state and its rates within the step, and the state
+# and its rates at the end of a part of the step. Indices in `Stages.rows`: at the start and the end of the step,
+# shortly after each, and within the step.
 TRIAL, PLACE, PLACE_RATES, END, END_RATES = 0, 1, 2, 3, 4
 AT_STARTS, AT_ENDS, AT_STARTS_AHEAD, AT_ENDS_AHEAD, TOLD = 0, 1, 2, 3, 4
 
 
 class Flow(NamedTuple):
-    """The phases of a model that no closed form carries."""
+    """The integrated phases of a model."""
 
     field: Field
-    kinds: NDArray[np.int64]  # (F,): what becomes of the rows while rocking, see `rockflex.models.observe`
-    levers: Array  # (F, 2): of those that are no linear functionals
+    kinds: NDArray[np.int64]  # (F,): kinds of the rows while rocking, see `rockflex.models.observe`
+    levers: Array  # (F, 2): coefficients of the nonlinear rows
     rest: float  # vertical reaction at rest
-    scale: Array  # (2N + 3,): sizes below which a component's error does not matter
+    scale: Array  # (2N + 3,): sizes below which the error of a component does not matter
     tolerance: float  # relative, for each step
 
 
 class Stages(NamedTuple):
-    """Room for one step."""
+    """Work arrays for one step."""
 
     motion: Array  # (S',): at the start of the step; `Motion.state`
-    vectors: Array  # (5, S'): states and rates beside it, at the places above
+    vectors: Array  # (5, S'): other states and rates, at the indices above
     rates: Array  # (16, S')
     bends: Array  # (7, S'): the continuous extension
     polys: Array  # (F + 1, 8)
-    rows: Array  # (5, F): values of the rows, at the places above
-    doubt: NDArray[np.bool_]  # (F,): curved rows that may hide a peak
+    rows: Array  # (5, F): values of the rows, at the indices above
+    doubt: NDArray[np.bool_]  # (F,): curved rows that may have a peak
     size: Array  # (2N + 3,): largest magnitude of each moving entry so far
     work: Array  # (5,): `Log.work`
     at: Progress
 
 
 def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) -> Stages:
-    """Room for one run that starts from `motion`, whose first `moving` entries count in the errors.
+    """Return the work arrays for a run that starts from `motion`; its first `moving` entries enter the error norm.
 
-    `work` is that of its log.
+    `work` is that of the log of the run.
     """
     n = motion.size
     return Stages(
@@ -68,7 +68,7 @@ def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) 
 
 
 class Integrator(NamedTuple):
-    """What carries a phase that is not linear."""
+    """The integrator of a nonlinear phase."""
 
     flow: Flow
     room: Stages

@@ -1,4 +1,4 @@
-"""One step of the Runge-Kutta pair, and the polynomial across it."""
+"""One step of the Runge-Kutta pair, and the polynomial over it."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.layout import LEFT, STEP, Array, Span, System
 
-SHORTEST = 1e-13  # s: a step this short means that the motion cannot be followed
+SHORTEST = 1e-13  # s: if a shorter step is needed, the motion cannot be integrated
 FAILED = -1.0
 SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
@@ -18,8 +18,8 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`.
 
-    `room.vectors[TRIAL]` holds the end of the step, `room.rates` the stages up to it. The work is counted and looked at
-    between steps alone: what was learnt of a step in the midst of its tries would be lost.
+    `room.vectors[TRIAL]` contains the end of the step, `room.rates` the stages up to it. The work limit is checked only
+    between steps, because interrupting the attempts at a step would lose their information.
     """
     longest = rest.length
     step = min(room.at.step, longest)
@@ -45,7 +45,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
         error = error_of(flow, step, room)
         if error <= 1.0:
             grown = step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
-            # A step cut short by a sample or an event says little about the next one.
+            # A step shortened by a sample or an event gives little information about the next one.
             room.at.step = grown if step < longest else max(grown, room.at.step)
             return step
         most = 1.0
@@ -58,7 +58,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
 
 @inlined_kernel
 def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) -> None:
-    """Set the branch of the hysteresis by the sign of the velocity, or where it is zero, of what it will be."""
+    """Set the branch of the hysteresis to the sign of the velocity or, if that is zero, of its rate."""
     n = flow.field.modes.shape[1]
     velocity = room.motion[n]
     if velocity == 0.0:
@@ -69,7 +69,7 @@ def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) ->
 
 @inlined_kernel
 def error_of(flow: Flow, step: float, room: Stages) -> float:
-    """Norm of the step's error over what is tolerated; infinite where the step left all numbers."""
+    """Return the error norm of the step relative to the tolerance; infinite if the step overflowed."""
     fifth = third = 0.0
     for i in range(flow.scale.size):
         coarse, fine = ERROR_3[0] * room.rates[0, i], ERROR_5[0] * room.rates[0, i]
@@ -87,7 +87,7 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
 
 @inlined_kernel
 def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
-    """Fill `room.bends`, the continuous extension of the step just taken."""
+    """Compute `room.bends`, the continuous extension of the accepted step."""
     n, step = room.motion.size, span.length
     for stage in range(LAST + 1, STAGES):
         place_stage(stage, step, room.motion, room.rates, room.bends[0])
@@ -114,13 +114,13 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
 
 @kernel
 def forget(room: Stages) -> None:
-    """Note that the motion is no longer where the last step left it, so that its rates are not known."""
+    """Record that the motion changed after the last step, so that its rates are not known."""
     room.at.known = False
 
 
 @inlined_kernel
 def step_over(room: Stages) -> None:
-    """Put the motion at the end of the step in place of that at its start."""
+    """Replace the motion at the start of the step by that at its end."""
     for i in range(room.motion.size):
         room.motion[i] = room.vectors[TRIAL, i]
         room.rates[0, i] = room.rates[LAST, i]
@@ -132,14 +132,14 @@ def step_over(room: Stages) -> None:
 
 @kernel
 def settle_on(u: float, room: Stages) -> None:
-    """Put the motion at the fraction `u` of the step in place of that at its start."""
+    """Replace the motion at the start of the step by that at the fraction `u`."""
     place_at(u, room, room.motion)
     forget(room)
 
 
 @kernel
 def place_at(u: float, room: Stages, place: Array) -> None:
-    """Motion at the fraction `u` of the step."""
+    """Compute the motion at the fraction `u` of the step."""
     v = 1.0 - u
     for i in range(room.motion.size):
         value = room.bends[5, i] + u * room.bends[6, i]
@@ -150,7 +150,7 @@ def place_at(u: float, room: Stages, place: Array) -> None:
 
 @inlined_kernel
 def row_poly(system: System, phase: int, row: int, span: Span, room: Stages) -> None:
-    """Coefficients, in `room.polys[row]`, of one row of a phase over the step, time in units of it."""
+    """Compute the coefficients of one row over the step, with time in units of the step, in `room.polys[row]`."""
     rows, polys = system.plain_rows, room.polys
     n = rows.shape[2] - 2
     start = rows[phase, row, n] * span.ground + rows[phase, row, n + 1]
@@ -169,10 +169,10 @@ def row_poly(system: System, phase: int, row: int, span: Span, room: Stages) -> 
 
 @kernel
 def expand_nested(polys: Array, row: int) -> None:
-    """U (F_0 + v (F_1 + u (F_2 + v (F_3 + u (F_4 + v (F_5 + u F_6)))))), v = 1 - u, as powers of u, in place of F."""
+    """Expand u (F_0 + v (F_1 + u (F_2 + v (F_3 + u (F_4 + v (F_5 + u F_6)))))), v = 1 - u, into powers of u."""
     f0, f1, f2, f3 = polys[row, 0], polys[row, 1], polys[row, 2], polys[row, 3]
     f4, f5, f6 = polys[row, 4], polys[row, 5], polys[row, 6]
-    # From within: a + v (b + u c + ...) one after the other.
+    # From the inside outwards: a + v (b + u c + ...) one after the other.
     a0, a1, a2 = f5, f6, 0.0
     b0, b1, b2 = f4 + a0, a1 - a0, a2 - a1  # F_4 + v (F_5 + u F_6)
     c0, c1, c2, c3 = f3, b0, b1, b2  # F_3 + u (...)

@@ -1,4 +1,4 @@
-"""The fast path of the integrated phases: step after step, sample after sample, as long as nothing can hide in them."""
+"""The fast path of the integrated phases: step by step, sample by sample, while no event or peak can occur inside."""
 
 from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.check import nothing_hides
@@ -10,10 +10,10 @@ from rockflex.solve.layout import CARRY, LEFT, Array, Log, Progress, Span, Syste
 
 @inlined_kernel
 def step_through(system: System, flow: Flow, piece: Array, dt: float, at: Progress, log: Log, stages: Stages) -> bool:
-    """Carry the motion over samples from `at.index` on, of which `at.begun` s are done.
+    """Integrate the motion over samples, starting `at.begun` s into the sample `at.index`.
 
-    It stops before a step that needs a closer look, and returns True; or where the work or the room runs out, or at the
-    end of the piece.
+    Returns True before a step that needs a closer look. Returns False when the work or the memory for the history is
+    used up, or at the end of the piece.
     """
     rate, side = 1.0 / dt, system.phases[at.phase].side
     for i in range(at.index, piece.size - 1):

@@ -1,4 +1,4 @@
-"""Sums of stages, written out: loops over so few weights would cost more than the arithmetic."""
+"""Sums of stages, unrolled: loops over so few weights would cost more than the arithmetic."""
 
 from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.tableau import A
@@ -7,7 +7,7 @@ from rockflex.solve.layout import Array
 
 @inlined_kernel
 def place_stage(stage: int, step: float, start: Array, rates: Array, out: Array) -> None:
-    """Where a stage is evaluated: `start` + step Σ A rates; stage 12 is the end of the step."""
+    """Compute the state at which a stage is evaluated, `start` + step Σ A rates; stage 12 is the end of the step."""
     if stage == 1:
         for i in range(start.size):
             total = A[1, 0] * rates[0, i]

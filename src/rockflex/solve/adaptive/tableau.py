@@ -1,13 +1,13 @@
 """Coefficients of DOP853, the Runge-Kutta pair of order 8(5, 3) by Dormand and Prince.
 
-Twelve stages, a continuous extension of order 7 from four more (the first of them is the next step's first), as
-published with E. Hairer, S. P. Nørsett and G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer
-1993, Section II.5 and appendix, in the authors' code DOP853 (BSD licence). The numbers are data; the code is our own.
+Twelve stages, and a continuous extension of order 7 with four more (the first of which is the first stage of the next
+step). Published with E. Hairer, S. P. Nørsett and G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
+Springer 1993, Section II.5 and appendix, in the authors' code DOP853 (BSD licence). Only the numbers are taken from it.
 """
 
 import numpy as np
 
-LAST, STAGES = 12, 16  # the stage that is the step's end; all stages
+LAST, STAGES = 12, 16  # the stage at the end of the step; number of stages
 
 
 def _rows(
@@ -41,7 +41,7 @@ C = np.array(
     ]
 )
 
-# Stage 12 is the step itself, so row 12 holds the weights.
+# Stage 12 is the end of the step, so row 12 contains the weights.
 A = _rows(
     (16, 16),
     {

@@ -1,1 +1,1 @@
-"""The exact engine: states are carried across whole samples in closed form; only event times are solved for."""
+"""The exact engine: states are advanced over whole samples in closed form; only event times are solved for."""

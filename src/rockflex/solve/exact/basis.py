@@ -1,10 +1,10 @@
 """Uncoupling a phase: coordinates in which its exact propagator is block diagonal.
 
-Contact is uncoupled as it stands (Eq. 15): each mode in its energy coordinates (D, D'/ω), whose norm never grows,
-at any damping ratio. Rocking (Eq. 23) is not classically damped: its complex eigenvectors, taken as real pairs,
-uncouple it; where they are (nearly) defective the phase stays dense. The pair of real roots p₁ > 0 > p₂, by which the
-base falls, is taken as a position and a speed: a sloping acceleration displaces its eigenvectors by a'/p³ each, in
-opposite directions, which would drown a small rotation.
+Contact is already uncoupled (Eq. 15): each mode has its energy coordinates (D, D'/ω), whose norm never grows,
+at any damping ratio. Rocking (Eq. 23) is not classically damped. Its complex eigenvectors, taken as real pairs,
+uncouple it; if they are (nearly) defective, the phase is treated as dense. The pair of real roots p₁ > 0 > p₂, which
+describes the fall of the base, is represented by a position and a speed. With its eigenvectors, an acceleration of
+slope a' would give two displacements of a'/p³ in opposite directions, whose cancellation would hide a small rotation.
 """
 
 import math
@@ -23,20 +23,20 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Basis:
-    """Everything of a phase that depends on neither time step nor rows: x' = B x + ..., state = basis · x."""
+    """The part of a phase that depends neither on the time step nor on rows: x' = B x + ..., state = basis · x."""
 
     basis: Array  # (2K, 2K), K = N + b; coordinates k and K + k form pair k
     inverse: Array  # (2K, 2K)
     matrix: Array  # (2K, 2K): B; block diagonal in the pairs unless `dense`
     pairs: Array  # (K, 2, 2): the blocks of B
     roots: Complex  # (K, 2): their eigenvalues, the one with the larger real part first
-    steady: Array  # (3, 2K): the forced solution's coefficients of a, a', 1, as states
+    steady: Array  # (3, 2K): coefficients of a, a', 1 in the forced solution, as states
     dense: bool
     fastest: float  # largest eigenvalue magnitude, rad/s
 
 
 def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:
-    """Uncoupled coordinates of one phase; `accelerations` D'' and q'' over state, a and 1, shape (K, 2K + 2)."""
+    """Return the uncoupled coordinates of a phase; `accelerations`: rows of D'' and q'', shape (K, 2K + 2)."""
     p = model.properties
     omega2, damping = p.omega**2, 2.0 * p.zeta * p.omega
     if not arrow.free:
@@ -45,17 +45,17 @@ def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:
 
 
 def with_constant(known: Basis, arrow: Arrow) -> Basis:
-    """Return the basis of a phase whose arrow differs from that of a known one in its constant forces alone."""
+    """Return the basis of a phase whose arrow differs from a known one only in its constant forces."""
     steady = known.steady.copy()
     steady[2] = 0.0
     places = known.steady.shape[1] // 2 - arrow.constant.size
-    # At rest the modes are still, and the stiffness of the base balances the constant forces.
+    # At rest the modes are zero, and the stiffness of the base balances the constant forces.
     steady[2, 2 * places :: 2] = np.linalg.solve(arrow.stiffness, arrow.constant)
     return replace(known, steady=steady)
 
 
 def _contact_basis(omega2: Array, damping: Array, pairs_in_all: int) -> Basis:
-    """Uncoupled coordinates of full contact (Eq. 15), the last pairs empty."""
+    """Return the uncoupled coordinates of full contact (Eq. 15); the last pairs are empty."""
     n, count = omega2.size, pairs_in_all
     omega = np.sqrt(omega2)
     modes = np.arange(n)
@@ -83,7 +83,7 @@ def _contact_basis(omega2: Array, damping: Array, pairs_in_all: int) -> Basis:
 
 
 def _rocking_basis(accelerations: Array, energy_scale: Array) -> Basis:
-    """Uncoupled coordinates of rocking (Eq. 23)."""
+    """Return the uncoupled coordinates of rocking (Eq. 23)."""
     order = _positions_and_speeds(accelerations.shape[0])
     matrix, by_acceleration, constant = _first_order(accelerations)
     scale = energy_scale[order]
@@ -128,7 +128,7 @@ def _basis(
 
 
 def _first_order(accelerations: Array) -> tuple[Array, Array, Array]:
-    """Eq. 23 as y' = A y + f a + g with y = [D, θ, D', θ'], from the rows of D'' and θ''."""
+    """Return Eq. 23 as y' = A y + f a + g with y = [D, θ, D', θ'], from the rows of D'' and θ''."""
     half = accelerations.shape[0]
     order = _positions_and_speeds(half)
     matrix = np.zeros((2 * half, 2 * half))
@@ -140,14 +140,14 @@ def _first_order(accelerations: Array) -> tuple[Array, Array, Array]:
 
 
 def _positions_and_speeds(pairs: int) -> NDArray[np.intp]:
-    """Places of [D, q, D', q'] in the state [D, D', q_1, q'_1, ..]."""
+    """Return the indices of [D, q, D', q'] in the state [D, D', q_1, q'_1, ..]."""
     n, freedoms = pairs - len(FREEDOMS), 2 * np.arange(len(FREEDOMS))
     modes = np.arange(n)
     return np.concatenate((modes, 2 * n + freedoms, n + modes, 2 * n + freedoms + 1)).astype(np.intp)
 
 
 def _energy_scale(mass: Array, omega2: Array, arrow: Arrow) -> Array:
-    """Factors that turn the state into square roots of energies, in which the eigenvectors are nearly orthogonal."""
+    """Return factors that scale the state to square roots of energies, which makes eigenvectors nearly orthogonal."""
     speed, omega = np.sqrt(mass), np.sqrt(omega2)
     spin = 1.0 / np.sqrt(np.diag(arrow.flexibility))
     stiffness = np.abs(np.diag(arrow.stiffness))
@@ -156,7 +156,7 @@ def _energy_scale(mass: Array, omega2: Array, arrow: Arrow) -> Array:
 
 
 def _real_pairs(values: Complex, vectors: Complex) -> tuple[Array, Array, Complex]:
-    """Real column pairs, their 2 x 2 blocks and eigenvalues, from the eigenpairs of a real matrix."""
+    """Return real column pairs, their 2 x 2 blocks and eigenvalues, from the eigenpairs of a real matrix."""
     turning = np.flatnonzero(values.imag > 0.0)
     still = np.flatnonzero(values.imag == 0.0)
     still = still[np.argsort(-values.real[still])]
@@ -185,11 +185,11 @@ def _to_position_and_speed(columns: Array, pairs: Array, roots: Complex) -> None
         return
     p = math.sqrt(-one * two)
     count = pairs.shape[0]
-    half = columns.shape[0] // 2 - 1  # the place of θ
+    half = columns.shape[0] // 2 - 1  # index of θ
     first, second = (columns[:, k] / columns[half, k] for k in (pair, count + pair))
     place = (one * second - two * first) / (one - two)
     speed = p * (first - second) / (one - two)
-    # For θ = 1 the modes of a narrow base move far: both take the size of the other columns, by a power of two.
+    # For θ = 1 the modes of a narrow base are large: scale both to the size of the other columns, by a power of two.
     size = 0.5 ** math.frexp(max(float(np.linalg.norm(place)), float(np.linalg.norm(speed))))[1]
     columns[:, pair], columns[:, count + pair] = size * place, size * speed
     pairs[pair] = [[0.0, p], [p, one + two]]

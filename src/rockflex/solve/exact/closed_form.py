@@ -1,4 +1,4 @@
-"""The motion between the states of a history, in closed form where a phase is linear."""
+"""The motion between the states of a history, in closed form for linear phases."""
 
 import math
 from functools import cached_property
@@ -34,18 +34,18 @@ class ClosedForm:
 
     @cached_property
     def fastest(self) -> float:
-        """Largest eigenvalue magnitude of all phases, rad/s; of those that are integrated, for small rotations."""
+        """Largest eigenvalue magnitude of all phases, rad/s; integrated phases are linearised for small rotations."""
         of_bases = [basis.fastest for basis in self._bases.values()]
         integrated = [side for side in self._model.sides if side not in self._bases]
         return max([*of_bases, *(_fastest(self._model.linear, side) for side in integrated)])
 
     def between(self, states: Array, fraction: float) -> Array:
-        """States at one fraction of the way from every kept state to the next, shape (n - 1, 2N + 2).
+        """Return states at a fraction of the interval between adjacent nodes, shape (n - 1, 2N + 2).
 
-        Where the phase is not linear they are those of the kept state.
+        In phases that are not linear these are the states at the start of the interval.
         """
         steps = np.diff(states[:, TIME])
-        # Samples' distances differ by the rounding of their times; alike, they share one propagator.
+        # The steps differ by rounding of the times; once rounded to equal values, they share one propagator.
         steps = np.round(steps, 12 - math.ceil(math.log10(max(float(states[-1, TIME]), 1.0))))
         safe = np.where(steps > 0.0, steps, 1.0)
         slopes = np.where(steps > 0.0, np.diff(states[:, GROUND]) / safe, 0.0)
@@ -64,7 +64,7 @@ class ClosedForm:
 
 
 def _fastest(model: LinearModel, side: int) -> float:
-    """Largest eigenvalue magnitude of one phase; there is one even where tendons balance the weight."""
+    """Return the largest eigenvalue magnitude of one phase; it exists even if tendons balance the weight."""
     size, layout = model.layout.core, model.layout
     places = [*range(layout.modes), layout.rotation]
     speeds = [*range(layout.modes, 2 * layout.modes), layout.spin]

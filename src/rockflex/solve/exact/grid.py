@@ -5,7 +5,7 @@ from rockflex._kernel import kernel
 
 @kernel
 def largest_step(place: int, levels: int) -> int:
-    """Level of the largest step of the grid that starts at `place`."""
+    """Return the level of the largest step of the grid that starts at `place`."""
     level = levels
     while level > 0 and place % (1 << (levels - level + 1)) == 0:
         level -= 1

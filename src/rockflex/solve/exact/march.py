@@ -1,4 +1,4 @@
-"""The fast path: one linear phase carried over whole samples, as long as nothing can hide in them."""
+"""The fast path: a linear phase advanced over whole samples, while no event or peak can occur inside them."""
 
 import math
 
@@ -30,7 +30,7 @@ WHOLE = ZERO  # the level of a whole sample
 
 @kernel
 def to_state(system: System, at: Progress, ground: float, motion: Motion) -> None:
-    """State from the coordinates of the present phase."""
+    """Compute the state from the coordinates of the present phase."""
     p, size = at.phase, motion.w.shape[1]
     for i in range(size):
         motion.state[i] = 0.0
@@ -43,7 +43,7 @@ def to_state(system: System, at: Progress, ground: float, motion: Motion) -> Non
 
 @kernel
 def to_coordinates(system: System, at: Progress, ground: float, motion: Motion) -> None:
-    """Coordinates of the present phase from the state."""
+    """Compute the coordinates of the present phase from the state."""
     p, size = at.phase, motion.w.shape[1]
     for k in range(size):
         forced = system.forced[p, 0, k] * ground + system.forced[p, 1, k] * at.slope
@@ -55,9 +55,9 @@ def to_coordinates(system: System, at: Progress, ground: float, motion: Motion) 
 
 @kernel
 def march(system: System, piece: Array, dt: float, most: int, at: Progress, log: Log, motion: Motion) -> None:
-    """Carry `motion.w` over at most so many samples of a piece; stop before one that needs a closer look.
+    """Advance `motion.w` over at most `most` samples of a piece; stop before one that needs a closer look.
 
-    That sample is left examined in `motion`, and `at.finding` says what it may hide.
+    The result of examining that sample remains in `motion`, and `at.finding` is what may occur in it.
     """
     p = at.phase
     pairs = motion.norms.size

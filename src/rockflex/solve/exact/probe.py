@@ -1,4 +1,4 @@
-"""The question that is asked of every step, whether an event or a new peak can hide inside it."""
+"""The check of every step whether an event or a new peak can occur inside it."""
 
 import math
 
@@ -26,12 +26,12 @@ from rockflex.solve.layout import (
     unit_of,
 )
 
-NOTHING, PEAK, EVENT = 0, 1, 2  # what a step may hide; the first row hides events, and the peak of the rotation
+NOTHING, PEAK, EVENT = 0, 1, 2  # what may occur in a step; events, and the peak of the rotation, in the first row
 
 
 @kernel
 def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
-    """Limits beyond which a row calls for an event (row 0) or a new peak (all others, and the rotation)."""
+    """Set the limits beyond which a row means an event (row 0) or a new peak (all others, and the rotation)."""
     support = log.peaks.size - 1
     for f in range(log.peaks.size):
         motion.values[LOWER, f] = -log.peaks[f]
@@ -47,7 +47,7 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
 
 @kernel
 def examine(system: System, phase: int, level: int, here: float, there: float, slope: float, motion: Motion) -> None:
-    """Carry `motion.w` over a step into `w_end`, with the rows asked for at both ends and the pairs' norms."""
+    """Advance `motion.w` over a step, and compute the requested rows at both ends and the norms of the pairs."""
     pairs = motion.norms.size
     count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
     for k in range(count):
@@ -77,11 +77,11 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
 
 @kernel
 def probe(system: System, phase: int, level: int, slope: float, motion: Motion) -> int:
-    """What can hide in the step examined: nothing, a peak, or an event; `motion.doubt` marks the rows in question.
+    """Return what can occur in the examined step: nothing, a peak, or an event; `DOUBT` marks the rows in question.
 
-    A row within `sag` of its chord is settled at once. Else a slope that keeps its sign, within `swing` of
-    its chord, proves that the row has its extremes at the ends, where `raise_peaks` picks them up; and a row that turns
-    is settled where it stays within `ripple` of the cubic through both ends.
+    A row whose chord, widened by `sag`, is within the limits is settled at once. Otherwise, if its slope is within
+    `swing` of a chord that does not change sign, the row has its extremes at the ends, where `raise_peaks` finds them.
+    Otherwise the row is settled if the cubic through both ends, widened by `ripple`, is within the limits.
     """
     pairs = motion.norms.size
     count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
@@ -123,7 +123,7 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
 
 @kernel
 def cubic_range(first: float, last: float, before: float, after: float) -> tuple[float, float]:
-    """Least and largest value over [0, 1] of the cubic with the given end values and end slopes."""
+    """Return the smallest and largest value over [0, 1] of the cubic with the given end values and slopes."""
     low, high = min(first, last), max(first, last)
     square = 3.0 * (last - first) - 2.0 * before - after
     cube = before + after - 2.0 * (last - first)

@@ -1,8 +1,8 @@
 """Local power series: the motion about one instant.
 
-Between events the motion is analytic, so about any instant it is a power series whose coefficients follow from
-the equations of motion one by one (Eqs. 15 and 23). No modal sum is formed, so nothing cancels: a rotation that
-grows like t² or t³ from zero keeps its full relative precision.
+Between events the motion is analytic, so about any instant it is a power series whose coefficients follow recursively
+from the equations of motion (Eqs. 15 and 23). There is no modal sum and so no cancellation: a rotation that grows like
+t² or t³ from zero retains its full relative precision.
 """
 
 import math
@@ -27,10 +27,10 @@ from rockflex.solve.polynomials import evaluate
 
 @kernel
 def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) -> None:
-    """Fill `motion.series` (N + b, order + 1) with the Taylor coefficients of D and q, time in units of the span.
+    """Compute the Taylor coefficients of D and q in `motion.series` (N + b, order + 1), with time in units of the span.
 
-    `lift` is θ'' at the instant of uplift, where it is known better than the equation of motion gives it (zero
-    from a condition that is met continuously); NaN elsewhere.
+    `lift` is θ'' at the instant of uplift if it is known more accurately than from the equation of motion (zero for a
+    condition that is satisfied continuously); NaN otherwise.
     """
     n, freedoms, step, series = system.layout.modes, motion.push.size, span.length, motion.series
     free = system.phases[phase].side != 0.0
@@ -51,7 +51,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
         elif k == 1:
             drive = square * step * span.slope
         pair = 1.0 / ((k + 2.0) * (k + 1.0))
-        # The first freedom's sum is kept in a register, and the others' in memory.
+        # The sum for the first degree of freedom is kept in a register, the others in memory.
         pushed = 0.0
         for j in range(1, freedoms):
             motion.push[j] = 0.0
@@ -88,7 +88,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
 
 @kernel
 def row_series(system: System, phase: int, row: int, motion: Motion, span: Span) -> None:
-    """Taylor coefficients, in `motion.polys[row]`, of one row of a phase."""
+    """Compute the Taylor coefficients of one row of a phase in `motion.polys[row]`."""
     n, pairs, terms = system.layout.modes, motion.series.shape[0], system.phases[phase].terms
     rows, polys, series, step = system.plain_rows, motion.polys, motion.series, span.length
     ground = rows.shape[2] - 2
@@ -109,7 +109,7 @@ def row_series(system: System, phase: int, row: int, motion: Motion, span: Span)
 
 @kernel
 def advance(system: System, motion: Motion, u: float, step: float) -> None:
-    """Put the state at the fraction `u` of `step`, from the series, in place of that at its start."""
+    """Replace the state at the start of `step` by that at its fraction `u`, from the series."""
     n = system.layout.modes
     for i in range(motion.series.shape[0]):
         value, rate = evaluate(motion.series, i, u)

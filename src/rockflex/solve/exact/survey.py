@@ -1,4 +1,4 @@
-"""The search for peaks inside a step that holds no event. It leaves the motion as it is."""
+"""The search for peaks inside a step without events. It does not change the motion."""
 
 import numpy as np
 
@@ -29,12 +29,12 @@ from rockflex.solve.peaks import raise_peak, raise_row
 
 @kernel
 def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -> bool:
-    """Raise the peaks of the rows in doubt over the step `span`, of level `at.level`, that has just been probed.
+    """Update the peaks of the rows in doubt over the step `span`, of level `at.level`, that has just been probed.
 
-    The step is walked on the dyadic grid in the largest steps in which no peak can hide, down to units that are
-    crossed by their power series. A row that cannot hide a peak in a step is not looked at in its parts.
-    `motion.w_end` still holds the end of the step afterwards. Returns False where the work runs out before the end;
-    `at` then says how far the search has come.
+    The step is traversed on the dyadic grid in the largest steps in which no peak can occur, down to units that are
+    treated by power series. A row that cannot have a peak in a step is not examined in its parts. The end of the step
+    remains available in `motion.w`. Returns False if the work is used up before the end; `at` then contains the
+    progress of the search.
     """
     p, level = at.phase, at.level
     levels = system.phases[p].levels
@@ -92,7 +92,7 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
 
 @kernel
 def survey_unit(system: System, phase: int, span: Span, log: Log, motion: Motion) -> None:
-    """Raise the peaks of the rows in doubt over a unit without events."""
+    """Update the peaks of the rows in doubt over a unit without events."""
     expand(system, phase, motion, span, np.nan)
     for f in range(1, log.peaks.size):
         if motion.flags[DOUBT, f]:

@@ -1,9 +1,9 @@
-"""Propagators and curvature bounds of a phase for the steps dt, dt/2, ... dt/2^J, and the tables that hold them.
+"""Propagators and curvature bounds of a phase for the steps dt, dt/2, ... dt/2^J, and their tables.
 
-The bounds say where an event or a peak can hide between two instants. Over a step h a row leaves its chord by at
+The bounds decide whether an event or a peak can occur between two instants. Over a step h a row leaves its chord by at
 most h²/8 max|row''|, its slope leaves its own chord by h²/8 max|row'''|, and the row leaves the cubic through the
 values and slopes at both ends by h⁴/384 max|row''''|. For one pair of coordinates |row''| ≤ |row B²| |w| exp(growth),
-and so on; a pair that turns more than once in the step is bounded by its amplitude instead.
+and so on; a pair that is too fast for the step is bounded by its amplitude instead.
 """
 
 import math
@@ -35,16 +35,16 @@ from rockflex.solve.layout import (
     System,
 )
 
-LONGEST_FALL = 300.0  # e-folds of the rotation within a time step: beyond it numbers overflow
+LONGEST_FALL = 300.0  # e-folds of the rotation within a time step; more would overflow
 
 
 def check_step(basis: Basis, dt: float) -> None:
-    """Check that no rotation grows beyond all numbers within a time step.
+    """Check that no rotation overflows within a time step.
 
     Raises
     ------
     InputError
-        If one does.
+        If a rotation overflows.
     """
     fall = float(basis.roots.real.max())
     if fall * dt > LONGEST_FALL:
@@ -55,12 +55,12 @@ def check_step(basis: Basis, dt: float) -> None:
 
 
 def levels_of(fastest: float, dt: float) -> int:
-    """How often a time step is halved until no mode turns by more than one radian."""
+    """Return how often a time step is halved until the phase of no mode advances by more than one radian."""
     return max(0, math.ceil(math.log2(max(fastest * dt, 1.0))))
 
 
 def terms_of(fastest: float, dt: float) -> int:
-    """Terms with which a series that starts at t³, as at an uplift, has converged over the finest step of a phase."""
+    """Return the number of terms after which a series from t³ (uplift) converges over the finest step of a phase."""
     turn = fastest * dt * 0.5 ** levels_of(fastest, dt)
     order, term = 3, 1.0
     while term > 1e-17:
@@ -70,7 +70,7 @@ def terms_of(fastest: float, dt: float) -> int:
 
 
 def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, levels: int, *, dense: bool) -> System:
-    """Return tables with room for so many phases and halvings of the time step, and none in them yet."""
+    """Return empty tables for the given numbers of phases and halvings of the time step."""
     p, layout, b = model.properties, model.layout, len(FREEDOMS)
     n, core, pairs, columns = layout.modes, layout.core, layout.core // 2, layout.columns
     whole = (capacity, levels + 1)
@@ -96,7 +96,7 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
 
 
 def grown(system: System, larger: System) -> System:
-    """Return `larger` with all that `system` holds."""
+    """Return `larger` with the content of `system`."""
     for old, new in zip(system[2:], larger[2:], strict=True):
         if old.size and new.shape != old.shape:
             new[tuple(slice(length) for length in old.shape)] = old
@@ -106,9 +106,9 @@ def grown(system: System, larger: System) -> System:
 
 
 def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_rows: Array, twin: int) -> None:
-    """Enter one phase at place `p`; `plain_rows` (F, C). Where it is not linear, there is no basis.
+    """Enter one phase at index `p`; `plain_rows` (F, C). A phase that is not linear has no basis.
 
-    `twin` is the place of a phase whose motion differs by constant forces alone, or -1: what both share is copied.
+    `twin` is the index of a phase that differs only in constant forces, or -1; the common tables are copied.
     """
     guard, arrow, dt = phase.guards[0], phase.arrow, system.dt
     system.plain_rows[p] = plain_rows
@@ -148,7 +148,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
 
 
 def _blocks(basis: Basis, steps: Array) -> Array:
-    """exp(B h) of every pair: exp(λ₁h) I + (exp(λ₁h) - exp(λ₂h))/(λ₁ - λ₂) (B - λ₁ I)."""
+    """Return exp(B h) of every pair: exp(λ₁h) I + (exp(λ₁h) - exp(λ₂h))/(λ₁ - λ₂) (B - λ₁ I)."""
     one, two = basis.roots[:, 0], basis.roots[:, 1]
     h = steps[:, None]
     gap = (one - two) * h
@@ -164,13 +164,13 @@ def _blocks(basis: Basis, steps: Array) -> Array:
 
 
 def _pair_norm(rows: Array) -> Array:
-    """Norm of each row over each pair of coordinates (k, K + k)."""
+    """Return the norm of each row over each pair of coordinates (k, K + k)."""
     half = rows.shape[-1] // 2
     return np.sqrt(rows[..., :half] ** 2 + rows[..., half:] ** 2)
 
 
 def _bounds(basis: Basis, rows: Array, first: Array, steps: Array) -> tuple[Array, Array, Array]:
-    """Sag, swing and ripple of every row over every step, (J + 1, F, K) each."""
+    """Return sag, swing and ripple of every row over every step, each of shape (J + 1, F, K)."""
     h = steps[:, None, None]
     growth = np.exp(np.maximum(basis.roots.real.max(axis=1), 0.0) * h)
     second = first @ basis.matrix
@@ -182,7 +182,7 @@ def _bounds(basis: Basis, rows: Array, first: Array, steps: Array) -> tuple[Arra
 
 
 def _dense_bounds(basis: Basis, rows: Array, steps: Array) -> tuple[Array, Array, Array]:
-    """The same from |row B² exp(B t)| on the finest grid, and a norm bound between its points."""
+    """Return the same from |row B² exp(B t)| on the finest grid, with a norm bound between its points."""
     finest, between = expm(basis.matrix * steps[-1]), expm(np.abs(basis.matrix) * steps[-1])
     second = rows @ basis.matrix @ basis.matrix
     third = second @ basis.matrix
@@ -199,7 +199,7 @@ def _dense_bounds(basis: Basis, rows: Array, steps: Array) -> tuple[Array, Array
 
 
 def propagate(basis: Basis, w: Array, steps: Array) -> Array:
-    """Coordinates after steps of any length, one a row of `w` (n, 2K)."""
+    """Return the coordinates after steps of any length, one per row of `w` (n, 2K)."""
     lengths, which = np.unique(steps, return_inverse=True)
     if basis.dense:
         propagators = np.stack([expm(basis.matrix * length) for length in lengths])
