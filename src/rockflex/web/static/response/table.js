@@ -14,8 +14,8 @@ const PEAKS = [
   ["max_horizontal_reaction", "ΣF_x,max [kN]", 1e-3, true],
   ["min_vertical_reaction", "N_min [kN]", 1e-3, false],
 ];
-const MEANT = "In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; unlike "
-  + "V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.";
+const MEANT = "In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; "
+  + "unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.";
 
 // The fixed-base model to compare with, if any; preferably one that yields too if the model does.
 function reference(view, model) {
@@ -89,12 +89,11 @@ export function words(view) {
     if (p.nominal_overturning) text += " This exceeds the nominal limit 0.7 atan(B/h*₁), but it did not overturn.";
     if (p.max_total_top_displacement !== null) {
       text += ` The top moves by up to ${number(p.max_total_top_displacement, 3)} m relative to the ground`;
-      text += fixed ? `; with ${named(fixed)}, by ${number(fixed.peaks.max_total_top_displacement, 3)} m.` : ".";
+      text += fixed ? `, and ${number(fixed.peaks.max_total_top_displacement, 3)} m for ${named(fixed)}.` : ".";
     }
     if (fixed && fixed.peaks.max_base_moment > 0) {
       const change = 100 * (p.max_base_moment / fixed.peaks.max_base_moment - 1);
-      text += ` Compared with ${named(fixed)}, the base moment is `;
-      text += `${number(Math.abs(change), 3)} % ${change < 0 ? "smaller" : "larger"}.`;
+      text += ` The base moment is ${number(Math.abs(change), 3)} % ${change < 0 ? "smaller" : "larger"} than for ${named(fixed)}.`;
     }
   }
   const fallen = view.models.filter((m) => m !== first && m.status === "overturned").map((m) => m.label);

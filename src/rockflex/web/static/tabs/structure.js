@@ -116,8 +116,8 @@ export default function structureTab(app) {
     return [
       h("h2", {}, view.name || kinds[view.kind].title),
       view.adequacy ? h("p", { class: "answer", id: "adequacy" }, view.adequacy.reason) : "",
-      view.adequacy ? h("p", { class: "hint" }, "This check uses masses and frequencies only. Impacts also excite higher modes, which affect the base shear ",
-        "most: compare with MDOF-S on the Response tab.") : "",
+      view.adequacy ? h("p", { class: "hint" }, "This check uses masses and frequencies only. Impacts also excite higher modes, ",
+        "which affect the base shear most: compare with MDOF-S on the Response tab.") : "",
       pictures(view),
       h("dl", { class: "values" }, view.properties.map(parameter)),
       table(view),
