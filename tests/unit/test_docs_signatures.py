@@ -27,7 +27,7 @@ def is_shown(name: str) -> bool:
     return callable(obj) and not (isinstance(obj, type) and issubclass(obj, Exception))
 
 
-@pytest.mark.parametrize("name", filter(is_shown, rockflex.__all__))
+@pytest.mark.parametrize("name", list(filter(is_shown, rockflex.__all__)))
 def test_a_signature_has_readable_types(name):
     for word in ("_Buffer", "_SupportsArray", "SupportsIndex", "NDArray", "Float", "Array ", "Motions", "WORK_LIMIT"):
         assert word not in rendered(name)
