@@ -2,8 +2,8 @@
 Incremental analysis, with resurrections
 ========================================
 
-Every record is scaled up until it overturns the frame, and beyond: a rocking structure that a motion overturns may
-stand when the motion is stronger. A search that stops at the first fall would not see it.
+Every record is scaled up until it overturns the frame, and beyond: a structure that overturns under a motion may
+survive a stronger one. A search that stops at the first overturning would miss this.
 """
 
 import math
