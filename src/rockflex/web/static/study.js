@@ -101,16 +101,16 @@ export class Study {
   }
 
   async #load() {
-    const asked = this.token;
-    if (!asked) return;
+    const token = this.token;
+    if (!token) return;
     try {
-      const answer = await ask(`/api/study/${this.kind}/${asked}`, { state: this.app.state });
-      if (asked !== this.token) return;
+      const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.app.state });
+      if (token !== this.token) return;
       this.answer = answer;
       this.app.complain(this.#root, {});
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
-      if (asked !== this.token) return;
+      if (token !== this.token) return;
       this.app.complain(this.#root, error.errors);
       if (error.status === 404) this.token = this.answer = null;
       this.cancel.disabled = !this.token;

@@ -23,8 +23,8 @@ export default function designTab(app) {
   const list = (name, label, options) =>
     select(`design.${name}`, label, options, choice()[name], (value) => put({ [name]: value }));
 
-  const asked = app.about.limit_states.filter((each) => each.noun);
-  const limit = list("limit", "Limit state", asked.map((each) => [each.name, each.noun]));
+  const limitStates = app.about.limit_states.filter((each) => each.noun);
+  const limit = list("limit", "Limit state", limitStates.map((each) => [each.name, each.noun]));
   const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
   const target = entry("target", "Acceptable probability", { hint: "0.0001 to 0.99" });
   const measure = list("measure", "Intensity measure", measuresOf(app.about, false));

@@ -23,8 +23,8 @@ export default function fragilityTab(app) {
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
   const measures = measuresOf(app.about, true);
   const measure = select("cloud.measure", "Intensity measure", measures, choice().measure, (value) => put({ measure: value }));
-  const asked = app.about.limit_states;
-  const limit = select("cloud.limit", "Limit state", asked.map((each) => [each.name, each.clause]), choice().limit,
+  const limitStates = app.about.limit_states;
+  const limit = select("cloud.limit", "Limit state", limitStates.map((each) => [each.name, each.clause]), choice().limit,
     (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
     { unit: "rad", hint: "0.0001 to 1.5" });
@@ -85,7 +85,7 @@ export default function fragilityTab(app) {
       ],
     });
     const at = choice().limit === "rotation" ? choice().rotation
-      : asked.find((each) => each.name === choice().limit).line;
+      : limitStates.find((each) => each.name === choice().limit).line;
     cloud.set({
       yRange: [1e-5, 2],
       series: all.map((c) => ({

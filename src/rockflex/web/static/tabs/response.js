@@ -127,10 +127,10 @@ export default function responseTab(app) {
   }
 
   const load = latest(async () => {
-    const begun = performance.now();
+    const started = performance.now();
     const before = verdict.textContent;
     const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? "Computing …" : FIRST), PATIENCE);
-    const asked = JSON.stringify([app.state.scale, app.state.models]);
+    const requested = JSON.stringify([app.state.scale, app.state.models]);
     const answer = await app.ask("/api/response", element, { focus: energy.focus });
     clearTimeout(patience);
     results.classList.toggle("stale", !answer);
@@ -149,8 +149,8 @@ export default function responseTab(app) {
     answer.end = Math.max(...answer.models.map((m) => m.t[m.t.length - 1]));
     view = answer;
     draw();
-    element.dataset.redrawn = String(Math.round(performance.now() - begun));
-    element.dataset.shows = asked;
+    element.dataset.redrawn = String(Math.round(performance.now() - started));
+    element.dataset.shows = requested;
   });
 
   function refresh() {
@@ -175,14 +175,14 @@ export default function responseTab(app) {
 // Intervals of time in which the base of a model is uplifted.
 function uplifts(model) {
   const spans = [];
-  let begun = null;
+  let start = null;
   for (let i = 0; i < model.t.length; i++) {
-    if (model.side[i] !== 0 && begun === null) begun = model.t[i];
-    if (model.side[i] === 0 && begun !== null) {
-      spans.push([begun, model.t[i]]);
-      begun = null;
+    if (model.side[i] !== 0 && start === null) start = model.t[i];
+    if (model.side[i] === 0 && start !== null) {
+      spans.push([start, model.t[i]]);
+      start = null;
     }
   }
-  if (begun !== null) spans.push([begun, model.t[model.t.length - 1]]);
+  if (start !== null) spans.push([start, model.t[model.t.length - 1]]);
   return spans;
 }
