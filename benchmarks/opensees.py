@@ -1,4 +1,4 @@
-"""Speed against OpenSees, at the same error of θ_max; a line instead of the table where it is not installed."""
+"""Speed against OpenSees, at the same error of θ_max; a line instead of the table if it is not installed."""
 
 import sys
 from pathlib import Path
@@ -18,7 +18,7 @@ def table() -> Table | str:
     except ImportError as error:
         return f"no comparison with OpenSees: {error}"
     columns = ("structure", "model", "error ≤", "OpenSees dt", "OpenSees ms", "one call ms", "OpenSees / one call")
-    result = Table(*columns, title="one rocking excursion, OpenSees held to an error of θ_max")
+    result = Table(*columns, title="one rocking excursion, OpenSees to a given error of θ_max")
     for prototype in (SHEAR, FLEXURE):
         for each in speeds(prototype):
             times = (f"{each.opensees * 1e3:.0f}", f"{each.rockflex * 1e3:.2f}", f"{each.ratio:.0f}")

@@ -1,7 +1,7 @@
 """Speed of the engines, as ratios within one run: against SciPy's solvers, and against the bare recurrence.
 
-``make bench`` prints one table. Every figure is the least of several repetitions (the ODE solvers run once, since they
-take seconds). Ratios hold on any machine; the times are this machine's.
+``make bench`` prints one table. Every time is the minimum of several repetitions (the ODE solvers run once, since they
+take seconds). The ratios hold on any machine; the times are those of this machine.
 """
 
 import resource
@@ -110,7 +110,7 @@ def ode(structure: rf.Frame, motion: rf.GroundMotion, method: str) -> float:
 
 @njit
 def recurrence(record: np.ndarray, a: np.ndarray, b: np.ndarray, d: np.ndarray, v: np.ndarray) -> float:
-    """Displacements and velocities of N oscillators, sample by sample, and nothing else."""
+    """Displacements and velocities of N oscillators, sample by sample, without events or peaks."""
     total = 0.0
     for i in range(record.size - 1):
         before, after = record[i], record[i + 1]
@@ -137,7 +137,7 @@ def floor(n: int, motion: rf.GroundMotion) -> float:
 
 
 def memory() -> str:
-    """Growth of the process over many short runs, next to that of the table they return."""
+    """Memory growth of the process over many short runs, next to that of the table they return."""
     structure, motion = frame(1), rf.ricker_pulse(2.0, 0.5, dt=0.02)
     lines = ['memory of simulate_many, output="peaks" (2DOF-S under a Ricker pulse):']
     for runs in (10_000, 100_000, 1_000_000):

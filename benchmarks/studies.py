@@ -1,4 +1,4 @@
-"""The studies of Sections 3.2 and 3.3 as a user runs them: time, its parts, runs a second, and memory."""
+"""The studies of Sections 3.2 and 3.3 as a user runs them: time, its parts, runs per second, and memory."""
 
 import json
 import subprocess
@@ -14,9 +14,9 @@ from timing import least
 import rockflex as rf
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-MANY = (2_000, 10_000)  # population runs whose memory is looked at
+MANY = (2_000, 10_000)  # population runs whose memory is measured
 
-# In a process of its own, since the peak of a process never falls.
+# In a separate process, since the peak of a process never falls.
 MEMORY = """
 import json, resource, sys, tempfile, time
 import rockflex as rf
@@ -44,7 +44,7 @@ class Timed:
 
 
 def table() -> Table:
-    """Times of the two example studies, kept in folders, and of their parts on one thread."""
+    """Times of the two example studies, saved in folders, and of their parts on one thread."""
     studies = {name: rf.load_study(EXAMPLES / f"{name}.toml") for name in ("cloud", "population")}
     for study in studies.values():
         study.plan().chunk(0)  # compiled, and read from disk
@@ -98,7 +98,7 @@ def breakdown(studies: dict[str, "rf.CloudStudy | rf.PopulationStudy"]) -> dict[
 
 
 def memory() -> str:
-    """Peak resident set of large populations, each in a process of its own."""
+    """Peak resident set of large populations, each in a separate process."""
     lines = ["memory of run_study, population, kept in a folder (peak resident set):"]
     for runs in MANY:
         done = subprocess.run([sys.executable, "-c", MEMORY, str(runs)], capture_output=True, text=True, check=True)

@@ -1,4 +1,4 @@
-"""What the benchmarks share."""
+"""Helpers shared by the benchmarks."""
 
 import time
 from collections.abc import Callable
@@ -23,7 +23,7 @@ def frame(n: int) -> rf.Frame:
 
 
 def least(function: Callable[[], object], repetitions: int) -> float:
-    """Least time of a call, in s."""
+    """Minimum time of a call, in s."""
     function()
     times = []
     for _ in range(repetitions):

@@ -1,9 +1,9 @@
-"""Latency of the web page with many visitors at once: every visitor moves a slider and waits for the answer.
+"""Latency of the web page with many visitors at once: every visitor moves a slider and waits for the response.
 
     python benchmarks/web_latency.py [--sessions 20] [--seconds 15]
 
-The server runs in a process of its own; once more with a cloud of runs beside it. The visitors are threads of this
-process, and so share the cores with the server. What a browser needs to draw is not in these numbers.
+The server runs in a separate process; the measurement is repeated with a cloud of runs in the background. The visitors
+are threads of this process, and so share the cores with the server. The time to draw in a browser is not included.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-PAUSE = 0.5  # s between an answer and the next move, on average
+PAUSE = 0.5  # s between a response and the next move, on average
 CLOUD = {"suites": ["fema-p695-far-field"], "scales": [0.5, 1.0, 1.5, 2.0, 3.0, 4.0], "models": ["MDOF-C-SI"]}
 
 
@@ -32,12 +32,12 @@ class Visitor:
         self.connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
 
     def get(self, path: str) -> Any:
-        """Answer to a question without content."""
+        """Response to a request without content."""
         self.connection.request("GET", path)
         return json.loads(self.connection.getresponse().read())
 
     def post(self, path: str, content: Any) -> tuple[Any, float]:
-        """Answer as it came, and the seconds that it took."""
+        """Raw response, and the seconds it took."""
         body = json.dumps(content)
         begun = time.perf_counter()
         self.connection.request("POST", path, body, {"Content-Type": "application/json", "Accept-Encoding": "gzip"})
@@ -50,7 +50,7 @@ class Visitor:
 
 
 def session(port: int, number: int, until: float, times: dict[str, list[float]]) -> None:
-    """Move the slider of the scale, and now and then look at the other tabs."""
+    """Move the slider of the scale, and occasionally visit the other tabs."""
     chance = random.Random(number)
     visitor = Visitor(port)
     state = visitor.get("/api/about")["state"]
@@ -64,7 +64,7 @@ def session(port: int, number: int, until: float, times: dict[str, list[float]])
 
 
 def measure(sessions: int, seconds: float, *, cloud: bool) -> tuple[dict[str, list[float]], int]:
-    """Latencies by kind of question, and the runs of the cloud that went on beside it."""
+    """Latencies by kind of request, and the runs of the cloud in the background."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -97,14 +97,14 @@ def measure(sessions: int, seconds: float, *, cloud: bool) -> tuple[dict[str, li
 
 
 def plain(data: bytes) -> bytes:
-    """Unpacked answer."""
+    """Decompressed response."""
     import gzip
 
     return gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data
 
 
 def reach(port: int) -> Visitor:
-    """Wait until the server answers."""
+    """Wait until the server responds."""
     for _ in range(300):
         try:
             visitor = Visitor(port)
@@ -116,8 +116,8 @@ def reach(port: int) -> Visitor:
 
 
 def table(sessions: int = 20, seconds: float = 15.0) -> Table:
-    """Latencies alone and beside a cloud."""
-    shown = Table("", "answers", "a second", "median", "95 %", "longest", title=f"latency in ms, {sessions} visitors")
+    """Latencies without and with a cloud."""
+    shown = Table("", "answers", "per second", "median", "95 %", "longest", title=f"latency in ms, {sessions} visitors")
     for cloud in (False, True):
         times, done = measure(sessions, seconds, cloud=cloud)
         beside = f", beside a cloud ({done} runs done)" if cloud else ""

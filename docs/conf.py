@@ -23,6 +23,7 @@ extensions = [
     "docstrings",
     "figures",
     "mathml",
+    "signatures",
 ]
 exclude_patterns = ["_build", "_extensions", "_templates", "gallery/*.py", "gallery/*.ipynb"]
 templates_path = ["_templates"]

@@ -1,7 +1,8 @@
-"""A frame modelled in OpenSeesPy, set on a base that can rock.
+"""A frame modelled in OpenSeesPy, placed on a base that can rock.
 
-`matrices_of` takes mass, stiffness and freedoms out of any plane model with three freedoms a node; `structure_of` makes
-a rockflex structure of them. OpenSeesPy has a licence of its own and comes from https://pypi.org/project/openseespy.
+`matrices_of` extracts mass, stiffness and degrees of freedom from any plane model with three degrees of freedom per
+node; `structure_of` builds a rockflex structure from them. OpenSeesPy has its own licence and is available at
+https://pypi.org/project/openseespy.
 """
 
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ COLUMN, BEAM = (0.16, 0.16 * 0.4**2 / 12.0), (0.15, 0.15 * 0.5**2 / 12.0)  # are
 
 @dataclass(frozen=True)
 class Freedom:
-    """What one equation of the model moves: a node horizontally, vertically, or turning it."""
+    """Degree of freedom of one equation: horizontal or vertical displacement of a node, or its rotation."""
 
     kind: Literal["x", "y", "turn"]
     x: float  # m from the axis of the structure
@@ -32,19 +33,19 @@ class Freedom:
 def structure_of(
     mass: Float, stiffness: Float, freedoms: list[Freedom], base_mass: float, half_width: float, damping_ratio: float
 ) -> rf.ModalStructure:
-    """Structure of the matrices of a held base, in the order of `freedoms`.
+    """Structure from matrices of the fixed-base model, in the order of `freedoms`.
 
-    OpenSees turns counterclockwise, which moves what is above a node against x; rockflex turns the other way, so
-    rotations change their sign. Vertical freedoms may have no mass beside the axis: the base's rotation would lift it,
-    and `from_matrices` has no place for that. Give the floors horizontal mass alone, as the paper does.
+    Positive rotations are counterclockwise in OpenSees, which moves points above a node against x, and clockwise in
+    rockflex, so rotations change their sign. Vertical degrees of freedom must not have mass off the axis: the rotation
+    of the base would lift it, which `from_matrices` cannot model. Give floors only horizontal mass, as in the paper.
     """
     if not len(freedoms) == len(mass) == len(stiffness):
         raise ValueError(f"{len(freedoms)} freedoms were given for matrices of {len(mass)} and {len(stiffness)} rows.")
     for i, freedom in enumerate(freedoms):
         if freedom.kind == "y" and freedom.x != 0.0 and np.any(mass[i]):
             raise ValueError(
-                f"Vertical mass stands {freedom.x:g} m beside the axis, {freedom.height:g} m high. Give nodes mass in "
-                "the horizontal direction alone: ops.mass(node, m, 0.0, 0.0)."
+                f"There is vertical mass {freedom.x:g} m off the axis, at a height of {freedom.height:g} m. Give nodes "
+                "only horizontal mass: ops.mass(node, m, 0.0, 0.0)."
             )
     sign = np.array([-1.0 if freedom.kind == "turn" else 1.0 for freedom in freedoms])
     signs = np.outer(sign, sign)
@@ -60,21 +61,21 @@ def structure_of(
 
 
 def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, Float, list[Freedom]]:
-    """Mass, stiffness and freedoms of the plane model in memory, whose base is held.
+    """Mass, stiffness and degrees of freedom of the plane model in memory, with a fixed base.
 
-    `axis` is the x of its axis and `base` the y of its base in m. OpenSees warns that the mass matrix is singular
-    where freedoms have no mass: the step that makes it form the matrix cannot be solved, nor need it be. Multi-point
-    constraints (equalDOF, rigidLink) merge equations, and are refused.
+    `axis` is the x of its axis and `base` the y of its base in m. OpenSees warns that the mass matrix is singular if
+    some degrees of freedom have no mass: the step that makes it form the matrix cannot be solved, and need not be.
+    Multi-point constraints (equalDOF, rigidLink) merge equations, and are refused.
     """
     ops.wipeAnalysis()
     ops.constraints("Plain")
     ops.numberer("Plain")
-    ops.system("FullGeneral")  # the one that printA can print
+    ops.system("FullGeneral")  # the only one that printA can print
     ops.algorithm("Linear")
-    ops.integrator("GimmeMCK", 0.0, 0.0, 1.0)  # else OpenSees warns that there is none
+    ops.integrator("GimmeMCK", 0.0, 0.0, 1.0)  # otherwise OpenSees warns that there is none
     ops.analysis("Transient")
     found: list[Float] = []
-    for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):  # of mass, damping and stiffness in what is printed
+    for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):  # of mass, damping and stiffness in the printed matrix
         ops.integrator("GimmeMCK", *factors)
         ops.analyze(1, 0.0)
         size = ops.systemSize()
@@ -88,7 +89,7 @@ def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, 
                 raise ValueError(
                     f"Node {node} shares an equation with another. Model floors without multi-point constraints."
                 )
-            if equation >= 0:  # held freedoms have a negative one
+            if equation >= 0:  # fixed degrees of freedom have a negative one
                 freedoms[equation] = Freedom(kind, x - axis, y - base)
     return mass, stiffness, [freedoms[i] for i in range(len(mass))]
 
@@ -115,7 +116,7 @@ def build_frame(ops: Any) -> None:
 
 
 def run(ops: Any) -> rf.ModalStructure:
-    """Build the frame, take its matrices, and print its modes and its response beside OpenSees' own frequencies."""
+    """Build the frame, extract its matrices, and print its modes, OpenSees' frequencies, and its response."""
     build_frame(ops)
     mass, stiffness, freedoms = matrices_of(ops)
     structure = structure_of(mass, stiffness, freedoms, BASE_MASS, HALF_WIDTH, DAMPING_RATIO)
@@ -136,10 +137,10 @@ def run(ops: Any) -> rf.ModalStructure:
 
 
 def main() -> None:
-    """Run the example, where OpenSeesPy is installed."""
+    """Run the example, if OpenSeesPy is installed."""
     try:
         import openseespy.opensees as ops  # pyright: ignore[reportMissingImports]
-    except (ImportError, RuntimeError) as error:  # RuntimeError: libraries that it is linked with are missing
+    except (ImportError, RuntimeError) as error:  # RuntimeError: linked libraries are missing
         raise SystemExit(
             "This example needs OpenSeesPy: pip install openseespy; on Debian also apt-get install libblas3 "
             f"liblapack3 ({error})."

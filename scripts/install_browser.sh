@@ -1,5 +1,5 @@
 #!/bin/sh
-# Install a Chromium for the tests of the web page: the distribution's where apt is at hand, else Playwright's own.
+# Install a Chromium for the tests of the web page: the distribution's if apt is available, otherwise Playwright's.
 set -eu
 for name in chromium chromium-browser google-chrome; do
     if command -v "$name" >/dev/null 2>&1; then

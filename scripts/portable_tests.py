@@ -1,4 +1,4 @@
-"""Repeat the numerically sensitive tests as on another processor, whose BLAS and kernels round otherwise."""
+"""Repeat the numerically sensitive tests as on another processor, where BLAS and kernels round differently."""
 
 import os
 import platform
@@ -11,9 +11,9 @@ CORE = "Nehalem"
 SETTING = {
     "OPENBLAS_CORETYPE": CORE,
     "NUMBA_CPU_NAME": "generic",
-    "NUMBA_CACHE_DIR": str(ROOT / "build" / "numba-generic"),  # kernels of one processor must not meet those of another
+    "NUMBA_CACHE_DIR": str(ROOT / "build" / "numba-generic"),  # never mixed with those of this processor
 }
-# What computes: modes, the engine in closed form, the forces from them, and the twins that they are compared with.
+# Tests of modes, of the closed-form engine, of the forces, and of the twins that they are compared with.
 SENSITIVE = (
     "tests/unit/test_computable.py",
     "tests/unit/test_equivalents.py",

@@ -1,4 +1,4 @@
-"""Figures of the gallery's scripts: every matplotlib figure that a block leaves in a variable."""
+"""Figures of the gallery's scripts: every matplotlib figure that a block assigns to a variable."""
 
 from typing import Any
 
@@ -24,13 +24,13 @@ class Order:
         self.folder = folder
 
     def __call__(self, script: str) -> tuple[int, str]:
-        """Place of a script; those without one come last, by their names."""
+        """Position of a script; unlisted ones come last, by name."""
         stem = script.removesuffix(".py")
         return self.SCRIPTS.index(stem) if stem in self.SCRIPTS else len(self.SCRIPTS), stem
 
 
 def scrape(block: tuple[Any, ...], block_vars: dict[str, Any], gallery_conf: dict[str, Any]) -> str:
-    """Save the figures that are new since the last block, and return the reST that shows them."""
+    """Save the figures created since the last block, and return the reST that shows them."""
     del block
     names = block_vars["example_globals"]
     shown = names.setdefault("__figures_shown__", [])

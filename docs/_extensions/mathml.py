@@ -1,4 +1,4 @@
-"""Equations as MathML, which browsers set themselves: no script and no network."""
+"""Equations as MathML, which browsers display without a script or network."""
 
 import re
 from html import escape, unescape
@@ -11,14 +11,14 @@ from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.util.logging import getLogger
 
-NAMESPACE = ' xmlns="http://www.w3.org/1998/Math/MathML"'  # of no use in HTML
+NAMESPACE = ' xmlns="http://www.w3.org/1998/Math/MathML"'  # not needed in HTML
 LOG = getLogger(__name__)
 ENTITY = re.compile(r"&(?!amp;|lt;|gt;|quot;|apos;|#)\w+;")  # those that XML does not know
 DOTS = ("\u02d9", "\u00a8")  # of first and second derivatives
 
 
 def mathml(node: nodes.Element, *, as_block: bool) -> str:
-    """MathML of an equation; one that cannot be read is a warning, and stays as it was written."""
+    """MathML of an equation; one that cannot be parsed causes a warning and stays as TeX."""
     try:
         text = tex2mathml(node.astext(), as_block=as_block)
     except MathError as error:
@@ -26,7 +26,7 @@ def mathml(node: nodes.Element, *, as_block: bool) -> str:
         return f"<code>{escape(node.astext())}</code>"
     tree = ET.fromstring(ENTITY.sub(lambda found: unescape(found[0]), text.replace(NAMESPACE, "")))
     for element in list(tree.iter()):
-        # The converter sets the index of a dotted letter below it; it belongs beside it.
+        # The converter puts the index of a dotted letter below it; it belongs next to it.
         if element.tag in ("mover", "munderover") and element[-1].text in DOTS:
             letter, dots = element[0], element[-1]
             index = element[1] if element.tag == "munderover" else None
@@ -37,7 +37,7 @@ def mathml(node: nodes.Element, *, as_block: bool) -> str:
                 element.tag = "msub"
                 element[:] = [dotted, index]
     for bar in tree.iter("mo"):
-        if bar.text == "|":  # no operator between two letters, but a fence
+        if bar.text == "|":  # a fence, not an operator between two letters
             bar.set("form", "prefix" if bar.get("class") == "mathopen" else "postfix")
     for element in tree.iter("msup"):
         if element[0].tag == "msub":

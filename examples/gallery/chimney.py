@@ -1,9 +1,9 @@
 """
-A chimney that may step
+A chimney that can rock
 =======================
 
-The concrete chimney of Section 4.1.1 of the paper: 200 m high, tapered, 16 m wide at its base, by five Rayleigh-Ritz
-modes. It rocks by three thousandths of a radian, and its higher modes decide about the base shear.
+The concrete chimney of Section 4.1.1 of the paper: 200 m high, tapered, 16 m wide at its base, with five Rayleigh–Ritz
+modes. It rocks by three thousandths of a radian, and its higher modes govern the base shear.
 """
 
 import rockflex as rf

@@ -2,7 +2,7 @@
 A first run
 ===========
 
-A five-story shear building under El Centro 1940, its base free to lift.
+A five-story shear building under El Centro 1940, on a base that can uplift.
 """
 
 import math
@@ -24,9 +24,9 @@ response = rf.simulate(frame, motion, "MDOF-S", free_vibration=5.0)
 print(response)
 
 # %%
-# Shaded is the time off the ground. While the base rocks, its moment is nearly constant: that limits the forces.
+# The base is uplifted in the shaded intervals. While it rocks, its moment is nearly constant: that limits the forces.
 history = rf.plot_history(response)
 
 # %%
-# Where the energy of the motion went.
+# The energy balance: where the input energy goes.
 energy = rf.plot_energy(response)

@@ -2,8 +2,8 @@
 Fragility of a frame
 ====================
 
-One frame under 44 recorded components at four scales, with one mode and with all of them: the probability that it
-rocks, the probability that it overturns, and the rotations in between.
+One frame under 44 recorded components at four scales, with one mode and with all modes: the probabilities of rocking
+and overturning, and the rotations in between.
 """
 
 import math
@@ -25,11 +25,11 @@ runs = rf.run_cloud({"#1": frame}, suite, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0
 curves = rf.plot_fragility(runs, level=0.9, overturning=True)
 
 # %%
-# The rotations of the runs that rocked and stand; crosses at the top overturned.
+# The rotations of the runs that rocked without overturning; crosses at the top overturned.
 clouds = rf.plot_clouds(runs)
 
 # %%
-# Three outcomes that sum to one, and the probability of passing a limit.
+# The probabilities of overturning and of exceeding a limit.
 for fits in rf.fit_clouds(runs, measure="pgv"):
     p = fits.outcomes.probabilities(0.8)
     limit = fits.outcomes.exceedance(0.8, 0.02)

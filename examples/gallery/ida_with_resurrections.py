@@ -2,8 +2,8 @@
 Incremental analysis, with resurrections
 ========================================
 
-Every record is scaled up until it overturns the frame, and beyond: a rocking structure that a motion overturns may
-stand when the motion is stronger. A search that stops at the first fall would not see it.
+Every record is scaled up until it overturns the frame, and beyond: a structure that overturns under a motion may
+survive a stronger one. A search that stops at the first overturning would miss this.
 """
 
 import math
@@ -28,6 +28,6 @@ curves = rf.plot_ida(runs, measure="pgv")
 # Capacities of single records, and the lognormal curve through them.
 capacities = rf.incremental_capacities(runs, measure="pgv")
 back = int((capacities["resurrections"] > 0).sum())
-print(f"{back} of {len(capacities)} records: a larger scale stands than one that overturned")
+print(f"{back} of {len(capacities)} records: the frame survives a larger scale than one that overturns it")
 fit = rf.fit_capacities(capacities["capacity"], capacities["censored"])
 print(f"median capacity {fit.median:.2f} m/s, dispersion {fit.beta:.2f}")

@@ -2,8 +2,8 @@
 Models compared
 ===============
 
-One mode, two modes and all of them above the base that rocks, beside the same building on a fixed base. What rocking
-saves in base moment and shear, it costs in rotation.
+One, two and all modes on a rocking base, compared with the same building on a fixed base. Rocking reduces base moment
+and base shear, at the price of a rotation.
 """
 
 import math
@@ -26,5 +26,5 @@ responses = [rf.simulate(frame, motion, model, free_vibration="settle") for mode
 history = rf.plot_history(responses, title="Structure #1, El Centro ×1.5")
 
 # %%
-# The base moment over the rotation: in contact it goes up and down at θ = 0; while the base rocks, it is limited.
+# The base moment over the rotation: it varies at θ = 0 in contact, and is limited while the base rocks.
 loops = rf.plot_moment_rotation(responses[1:])

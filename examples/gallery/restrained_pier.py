@@ -2,8 +2,8 @@
 A pier held by a tendon
 =======================
 
-A bridge pier whose footing may step, free and held down by an unbonded tendon in its axis. The tendon raises the moment
-at which the base lifts, and takes away part of the negative stiffness.
+A bridge pier whose footing can rock, free and held down by an unbonded tendon in its axis. The tendon raises the moment
+at which the base uplifts, and reduces the negative stiffness.
 """
 
 import rockflex as rf

@@ -1,9 +1,9 @@
 """
-What uplift does to the modes
-=============================
+Modes while uplifted
+====================
 
-A base that lifts is a hinge. The frequencies about the pivot are far above those of the same structure on a fixed base,
-and the more slender it is, the nearer they come to those of a pinned beam. One mode overshoots.
+An uplifted base is a hinge. The frequencies about the pivot are far above those of the same structure on a fixed base,
+and approach those of a pinned beam for slender structures. With one mode they are overestimated.
 """
 
 import math
@@ -33,11 +33,11 @@ tables = {name: rf.frequency_ratios(frame, aspect_ratios) for name, frame in fra
 ratios = rf.plot_frequency_ratios(tables, {name: rf.pinned_beam(name) for name in frames}, mark=10.0)
 
 # %%
-# The numbers behind the gray line, at an aspect ratio of ten.
+# The values at the gray line, an aspect ratio of ten.
 for name, frame in frames.items():
     modes = rf.uplifted_modes(frame.rocking())
     print(f"{name}: ω*₁/ω₁ = {modes.ratio[0]:.3f}, ω*₂/ω₂ = {modes.ratio[1]:.3f}")
 
 # %%
-# How many modes that takes, said in sentences.
+# How many modes are needed, explained in words.
 print(rf.adequacy(frames["shear"].rocking(), base_mass=40e3).reason)

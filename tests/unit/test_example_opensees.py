@@ -196,7 +196,7 @@ def test_the_example_runs_and_names_what_it_cannot_take(example, capsys):
     mass, stiffness, freedoms = example.matrices_of(ops)
     side = next(i for i, freedom in enumerate(freedoms) if freedom.kind == "y" and freedom.height == 3.0)
     mass[side, side] = 1.0
-    with pytest.raises(ValueError, match=r"Vertical mass stands -?2 m beside the axis, 3 m high"):
+    with pytest.raises(ValueError, match=r"There is vertical mass -?2 m off the axis, at a height of 3 m"):
         example.structure_of(mass, stiffness, freedoms, **SCALARS)
     with pytest.raises(ValueError, match=r"29 freedoms were given for matrices of 30 and 30 rows"):
         example.structure_of(mass, stiffness, freedoms[1:], **SCALARS)

@@ -35,6 +35,6 @@ def test_a_search_is_cancelled_and_told_of_changes(visitor) -> None:
     page.get_by_role("button", name="Cancel").click()
     page.wait_for_function("() => document.querySelector('#status').textContent.startsWith('Cancelled after')")
     visitor.fill("design.widths", "5")
-    page.get_by_text("Something was changed since: search again.").wait_for()
+    page.get_by_text("The input has changed: search again.").wait_for()
     visitor.fill("design.target", "0.5")  # a question, for which nothing runs again
     assert page.locator("#cancel").is_disabled()

@@ -28,7 +28,7 @@ def test_earthquake_by_suite_pulse_and_scale(visitor, el_centro) -> None:
         "p => Number(document.querySelector('[data-measure=PGA]').dataset.value) === p", arg=2 * motion.pga
     )
     assert visitor.value('[data-measure="Arias"]') == pytest.approx(4 * motion.arias)
-    page.get_by_label("Where from").select_option("pulse")
+    page.get_by_label("Source").select_option("pulse")
     page.get_by_label("Shape").select_option("one_sine")
     slider = page.get_by_role("slider", name="Period")
     slider.focus()
@@ -44,8 +44,8 @@ def test_earthquake_by_suite_pulse_and_scale(visitor, el_centro) -> None:
 def test_an_upload_a_bad_one_and_one_that_is_too_large(visitor, frame, link) -> None:
     page = visitor.page
     visitor.tab("earthquake")
-    page.get_by_label("Where from").select_option("upload")
-    assert page.get_by_text("Choose a file: its motion and its spectrum come here.").is_visible()
+    page.get_by_label("Source").select_option("upload")
+    assert page.get_by_text("Choose a file; its motion and spectrum will appear here.").is_visible()
     visitor.upload("File", "mine.csv", RECORD)
     page.wait_for_function("() => document.querySelector('#record-title').textContent === 'mine'")
     assert "400 samples" in page.locator("#uploaded").inner_text()
@@ -59,7 +59,7 @@ def test_an_upload_a_bad_one_and_one_that_is_too_large(visitor, frame, link) -> 
     assert "bad.csv holds no numbers" in visitor.error("record.upload")
     visitor.upload("File", "large.csv", b"1\n" * 3_000_000)
     assert visitor.error("record.upload") == "large.csv has 6.0 MB, but the page takes 5 MB at most."
-    # A link does not hold the file; another server would not know it.
+    # A link does not contain the file; another server would not know it.
     state = visitor.state() | {"record": visitor.state()["record"] | {"upload": "0" * 64}, "tab": "response"}
     page.goto(visitor.url + link(state))
     page.reload()

@@ -123,7 +123,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(visitor, tab) -> None:
         visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
         page.get_by_label("The superstructure yields").check()
         visitor.shown(1, ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"])
-        page.get_by_label("When the base strikes").select_option("restitution")
+        page.get_by_label("Impact law").select_option("restitution")
     page.wait_for_load_state("networkidle")
     page.evaluate("document.body.tabIndex = -1; document.body.focus()")
     unseen = []

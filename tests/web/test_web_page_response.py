@@ -72,12 +72,12 @@ def test_the_deck_of_a_pier_moves_as_far_as_it_does(visit, link) -> None:
     assert visitor.page.get_by_role("columnheader", name="relative to the base").count() == 1
     said = visitor.page.locator("#verdict").inner_text()
     assert f"The top moves by up to {total:.3g} m relative to the ground" in said
-    assert f"a fixed base by {fixed.max_total_top_displacement:.3g} m." in said
+    assert f"and {fixed.max_total_top_displacement:.3g} m for the same structure on a fixed base." in said
     assert visitor.page.locator("#warnings").is_hidden()
     # The plot shows either displacement.
     drawn = "Math.max(...rockflexStage.view().models[0].scaled.displacement.map(Math.abs))"
     assert visitor.page.evaluate(drawn) == pytest.approx(total, rel=1e-3)
-    visitor.page.get_by_label("Displacement of the top in the plot").select_option("relative to the base, which turns")
+    visitor.page.get_by_label("Plotted top displacement").select_option("relative to the rotating base")
     assert visitor.page.evaluate(drawn) == pytest.approx(response.max_top_displacement, rel=1e-2)
 
 
@@ -110,7 +110,7 @@ def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) 
     visitor.shown(1, ["2DOF-S", "fixed"])
     cell = visitor.page.locator('#peaks tr[data-model="2DOF-S"] [data-name="max_total_top_displacement"]')
     assert cell.inner_text() == "–"
-    assert visitor.page.get_by_label("Displacement of the top in the plot").is_hidden()
+    assert visitor.page.get_by_label("Plotted top displacement").is_hidden()
     assert "relative to the ground" not in visitor.page.locator("#verdict").inner_text()
     _, content = client.download("/api/download/histories", state)
     assert content.decode().splitlines()[1].split(",")[6] == "nan"
@@ -152,7 +152,7 @@ def test_a_slider_redraws(visitor) -> None:
     page = visitor.page
     visitor.tab("response")
     visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
-    slider = page.get_by_role("slider", name="Scale factor on the record")
+    slider = page.get_by_role("slider", name="Scale factor")
     slider.focus()
     for _ in range(5):
         slider.press("ArrowRight")
@@ -188,7 +188,7 @@ def test_impact_laws(visitor, frame, el_centro) -> None:
     page = visitor.page
     visitor.tab("response")
     visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
-    law, share = page.get_by_label("When the base strikes the ground"), page.locator('[data-path="restitution"]')
+    law, share = page.get_by_label("Impact law"), page.locator('[data-path="restitution"]')
 
     def impacts(law_: rf.ImpactLaw | None) -> rf.Response:
         return rf.simulate(frame, el_centro, "2DOF-S", free_vibration=5.0, impact=law_)
@@ -202,7 +202,7 @@ def test_impact_laws(visitor, frame, el_centro) -> None:
     visitor.wait_for_peak("2DOF-S", "n_impacts", impacts(rf.Restitution(0.8)).n_impacts)
     visitor.fill("restitution", "0.3")
     visitor.wait_for_peak("2DOF-S", "n_impacts", impacts(rf.Restitution(0.3)).n_impacts)
-    slider = page.get_by_role("slider", name="Share of the rotation's speed")
+    slider = page.get_by_role("slider", name="Coefficient of restitution")
     slider.focus()
     slider.press("ArrowLeft")
     visitor.wait_for_peak("2DOF-S", "max_rotation", impacts(rf.Restitution(0.29)).max_rotation)
@@ -268,7 +268,7 @@ def test_yielding_takes_its_share_of_the_energy(visitor) -> None:
     visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
     page.get_by_label("The superstructure yields").check()
     visitor.fill("bouc_wen.yield_displacement", "0.03")
-    page.get_by_label("Model whose energy is shown").select_option("2DOF-S-BW")
+    page.get_by_label("Model for the energy").select_option("2DOF-S-BW")
     page.wait_for_function("() => rockflexStage.view().energy.label === '2DOF-S-BW'")
     assert "yielding" in page.locator(".pair .legend").inner_text()
 
@@ -382,8 +382,8 @@ def test_a_long_wait_is_explained(visitor, ready, said) -> None:
     visitor.tab("response")
     page.wait_for_function("said => document.querySelector('#verdict')?.textContent.includes(said)", arg=said)
     held[0].continue_()
-    page.wait_for_function("() => document.querySelector('#verdict').textContent.startsWith('MDOF-S: the base lifts')")
+    page.wait_for_function("() => document.querySelector('#verdict').textContent.startsWith('MDOF-S: the base rocks')")
     page.unroute("**/api/response")
     visitor.fill("scale", "1e9")
     assert "from 0.01 to 20" in visitor.error("scale")
-    assert page.locator("#verdict").inner_text().startswith("MDOF-S: the base lifts")
+    assert page.locator("#verdict").inner_text().startswith("MDOF-S: the base rocks")

@@ -29,7 +29,7 @@ def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
     visitor.fill("structure.frame.period", "soon")
     assert "It must be the first period on a fixed base" in visitor.error("structure.frame.period")
     for place, preset in enumerate(PRESETS):
-        page.get_by_label("Begin with").select_option(str(place))
+        page.get_by_label("Start from").select_option(str(place))
         page.wait_for_function(
             "n => document.querySelector('.results h2').textContent === n", arg=preset["structure"]["name"]
         )
@@ -44,7 +44,7 @@ def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
 
 def test_tendons_are_added_and_removed(visitor) -> None:
     page = visitor.page
-    page.get_by_label("Begin with").select_option("7")
+    page.get_by_label("Start from").select_option("7")
     page.wait_for_function("() => document.querySelector('.results h2').textContent === 'Bridge pier'")
     before = visitor.value("dd[data-value] >> nth=2")
     page.get_by_role("button", name="Add a tendon").click()
@@ -91,7 +91,7 @@ def test_matrices_are_imported(visitor, tmp_path) -> None:
 @pytest.mark.parametrize(("preset", "kind"), [(0, "frame"), (6, "tapered_tower"), (8, "cantilever"), (10, "lumped")])
 def test_nonsense_in_any_field_is_answered_beside_it(visitor, preset, kind) -> None:
     page = visitor.page
-    page.get_by_label("Begin with").select_option(str(preset))
+    page.get_by_label("Start from").select_option(str(preset))
     page.wait_for_function("k => k in rockflexPage.state.structure", arg=kind)
     names = page.evaluate(
         "k => rockflexPage.about.kinds[k].fields"

@@ -1,4 +1,4 @@
-"""Figures of the comparison; matplotlib is used directly, as these are no results of rockflex alone."""
+"""Figures of the comparison; matplotlib is used directly, as these are not results of rockflex only."""
 
 from pathlib import Path
 
@@ -30,7 +30,7 @@ STYLE = {
 
 
 def fixed_figure(errors: dict[str, list[FixedError]], dt: float, path: Path) -> Path:
-    """Error on a held base against OpenSees' step."""
+    """Error on a fixed base against OpenSees' step."""
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=(5.5, 3.8), layout="constrained")
         names = ("$u_{top}$", "$V_b$", "$M_b$")
@@ -43,7 +43,7 @@ def fixed_figure(errors: dict[str, list[FixedError]], dt: float, path: Path) -> 
         axes.loglog(steps, [2.0 * (h * 40.0) ** 2 for h in steps], color="0.6", lw=1.0, ls="--", label="slope 2")
         axes.axhline(1e-4, color="0.3", lw=0.8, ls=":")
         axes.set(
-            xlabel="step of OpenSees (s)", ylabel="largest difference over peak", title="Held base: error of OpenSees"
+            xlabel="step of OpenSees (s)", ylabel="largest difference over peak", title="Fixed base: error of OpenSees"
         )
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.legend(fontsize=7)
@@ -86,7 +86,7 @@ def excursion_figure(
 
 
 def cycles_figure(found: dict[str, tuple[rf.Response, list[Cycles]]], path: Path) -> Path:
-    """Rotation under El Centro: VVEL, a contact that bounces, one that absorbs."""
+    """Rotation under El Centro: VVEL, a bouncing contact, an absorbing contact."""
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(
             2, len(found), figsize=(11.0, 5.2), sharex=True, layout="constrained", squeeze=False

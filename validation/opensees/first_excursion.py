@@ -1,4 +1,4 @@
-"""From uplift to the first impact: nothing but the equations of motion, and no impact law yet."""
+"""From uplift to the first impact: the equations of motion only, without an impact law."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ PEAK, PERIOD, QUIET = 0.25 * 9.81, 1.0, 2.0  # m/s², s, s after the pulse
 
 
 def pulse() -> rf.GroundMotion:
-    """Antisymmetric Ricker pulse of 0.25 g and 1 s, which lifts both structures once and far."""
+    """Antisymmetric Ricker pulse of 0.25 g and 1 s, which causes one large excursion of both structures."""
     ricker = rf.ricker_pulse(PEAK, PERIOD, dt=0.005, kind="antisymmetric")
     quiet = np.zeros(round(QUIET / ricker.dt))
     return rf.GroundMotion(np.concatenate([ricker.acceleration, quiet]), ricker.dt, name="Ricker")
@@ -29,7 +29,7 @@ class Excursion:
 
     contact: float  # N/m
     dt: float  # s
-    uplift: float  # OpenSees' time of uplift less the reference's, s
+    uplift: float  # OpenSees' time of uplift minus the reference's, s
     impact: float  # the same of the first impact, s
     peak: float  # OpenSees' θ_max over the reference's − 1
     rotation: float  # largest difference of θ over θ_max

@@ -1,4 +1,4 @@
-"""A held base: the same frequencies, and the same response to the last digit that the step allows."""
+"""A fixed base: equal frequencies, and equal responses to the accuracy of the step."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ DAMPING_RATIO = 0.02
 class FixedError:
     """Largest difference at the record's samples, as a fraction of the peak, and OpenSees' peak over rockflex's − 1."""
 
-    divisions: int  # steps a sample
+    divisions: int  # steps per sample
     history: tuple[float, float, float]  # u_top, V_b, M_b
     peak: tuple[float, float, float]
 
@@ -36,7 +36,7 @@ def modal_differences(prototype: Prototype) -> dict[str, float]:
 def fixed_errors(
     prototype: Prototype, motion: rf.GroundMotion, divisions: Sequence[int], integrator: tuple = AVERAGE
 ) -> list[FixedError]:
-    """OpenSees with 2 % modal damping and `divisions` steps a sample, against rockflex's fixed base."""
+    """OpenSees with 2 % modal damping and `divisions` steps per sample, against rockflex's fixed base."""
     ops = load_opensees()
     response = rf.simulate(prototype.frame(DAMPING_RATIO), motion, "fixed")
     names = ("top_displacement", "base_shear", "base_moment")

@@ -1,6 +1,6 @@
-"""Structures #1 and #2 of Table 1 as OpenSees models, on a base that is held or may lift.
+"""Structures #1 and #2 of Table 1 as OpenSees models, on a base that is fixed or can uplift.
 
-Units are SI. OpenSees turns counterclockwise, rockflex clockwise: θ = −(OpenSees' rotation).
+Units are SI. Rotations are positive counterclockwise in OpenSees, clockwise in rockflex: θ = −(OpenSees' rotation).
 """
 
 import math
@@ -58,7 +58,7 @@ class Prototype:
         return rf.Frame(*arguments, damping_ratio)
 
     def structure(self, damping_ratio: Float | float = 0.0, *, second_order: bool = False) -> rf.LumpedStructure:
-        """Return the frame with a damping ratio for each mode; `second_order` takes P/L off the stories' stiffness."""
+        """Return the frame with a damping ratio for each mode; `second_order` subtracts P/L from each stiffness."""
         lumped = self.frame().lumped
         stiffness = np.array(lumped.stiffness)
         if second_order:
@@ -78,7 +78,7 @@ SHEAR, FLEXURE = Prototype("#1 shear", True), Prototype("#2 flexure", False)
 
 @dataclass(frozen=True)
 class Contact:
-    """Two corners that bear and cannot be held down."""
+    """Two corners in no-tension contact with the ground."""
 
     stiffness: float  # of each corner, N/m
     damping: float = 0.0  # of the footing under the corners, of critical for the total mass; 0: no footing
@@ -86,7 +86,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class Modes:
-    """Properties of the held base, from OpenSees alone."""
+    """Properties on a fixed base, from OpenSees only."""
 
     column: float  # EI of all columns of a story, N m²
     omega: Float
@@ -100,13 +100,13 @@ class Modes:
 
 
 def start(ops: Any) -> None:
-    """Begin a plane model of three freedoms a node."""
+    """Start a plane model with three degrees of freedom per node."""
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
 
 
 def fixed(ops: Any, prototype: Prototype, column: float) -> None:
-    """One column for all of a story, held at the base; rigid beams keep the floors from turning."""
+    """One column for all columns of a story, fixed at the base; rigid beams prevent rotations of the floors."""
     start(ops)
     ops.geomTransf("Linear", 1)
     ops.node(0, 0.0, 0.0)
@@ -120,7 +120,7 @@ def fixed(ops: Any, prototype: Prototype, column: float) -> None:
 
 @lru_cache(maxsize=4)
 def modes(prototype: Prototype) -> Modes:
-    """Columns that give the period asked for, and the modes, all by OpenSees' eigen."""
+    """Columns that give the required period, and the modes, all by OpenSees' eigen."""
     ops = load_opensees()
     fixed(ops, prototype, 1.0)
     column = (2.0 * math.pi / PERIOD) ** 2 / eigenvalues(ops)[0]
@@ -135,16 +135,16 @@ def modes(prototype: Prototype) -> Modes:
 
 
 def eigenvalues(ops: Any, count: int = N_STORIES) -> Float:
-    """ω_n² in (rad/s)²; ARPACK refuses as many as there are masses, so LAPACK."""
+    """ω_n² in (rad/s)²; by LAPACK, because ARPACK cannot compute as many as there are masses."""
     return np.array(ops.eigen("-fullGenLapack", count))
 
 
 def linear(ops: Any, prototype: Prototype, contact: Contact, *, gravity_spring: bool = True) -> None:
     """Linear geometry: the simplified model, MDOF-S.
 
-    The base turns about its middle and lifts; two fibres of a section that knows no tension are its corners. The
-    weight's moment L_0^r g θ is a spring of negative stiffness on the base. Floors share the base's vertical freedom
-    (inextensible columns), and with rigid beams its rotation.
+    The base rotates about its middle and translates vertically; two no-tension fibres of a section are its corners. The
+    moment of the weight, L_0^r g θ, is a spring of negative stiffness on the base. Floors share the base's vertical
+    displacement (inextensible columns), and with rigid beams its rotation.
     """
     start(ops)
     properties = modes(prototype)
@@ -154,7 +154,7 @@ def linear(ops: Any, prototype: Prototype, contact: Contact, *, gravity_spring: 
     ops.node(GROUND, 0.0, 0.0)
     ops.fix(GROUND, 1, 1, 1)
     corner, below = contact.stiffness, GROUND
-    if contact.damping > 0.0:  # a footing on springs and dashpots; the corners bear on it ten times as stiffly
+    if contact.damping > 0.0:  # a footing on springs and dashpots; contact with it is ten times as stiff
         ops.node(FOOTING, 0.0, 0.0)
         ops.fix(FOOTING, 1, 0, 0)
         dashpot = contact.damping * 2.0 * math.sqrt(2.0 * corner * TOTAL_MASS)
@@ -177,8 +177,8 @@ def linear(ops: Any, prototype: Prototype, contact: Contact, *, gravity_spring: 
 def corotational(ops: Any, prototype: Prototype, contact: Contact, pivot: float) -> None:
     """Large rotations: the complete model, MDOF-C, with columns softened by the weight that they carry.
 
-    The base is two stiff corotational beams, held horizontally at the corner on the side `pivot` (+1 right, −1 left)
-    alone, so it stands for one excursion about that corner.
+    The base is two stiff corotational beams, held horizontally only at the corner on the side `pivot` (+1 right, −1
+    left), so it is valid for one excursion about that corner.
     """
     start(ops)
     properties = modes(prototype)
@@ -206,7 +206,7 @@ def base(ops: Any, *, held: bool) -> None:
 
 
 def columns(ops: Any, column: float, axial: float, tied: tuple[int, ...]) -> None:
-    """Add floors and columns; the freedoms `tied` are those of the base."""
+    """Add floors and columns; they share the degrees of freedom `tied` with the base."""
     for i in FLOORS:
         ops.node(i, 0.0, i * STORY_HEIGHT)
         ops.mass(i, STORY_MASS, STORY_MASS, 0.0)

@@ -1,4 +1,4 @@
-"""Impacts: what a penalty contact makes of them, and when it makes of them what VVEL says."""
+"""Impacts of a penalty contact, and when they agree with VVEL."""
 
 from dataclasses import dataclass
 
@@ -12,13 +12,13 @@ import rockflex as rf
 
 Float = NDArray[np.float64]
 
-AFTER = 0.02  # s after the first impact in which the rebound is looked for
+AFTER = 0.02  # s after the first impact, in which the rebound is sought
 DURATION = 12.0  # s
 
 
 @dataclass(frozen=True)
 class Case:
-    """One contact and one way of stepping."""
+    """One contact and one integration scheme."""
 
     name: str
     contact: Contact
@@ -42,18 +42,18 @@ class Cycles:
 
     case: Case
     run: Run
-    errors: tuple[float, ...]  # largest difference of θ up to each of the times asked for, over θ_max
+    errors: tuple[float, ...]  # largest difference of θ up to each of the given times, over θ_max
     rebound: float  # upward speed of the base's middle after the first impact, over B|θ'| before it
 
 
 def impact_share(prototype: Prototype) -> float:
-    """Part of the kinetic energy ½ I_θ θ'² of a rigid rotation that VVEL takes: the base's vertical half, m_tot B²."""
+    """Share of the kinetic energy ½ I_θ θ'² of a rigid rotation that VVEL dissipates: that of m_tot B²."""
     p = prototype.frame().rocking()
     return 1.0 - float(p.effective_mass @ p.effective_height**2) / p.i_theta
 
 
 def reference(prototype: Prototype, motion: rf.GroundMotion, ratio: float) -> rf.Response:
-    """MDOF-S with the ratios of a damping that goes by the stiffness."""
+    """MDOF-S with the ratios of stiffness-proportional damping."""
     omega = prototype.frame().rocking().omega
     return rf.simulate(prototype.structure(ratio * omega / omega[0]), motion, "MDOF-S")
 

@@ -1,4 +1,4 @@
-"""The first excursion by Newton's law for each mass, in large rotations: what MDOF-C leaves out, and OpenSees does not.
+"""The first excursion by Newton's law for each mass, in large rotations: the effect omitted by MDOF-C but not OpenSees.
 
 A column that cannot stretch lowers its floor as it leans, z_i = Σ (L² − Δ_j²)^½ above the base with the drifts Δ_j, so
 floors also move vertically. In the complete model (Silva & Stojadinović 2024, Eq. 3) floors move parallel to the base.
@@ -30,7 +30,7 @@ def by_newton(prototype: Prototype, shaking: rf.GroundMotion, *, shortening: boo
 
     def rates(t: float, y: Float, side: float, *, held: bool) -> Float:
         u, rate, theta, spin = y[:n], y[n : 2 * n], y[-2], y[-1]
-        # In the frame of the base, pivot at the origin: x along the base, z across it; a row a mass, the base first.
+        # In the frame of the base, pivot at the origin: x along the base, z across it; one row per mass, base first.
         x = np.concatenate([[0.0], u]) - side * width
         along = np.concatenate([np.zeros((1, n)), np.eye(n)])
         z, across, bent = np.concatenate([[0.0], HEIGHTS]), np.zeros((n + 1, n)), np.zeros(n + 1)
@@ -60,7 +60,7 @@ def by_newton(prototype: Prototype, shaking: rf.GroundMotion, *, shortening: boo
         return side * float(rates(t, y, side, held=False)[-1])
 
     def lifts(t: float, y: Float) -> float:
-        # The base lifts when, let go, it would turn upwards about one of its corners.
+        # The base uplifts when, if released, it would rotate upwards about one of its corners.
         return max(upward(t, y, 1.0), upward(t, y, -1.0))
 
     given = {"method": "DOP853", "rtol": 1e-9, "atol": 1e-12, "max_step": shaking.dt}

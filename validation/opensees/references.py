@@ -1,4 +1,4 @@
-"""First excursions that OpenSees is compared with: rockflex's, and one damped as OpenSees damps."""
+"""Reference excursions for OpenSees: rockflex's, and one with OpenSees' modal damping."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Reference:
-    """One excursion: when it begins and ends, and the motion in it."""
+    """One excursion: its start and end, and the motion in between."""
 
     uplift: float  # s
     impact: float  # s
@@ -29,7 +29,7 @@ class Reference:
 
 
 def hermite(time: Float, values: Float, rates: Float, at: Float) -> Float:
-    """Cubics through a history's nodes; of two nodes at one time, an event, each serves its own side."""
+    """Cubics through a history's nodes; of two nodes at the time of an event, each is used on its own side."""
     i = np.clip(np.searchsorted(time, at, side="right") - 1, 0, time.size - 2)
     h = np.where(time[i + 1] > time[i], time[i + 1] - time[i], 1.0)
     u = (at - time[i]) / h
@@ -39,7 +39,7 @@ def hermite(time: Float, values: Float, rates: Float, at: Float) -> Float:
 
 
 def reference(structure: rf.LumpedStructure | rf.Frame, model: str, shaking: rf.GroundMotion) -> Reference:
-    """First excursion in rockflex. The motion is cut into samples of 1 ms or less, so that cubics join its nodes."""
+    """First excursion in rockflex. Samples of the motion are divided to 1 ms or less, so that cubics are accurate."""
     finer = max(1, round(shaking.dt / 0.001))
     times = np.arange((shaking.acceleration.size - 1) * finer + 1) / finer
     fine = np.interp(times, np.arange(shaking.acceleration.size), shaking.acceleration)
@@ -55,16 +55,16 @@ def reference(structure: rf.LumpedStructure | rf.Frame, model: str, shaking: rf.
 
 
 def absolute_damping(prototype: Prototype, shaking: rf.GroundMotion, ratio: float) -> Reference:
-    """First excursion if modal damping acts as OpenSees' does: on the floors, from outside.
+    """First excursion if modal damping acts as in OpenSees: as an external force on the floors.
 
-    Its forces go by D'_n + h*_n θ', and nothing passes them on to the base. So the base lifts when the elastic moment
-    Σ m* h* ω² D alone reaches m_tot g B, and Eq. 23 with D'' eliminated has no damping in the rotation's equation.
+    Its forces are proportional to D'_n + h*_n θ' and do not react on the base. So the base uplifts when the elastic
+    moment Σ m* h* ω² D alone reaches m_tot g B, and Eq. 23 with D'' eliminated has no damping in the equation of θ.
     """
     p = prototype.frame(ratio).rocking()
     n = N_STORIES
     sampled = np.arange(shaking.acceleration.size) * shaking.dt
     arm = p.effective_mass * p.effective_height
-    free = p.i_theta - float(arm @ p.effective_height)  # all modes are kept, so Σ m* h* = L_0^r
+    free = p.i_theta - float(arm @ p.effective_height)  # with all modes Σ m* h* = L_0^r
 
     def rates(t: float, y: Float, side: float) -> Float:
         ground = np.interp(t, sampled, shaking.acceleration)

@@ -27,7 +27,7 @@ from speed import speeds
 import rockflex as rf
 
 PROTOTYPES = (SHEAR, FLEXURE)
-STIFFNESS_RATIO = {SHEAR: 0.02, FLEXURE: 0.015}  # first mode; 2 % would put #2's fifth mode past critical
+STIFFNESS_RATIO = {SHEAR: 0.02, FLEXURE: 0.015}  # first mode; with 2 % the fifth mode of #2 would be overdamped
 GRID = [(1e10, 2e-4), (1e11, 2e-4), (1e12, 2e-4), (1e13, 1e-4)]
 STEPS = [(1e13, 2e-3), (1e13, 1e-3), (1e13, 5e-4), (1e13, 2.5e-4)]
 LARGE = [(1e10, 5e-4), (1e11, 5e-4), (1e12, 2e-4)]
@@ -44,7 +44,7 @@ def main() -> None:
     except ImportError as error:
         raise SystemExit(str(error)) from error
     folder.mkdir(parents=True, exist_ok=True)
-    ops.logFile(str(folder / "opensees.log"), "-noEcho")  # else it warns of the eigen solver on the screen
+    ops.logFile(str(folder / "opensees.log"), "-noEcho")  # otherwise it prints warnings about the eigen solver
     console.print(f"OpenSees {ops.version()}, rockflex {rf.__version__}\n")
     record, shaking = rf.load_suite("el-centro-1940")[0], pulse()
     written = [
@@ -59,13 +59,13 @@ def main() -> None:
 
 def fixed_base(console: Console, record: rf.GroundMotion, folder: Path) -> Path:
     """Part (a)."""
-    table = Table("structure", "ω_n", "m*_n", "h*_n", "B", title="held base: largest relative difference of all modes")
+    table = Table("structure", "ω_n", "m*_n", "h*_n", "B", title="fixed base: largest relative difference of all modes")
     for prototype in PROTOTYPES:
         table.add_row(prototype.name, *(f"{value:.0e}" for value in modal_differences(prototype).values()))
     console.print(table)
     found = {p.name: fixed_errors(p, record, (4, 8, 16, 32, 64, 128)) for p in PROTOTYPES}
-    title = f"held base, {record.name}, modal damping 2 %: OpenSees (average acceleration) less rockflex, over the peak"
-    columns = ("steps a sample", "u_top", "V_b", "M_b", "peak of u_top", "of V_b", "of M_b")
+    title = f"fixed base, {record.name}, modal damping 2 %: OpenSees (average acceleration) − rockflex, over the peak"
+    columns = ("steps per sample", "u_top", "V_b", "M_b", "peak of u_top", "of V_b", "of M_b")
     table = Table("structure", *columns, title=title)
     for name, errors in found.items():
         for each in errors:
@@ -105,7 +105,7 @@ def first_excursions(console: Console, shaking: rf.GroundMotion, folder: Path) -
 def references(
     prototype: Prototype, shaking: rf.GroundMotion
 ) -> Iterator[tuple[str, tuple[float], tuple[float, float]]]:
-    """Independent integrations beside rockflex: uplift times and the largest difference of θ."""
+    """Independent integrations compared with rockflex: uplift times and the largest difference of θ."""
     undamped = excursion_reference(prototype.structure(second_order=True), "MDOF-C", shaking)
     linear = excursion_reference(prototype.structure(second_order=True), "MDOF-S", shaking)
     pairs = {
@@ -125,7 +125,7 @@ def references(
 def excursion_table(name: str, rows: dict[str, list[Excursion]]) -> Table:
     """One structure's first excursions."""
     columns = ("against", "k (N/m)", "dt (s)", "uplift (s)", "impact (s)", "θ_max", "θ(t)", "u_top(t)", "s")
-    table = Table(*columns, title=f"{name}, Ricker pulse: OpenSees less the reference; θ and u over their peaks")
+    table = Table(*columns, title=f"{name}, Ricker pulse: OpenSees minus the reference; θ and u over their peaks")
     for against, found in rows.items():
         for each in found:
             values = (each.uplift, each.impact, each.peak, each.rotation, each.top)
@@ -144,7 +144,7 @@ def impacts(console: Console, record: rf.GroundMotion, folder: Path) -> Path:
         ratio = STIFFNESS_RATIO[prototype]
         response, cycles = reference(prototype, record, ratio), later_cycles(prototype, record, ratio)
         title = (
-            f"{prototype.name}, {record.name}, damped by stiffness ({ratio:.1%}): θ of OpenSees less MDOF-S (VVEL) "
+            f"{prototype.name}, {record.name}, damped by stiffness ({ratio:.1%}): θ of OpenSees minus MDOF-S (VVEL) "
             f"over θ_max, until"
         )
         table = Table("contact", "k (N/m)", "dt (s)", *ends, "rebound", "s", title=title)
@@ -154,7 +154,7 @@ def impacts(console: Console, record: rf.GroundMotion, folder: Path) -> Path:
             table.add_row(*given, *errors, f"{each.rebound:.2f}", f"{each.run.seconds:.1f}")
         console.print(table)
         console.print(
-            f"impacts in rockflex until 12 s: {int(np.sum(response.impact_times < 12.0))}; VVEL takes "
+            f"impacts in rockflex until 12 s: {int(np.sum(response.impact_times < 12.0))}; VVEL dissipates "
             f"{impact_share(prototype):.2%} of the kinetic energy of a rigid rotation\n"
         )
         shown[prototype.name] = (response, cycles)

@@ -11,7 +11,7 @@ from references import reference
 import rockflex as rf
 
 GRID = [(stiffness, dt) for stiffness in (1e12, 1e13) for dt in (5e-3, 2e-3, 1e-3, 5e-4, 2e-4)]
-REPETITIONS = 4  # of the settings that were chosen, for the least time
+REPETITIONS = 4  # of the selected settings, for the minimum time
 
 
 @dataclass(frozen=True)
@@ -19,12 +19,12 @@ class Speed:
     """One model at one error."""
 
     model: str
-    target: float  # error of θ_max of the first excursion that OpenSees may make
+    target: float  # admissible error of θ_max of the first excursion in OpenSees
     contact: float  # N/m
     dt: float  # s, of OpenSees
-    error: float  # that it made
-    opensees: float  # s, in analyze alone
-    rockflex: float  # s, one call of simulate with its structure ready, peaks only
+    error: float  # actual error
+    opensees: float  # s, in analyze only
+    rockflex: float  # s, one call of simulate with properties computed beforehand, peaks only
 
     @property
     def ratio(self) -> float:
@@ -38,11 +38,11 @@ def speeds(
     grid: list[tuple[float, float]] = GRID,
     models: tuple[str, ...] = ("MDOF-S", "MDOF-C"),
 ) -> list[Speed]:
-    """The fastest of `grid` in OpenSees that meets each target, beside rockflex over the same stretch of the pulse.
+    """The fastest of `grid` in OpenSees that meets each target, and rockflex over the same part of the pulse.
 
-    Both are undamped and run from rest to 0.1 s past the first impact. Large rotations are judged by
-    Newton's law with columns that shorten (see `newton`), since OpenSees has no other columns. Targets that nothing of
-    the grid meets are left out.
+    Both are undamped and run from rest to 0.1 s past the first impact. With large rotations the error is relative to
+    Newton's law with shortening columns (see `newton`), since OpenSees has no other columns. Targets that no setting
+    of the grid meets are omitted.
     """
     shaking = pulse()
     found = []
@@ -71,7 +71,7 @@ def speeds(
 
 
 def least(function: Callable[[], object], repetitions: int) -> float:
-    """Least time of a call in s, after one that is not counted."""
+    """Minimum time of a call in s, after one that is not counted."""
     function()
     times = []
     for _ in range(repetitions):

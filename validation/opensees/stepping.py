@@ -1,4 +1,4 @@
-"""Static and dynamic analysis of what is in OpenSees' memory, and what it recorded."""
+"""Static and dynamic analysis of the model in OpenSees' memory, and its records."""
 
 import tempfile
 import time
@@ -17,7 +17,7 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Scheme:
-    """How OpenSees steps."""
+    """Integration scheme of OpenSees."""
 
     dt: float  # s
     integrator: tuple[str | float, ...] = ("Newmark", 0.5, 0.25)
@@ -29,12 +29,12 @@ AVERAGE = ("Newmark", 0.5, 0.25)  # average acceleration: no numerical damping
 
 @dataclass(frozen=True)
 class Run:
-    """What OpenSees recorded, in rockflex's signs; a row a step."""
+    """Records of OpenSees with rockflex's signs; one row per step."""
 
     time: Float  # s
     rotation: Float  # θ in rad
     lift: Float  # of the left and right corner, m; (n, 2)
-    top_displacement: Float  # relative to the turned base, for small rotations, in m
+    top_displacement: Float  # relative to the rotated base, for small rotations, in m
     story_shear: Float  # of the columns, N; (n, 5)
     seconds: float  # spent in analyze
 
@@ -50,10 +50,10 @@ class Run:
 
 
 def analysis(ops: Any, kind: str, integrator: tuple[str | float, ...], algorithm: str) -> None:
-    """Set OpenSees' analysis anew.
+    """Define OpenSees' analysis from scratch.
 
-    Plain constraints: in OpenSees 3.7.1 Transformation loses the displacements that tied nodes have from the static
-    analysis, and such corners sink.
+    Plain constraints: in OpenSees 3.7.1 Transformation loses the displacements of tied nodes from the static analysis,
+    so that corners sink.
     """
     ops.wipeAnalysis()
     ops.constraints("Plain")
@@ -85,7 +85,7 @@ def damp(ops: Any, prototype: Prototype, kind: str, ratio: float) -> None:
 def march(
     ops: Any, motion: rf.GroundMotion, duration: float, scheme: Scheme, width: float = 0.0, *, corners: bool = False
 ) -> Run:
-    """Shake for `duration` seconds; `corners` says that the model has nodes at its corners, else θ B is their lift.
+    """Shake for `duration` seconds. With `corners` the model has nodes at its corners; otherwise their lift is θ B.
 
     Raises
     ------
@@ -107,13 +107,13 @@ def march(
         failed = ops.analyze(round(duration / scheme.dt), scheme.dt)
         seconds = time.perf_counter() - started
         reached = ops.getTime()
-        ops.wipe()  # which also writes what the recorders still hold
+        ops.wipe()  # which also flushes the recorders
         _succeed(failed, f"The analysis at t = {reached:g} s")
         base, floors, members = (np.loadtxt(file) for file in files[:3])
         lift = np.loadtxt(files[3])[:, 1:] if corners else base[:, 1:2] + np.outer(base[:, 2], [-width, width])
     rotation = -base[:, 2]
     top = floors[:, -1] - HEIGHTS[-1] * rotation
-    # The force at a column's upper end pushes the floor back; local y points against x in an upright column.
+    # The force at the upper end of a column pushes the floor back; its local y points against x.
     shear = members[:, 1:].reshape(-1, N_STORIES, 6)[:, :, 1]
     return Run(base[:, 0], rotation, lift, top, shear, seconds)
 

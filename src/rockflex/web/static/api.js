@@ -1,4 +1,4 @@
-// Questions to the server. A refusal carries messages by the path of the field at fault.
+// Requests to the server. A refusal has messages by the path of the field at fault.
 
 export class Refusal extends Error {
   constructor(errors, status) {
@@ -10,7 +10,7 @@ export class Refusal extends Error {
 
 async function checked(response) {
   if (response.ok) return response;
-  let errors = { "": `The server answered ${response.status}.` };
+  let errors = { "": `The server responded with status ${response.status}.` };
   try {
     errors = (await response.json()).errors ?? errors;
   } catch {
@@ -24,8 +24,8 @@ async function request(path, options) {
   try {
     response = await fetch(path, options);
   } catch (error) {
-    if (error.name === "AbortError") throw new Refusal({}, 0); // a later question has taken its place
-    throw new Refusal({ "": "The server does not answer. Is rockflex serve still running?" }, 0);
+    if (error.name === "AbortError") throw new Refusal({}, 0); // replaced by a later request
+    throw new Refusal({ "": "The server does not respond. Is rockflex serve still running?" }, 0);
   }
   return checked(response);
 }
@@ -34,7 +34,7 @@ export async function get(path) {
   return (await request(path)).json();
 }
 
-// A new question takes the place of one on the same path that is not answered yet: the server stops its runs.
+// A new request replaces a pending one on the same path: the server stops its runs.
 const asking = new Map();
 
 export async function ask(path, body) {

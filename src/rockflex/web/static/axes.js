@@ -1,16 +1,16 @@
-// Axes of a chart: ranges, round numbers, and where a value goes.
+// Axes of a chart: ranges, round numbers, and the maps between values and pixels.
 
 import { color, number } from "./dom.js";
 
 export const FONT = "12px system-ui, 'DejaVu Sans', sans-serif";
 
-// What both axes span: all data, or the given ranges, or the stretch that was zoomed to.
+// The ranges of both axes: all data, the given ranges, or the zoomed interval.
 export function ranges(data, options, zoom) {
   const { series, xRange, yRange, hlines = [] } = data;
   let [x0, x1] = zoom ?? xRange ?? extent(series.map((s) => s.x), options.xLog);
   if (!(x1 > x0)) [x0, x1] = [x0 - 0.5, x0 + 0.5];
   if (yRange) return { x0, x1, y0: yRange[0], y1: yRange[1] };
-  // What comes after `until` may leave the chart: the rotation of what falls, for instance.
+  // Values after `until` may leave the chart, such as the rotation of a falling structure.
   const parts = series.flatMap((s) => (s.kind === "band" ? [s.low, s.high] : [s.y]).map((y) => [s.x, y, s.until]));
   let [low, high] = within(parts, x0, x1, options.yLog);
   for (const line of hlines.filter((each) => each.fit)) {
@@ -86,7 +86,7 @@ export function drawAxes(g, { box, xTicks, yTicks, yTexts, px, py }, width, heig
   }
 }
 
-// Text around a point; what follows an underscore is an index.
+// Text centred at a point; characters after an underscore are a subscript.
 function label(g, text, x, y) {
   const parts = text.split(/_(\w+)/);
   const fonts = [FONT, FONT.replace("12px", "9px")];

@@ -18,8 +18,8 @@ export class Chart {
       onkeydown: (event) => this.#key(event), onblur: () => this.#leave(),
     }, this.base, this.over, this.said);
     this.data = { series: [] };
-    this.zooms = []; // stretches of x, each within the one before; the last is shown
-    this.cursor = null; // x of the line that is set from outside
+    this.zooms = []; // intervals of x, each within the one before; the last is shown
+    this.cursor = null; // x of the line set from outside
     this.hover = null; // pixel of the line that follows the pointer or the keys
     new ResizeObserver(() => this.draw()).observe(this.element);
     this.over.addEventListener("pointermove", (event) => this.#move(event));
@@ -171,7 +171,7 @@ export class Chart {
     this.#zoom((zooms) => [...zooms, [Math.max(low, x0), Math.min(high, x1)]]);
   }
 
-  // All charts of a group show the same stretch.
+  // All charts of a group show the same interval.
   #zoom(next) {
     for (const chart of this.options.group ?? [this]) {
       chart.zooms = next(chart.zooms);

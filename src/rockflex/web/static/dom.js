@@ -52,7 +52,7 @@ export function clone(value) {
   return JSON.parse(JSON.stringify(value));
 }
 
-// Run `work` again and again with the newest wish only: what came between is skipped.
+// Repeat `work` for the newest call only; calls in between are skipped.
 export function latest(work) {
   let running = false;
   let wanted = false;
@@ -84,13 +84,13 @@ export function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
 
-// What is to be said of a file that has more bytes than the page takes; nothing if it has not.
+// The message about a file that is too large; empty if it is not.
 export function tooLarge({ name, size }, most) {
   if (size <= most) return "";
   return `${name} has ${(size / 1e6).toFixed(1)} MB, but the page takes ${most / 1e6} MB at most.`;
 }
 
-// A symbol whose index follows an underscore, or a unit with one.
+// A symbol with a subscript after an underscore.
 export function symbol(text) {
   return text.split(/(_[\w,θ]+)/).map((part) => (part.startsWith("_") ? h("sub", {}, part.slice(1)) : part));
 }

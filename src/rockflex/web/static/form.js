@@ -1,10 +1,10 @@
-// Fields with a label, a unit, limits, help and room for an error.
+// Fields with a label, a unit, limits, help and space for an error.
 
 import { h, number, symbol } from "./dom.js";
 
 let serial = 0;
 
-// A field around any control; `path` is where the server's messages about it go.
+// A field around any control; the server's messages about `path` appear in it.
 export function field(path, label, control, { unit = "", hint = "", help = "" } = {}) {
   const id = control.id || `f${++serial}`;
   control.id = id;
@@ -16,12 +16,12 @@ export function field(path, label, control, { unit = "", hint = "", help = "" } 
     trouble(`${id}-error`));
 }
 
-// Room for what the server has to say about what is around it.
+// Space for the server's messages about the enclosing element.
 export function trouble(id = null) {
   return h("div", { class: "error", role: "alert", id });
 }
 
-// Put every message beside its field; return those that have none here.
+// Put every message next to its field; return the messages without a field here.
 export function showErrors(root, errors) {
   for (const element of root.querySelectorAll("[data-path]")) {
     element.querySelector(":scope > .error").textContent = "";
@@ -39,7 +39,7 @@ export function showErrors(root, errors) {
     }
     const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
     element.querySelector(":scope > .error").textContent = sentence;
-    // A message about a whole group says nothing of its single fields.
+    // A message about a whole group does not concern its single fields.
     if (element.classList.contains("field"))
       for (const control of controls(element)) control.setAttribute("aria-invalid", "true");
   }
@@ -53,7 +53,7 @@ function controls(element) {
 export function parseNumber(text) {
   const clean = text.trim().replace("−", "-");
   if (/^[+]?(inf|infinity|∞)$/i.test(clean)) return "inf";
-  // What is no number is sent as it is: the server's message names the field.
+  // Text that is not a number is sent unchanged: the server's message names the field.
   return clean !== "" && Number.isFinite(Number(clean)) ? Number(clean) : clean;
 }
 
@@ -81,7 +81,7 @@ function write(value) {
   return value.map(plain).join(", ");
 }
 
-// Without rows of zeros that nobody can count.
+// Without long rows of zeros.
 function plain(value) {
   const long = typeof value === "number" && Math.abs(value) >= 1e7;
   return long ? value.toExponential().replace("e+", "e") : String(value);
@@ -107,12 +107,12 @@ export function tableField(path, spec, value, change) {
   const unit = spec.unit ? ` ${spec.unit}` : "";
   const limits = spec.low === null ? "" : `${number(spec.low)} to ${number(spec.high)}${unit}`;
   const typed = spec.type !== "flag" && spec.type !== "choice";
-  const optional = typed && !spec.required ? "may be left empty" : "";
+  const optional = typed && !spec.required ? "optional" : "";
   const hint = [spec.help.replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
   return field(path, spec.label, control, { unit: spec.unit, hint });
 }
 
-// A table within a table, which may be there or not; `change` gets the whole of it, undefined once it is removed.
+// An optional table within a table; `change` gets the whole table, or undefined once it is removed.
 export function tableGroup(path, spec, value, start, change) {
   let now = value;
   const element = h("fieldset", { class: "group", "data-path": path });
@@ -137,7 +137,7 @@ export function tableGroup(path, spec, value, start, change) {
   return element;
 }
 
-// A box for a number, or for several of them.
+// A box for one or several numbers.
 export function box(path, label, value, change, { many = false, ...extra } = {}) {
   const control = h("input", {
     type: "text", inputmode: many ? "text" : "decimal", autocomplete: "off", value: write(value),
@@ -146,7 +146,7 @@ export function box(path, label, value, change, { many = false, ...extra } = {})
   return field(path, label, control, extra);
 }
 
-// Chips of which one at least stays chosen.
+// Chips of which at least one stays chosen.
 export function chips(path, label, options, chosen, change) {
   const group = h("div", { class: "chips", role: "group", "aria-label": label }, options.map(([value, text]) => {
     const input = h("input", { type: "checkbox", value, checked: chosen.includes(value), onchange: () => {
@@ -159,7 +159,7 @@ export function chips(path, label, options, chosen, change) {
   return h("div", { class: "field", "data-path": path }, h("div", { class: "label" }, label), group, trouble());
 }
 
-// A slider beside a box for the number itself.
+// A slider with a box for the number.
 export function slider(path, label, { low, high, step, unit = "", hint = "", log = false }, value, change) {
   const to = log ? Math.log10 : (v) => v;
   const from = log ? (v) => Number((10 ** v).toPrecision(3)) : Number;

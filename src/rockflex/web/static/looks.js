@@ -1,4 +1,4 @@
-// How the lines of several models or designs are told apart: by colour, and by dashes for those who see no colours.
+// How the lines of several models or designs are distinguished: by colour, and by dashes for the colour-blind.
 
 const LOOKS = [
   { color: "c0", dash: [] },
@@ -15,7 +15,7 @@ const FIXED = [
 
 export const look = (i) => LOOKS[i % LOOKS.length];
 
-// A look for each of several models; those on a fixed base have looks of their own.
+// A look for each of several models; those on a fixed base have separate looks.
 export function looks(models) {
   let lifting = 0;
   let fixed = 0;

@@ -1,4 +1,4 @@
-// The page: its state, which the address holds, its tabs, and what they share.
+// The page: its state, which is stored in the address, its tabs, and what they share.
 
 import { ask, file, get, Refusal } from "./api.js";
 import { clone, h, save } from "./dom.js";
@@ -6,15 +6,15 @@ import { showErrors } from "./form.js";
 
 const TABS = [
   ["structure", "Structure",
-    "What rocks. Begin with one of the structures, or describe your own; the base stands on the ground and may lift."],
+    "Choose a structure or describe your own. Its base rests on the ground and can uplift."],
   ["earthquake", "Earthquake",
-    "What shakes it: a recorded earthquake, a pulse, or a file of yours, as strong as you scale it."],
+    "Choose the ground motion: a recorded earthquake, a pulse or your own file. Scale it as you like."],
   ["response", "Response",
-    "What happens: the structure on its base, drawn larger than life, in step with its rotation, forces and energy."],
+    "See the structure rock, with amplified displacements, next to its rotation, forces and energy over time."],
   ["fragility", "Fragility",
-    "How likely it is: many earthquakes of all strengths, and the share of them that passes a limit."],
+    "Estimate how likely a limit state is at a given intensity, from runs with many scaled records."],
   ["design", "Design",
-    "How wide the base must be, and whether a tendon helps, for a limit that may be passed rarely enough."],
+    "Find how wide the base must be to meet a target probability, with and without a tendon."],
 ];
 
 const view = document.getElementById("view");
@@ -25,13 +25,13 @@ export const app = {
   about: null,
   state: null,
   uploads: {},
-  // Change part of the state and show what follows from it.
+  // Change part of the state and update the page.
   change(patch) {
     merge(app.state, patch);
     keep();
     refresh();
   },
-  // Ask the server something about the state; messages go beside the fields of `root`, or into its foot.
+  // Query the server about the state; messages appear next to the fields of `root`, or in its foot.
   async ask(path, root, extra = {}) {
     try {
       const answer = await ask(path, { state: app.state, ...extra });
@@ -62,7 +62,7 @@ export const app = {
       h("button", { type: "button", "data-file": what, onclick: () => app.download(path(what), root) }, label);
     return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"), files.map(button));
   },
-  // A way on to another tab, under the results of one.
+  // A button to another tab, below the results.
   next(tab, text) {
     const go = () => {
       app.go(tab);
@@ -80,13 +80,13 @@ export const app = {
 const titleOf = (tab) => TABS.find(([name]) => name === tab)[1];
 const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 
-// Tables are merged key by key; a structure is replaced, and undefined removes.
 // A message about a field of another tab, in words.
 function elsewhere(text) {
   const found = /^structure(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
   return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text;
 }
 
+// Tables are merged key by key; a structure is replaced, and undefined removes a key.
 function merge(target, patch) {
   for (const [key, value] of Object.entries(patch)) {
     const table = value && typeof value === "object" && !Array.isArray(value) && key !== "structure";
@@ -124,7 +124,7 @@ async function open() {
     try {
       state = await ask("/api/state", { state: decoded(location.hash) });
     } catch (error) {
-      banner.textContent = `The link cannot be opened: ${reason(error)} The page shows its first structure instead.`;
+      banner.textContent = `The link cannot be opened: ${reason(error)} The default structure is shown instead.`;
       banner.hidden = false;
     }
   }
@@ -180,7 +180,7 @@ function tabs() {
     app.go(name);
     tabOf(name).focus();
   });
-  // Its own link would take the place of the state in the address.
+  // Following the link itself would replace the state in the address.
   document.getElementById("skip").addEventListener("click", (event) => {
     event.preventDefault();
     document.getElementById("main").focus();

@@ -1,4 +1,4 @@
-// What a chart draws between its axes, and the legend beside it.
+// What a chart draws between its axes, and its legend.
 
 import { interpolate, line } from "./axes.js";
 import { color, h, number } from "./dom.js";
@@ -64,7 +64,7 @@ function drawSeries(g, s, px, py) {
   g.globalAlpha = 1;
 }
 
-// A straight line across the chart with its label; labels of upright ones stand below each other.
+// A straight line across the chart with its label; labels of vertical ones are stacked.
 function rule(g, each, x0, y0, x1, y1, row, box) {
   g.strokeStyle = g.fillStyle = color(each.color ?? "muted");
   g.lineWidth = 1;
@@ -88,7 +88,7 @@ function rule(g, each, x0, y0, x1, y1, row, box) {
   g.fillText(each.label, x, y);
 }
 
-// What the labelled series of a chart are at x; of a band its height.
+// The values of the labelled series of a chart at x; for a band, its height.
 export function readings(series, x) {
   const labelled = series.filter((s) => s.label && s.kind !== "points" && !s.parametric);
   return labelled.map((s) => {
@@ -97,7 +97,7 @@ export function readings(series, x) {
   });
 }
 
-// A box with these rows beside a place on the chart.
+// A box with these rows next to a point on the chart.
 export function drawReadout(g, rows, at, box) {
   const width = 10 + Math.max(...rows.map((row) => g.measureText(row.text).width));
   const height = 15 * rows.length + 5;

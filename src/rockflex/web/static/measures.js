@@ -1,6 +1,6 @@
-// Intensity measures and suites, as the studies offer them.
+// Intensity measures and suites offered by the studies.
 
-// Values and titles for a list; the search for a width takes none of the base.
+// Values and titles for a list; the search for a width excludes measures that depend on the base.
 export function measuresOf(about, ofBase) {
   const offered = about.measures.filter((each) => ofBase || !each.of_base);
   return offered.map((each) => [each.name, each.title]);

@@ -1,4 +1,4 @@
-// Chips to choose models by, and a box for labels that are not among them.
+// Chips to choose models, and a box for other labels.
 
 import { clone, h } from "./dom.js";
 import { trouble } from "./form.js";
@@ -7,16 +7,16 @@ const MODELS = [
   ["MDOF-S", "Simplified, all modes"],
   ["2DOF-S", "Simplified, one mode"],
   ["3DOF-S", "Simplified, two modes"],
-  ["2DOF-S-R", "As 2DOF-S; base shear and base moment also count the mass of the modes that are left out"],
+  ["2DOF-S-R", "As 2DOF-S, but base shear and base moment include the mass of the omitted modes"],
   ["2DOF-C", "Complete, one mode: large rotations"],
   ["MDOF-C-SI", "Complete, all modes"],
   ["rigid", "Rigid block"],
-  ["fixed", "The same structure on a base that cannot lift"],
+  ["fixed", "The same structure on a fixed base"],
 ];
 const YIELDING = [
-  ["2DOF-S-BW", "Simplified, one mode, which yields"],
-  ["2DOF-C-BW", "Complete, one mode, which yields"],
-  ["1DOF-fixed-BW", "One mode, which yields, on a base that cannot lift"],
+  ["2DOF-S-BW", "Simplified, one yielding mode"],
+  ["2DOF-C-BW", "Complete, one yielding mode"],
+  ["1DOF-fixed-BW", "One yielding mode on a fixed base"],
 ];
 
 export const yields = (label) => label.includes("-BW");
@@ -26,7 +26,7 @@ export function models(path, chosen, most, change) {
   let offered = MODELS;
   const chips = h("div", { class: "chips", role: "group", "aria-label": "Models" });
   const other = h("input", {
-    type: "text", placeholder: "another, such as 4DOF-S or 3DOF-S-R", "aria-label": "Another model", maxlength: 30,
+    type: "text", placeholder: "another, e.g. 4DOF-S or 3DOF-S-R", "aria-label": "Another model", maxlength: 30,
     onchange: () => {
       const label = other.value.trim();
       other.value = "";
@@ -61,7 +61,7 @@ export function models(path, chosen, most, change) {
   draw();
   const element = h("div", { class: "field", "data-path": path },
     h("div", { class: "label" }, `Models (up to ${most})`), chips, other, trouble());
-  // Those chosen, and whether models that yield are offered, too.
+  // The chosen models, and whether yielding models are offered too.
   element.setValue = (value, yielding = false) => {
     now = clone(value);
     offered = yielding ? [...MODELS, ...YIELDING] : MODELS;

@@ -1,4 +1,4 @@
-// The structure rocking on its base: every model beside the others, all at one time.
+// The structure rocking on its base: all models side by side, at the same time.
 
 import { FONT } from "./axes.js";
 import { color, h } from "./dom.js";
@@ -35,7 +35,7 @@ export class Stage {
     return [-b - e, b - e];
   }
 
-  // What is drawn of a model at a time, in metres from the axis of the masses.
+  // The drawing of a model at a time, in metres from the axis of the masses.
   frameAt(index, time, amplification) {
     const { heights } = this.view;
     const [left, right] = this.edges();
@@ -44,7 +44,7 @@ export class Stage {
     const [low, high, share] = bracket(model.t, time);
     const mix = (values, i = low, j = high) => values[i] + share * (values[j] - values[i]);
     const theta = mix(model.rotation);
-    // At the very instants of uplift and impact the rotation is zero, so either side may be taken.
+    // At the instants of uplift and impact the rotation is zero, so either side will do.
     const side = theta > 0 ? 1 : theta < 0 ? -1 : 0;
     const turned = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, theta * amplification));
     const place = (x, y) => {
@@ -188,7 +188,7 @@ export class Stage {
   }
 }
 
-// What a model does, and the colour to say it in.
+// The state of a model in words, and the colour of the words.
 function stateOf(model, frame, time) {
   if (Math.abs(frame.theta) > 1.5) return ["overturned", "error"];
   if ((model.fall_time ?? Infinity) <= time) return ["falling", "error"];
@@ -210,7 +210,7 @@ function drawGround(g, left, right, ground) {
   g.stroke();
 }
 
-// Indices around a time, and how far it is between them; of the two nodes of an event the later one counts.
+// Indices around a time, and its relative position between them; of the two nodes of an event the later one counts.
 export function bracket(t, time) {
   let low = 0;
   let high = t.length - 1;

@@ -1,4 +1,4 @@
-// A study that the server runs in the background: its buttons, how far it is, and its answer as it comes.
+// A study that the server runs in the background: its buttons, its progress, and its results as they come.
 
 import { ask, drop, Refusal } from "./api.js";
 import { h, latest } from "./dom.js";
@@ -6,16 +6,16 @@ import { trouble } from "./form.js";
 import { yields } from "./models.js";
 
 const SAID = {
-  waiting: () => "Waiting for the runs of others.",
+  waiting: () => "Waiting for other users' runs.",
   running: (answer) => `${answer.done} of ${answer.total} runs`,
   done: (answer) => `Done: ${answer.total} runs.`,
   cancelled: (answer) => `Cancelled after ${answer.done} of ${answer.total} runs.`,
   failed: (answer) => `Failed: ${answer.message}`,
 };
-const SHOWN = 400; // ms between two looks while the tab is shown
-const ASIDE = 5000; // and while it is not: a study that nobody looks at stops
+const SHOWN = 400; // ms between two polls while the tab is shown
+const ASIDE = 5000; // and while it is not: the server stops a study that is not polled
 
-// What determines the runs of these models, beside what a study itself has to choose.
+// Everything that determines the runs of these models, apart from the study's own choices.
 export function assumed({ structure, impact, restitution, bouc_wen }, labels) {
   return [structure, impact, restitution, labels.some(yields) ? bouc_wen : null, labels];
 }
@@ -23,12 +23,12 @@ export function assumed({ structure, impact, restitution, bouc_wen }, labels) {
 const goes = (answer) => ["waiting", "running"].includes(answer.status);
 
 export class Study {
-  // `key` tells of everything that determines the runs, `show` draws an answer into `results`.
+  // `key` identifies everything that determines the runs; `show` draws an answer into `results`.
   constructor(app, kind, { verb, key, show, results }) {
     Object.assign(this, { app, kind, verb, key, show, results });
     this.token = null;
     this.answer = null;
-    this.ran = ""; // the key of what runs or ran
+    this.ran = ""; // the key of the present or last run
     this.watching = false;
     this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start() }, verb);
     this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, "Cancel");
@@ -41,18 +41,18 @@ export class Study {
     this.load = latest(() => this.#load());
   }
 
-  // What the tab shows follows a change of the state.
+  // Update the tab after a change of the state.
   refresh() {
     if (this.token) this.#watch();
     if (this.answer) this.load();
   }
 
-  // The page was opened anew from a link.
+  // The page was reopened from a link.
   close() {
     this.token = this.answer = null;
   }
 
-  // Buttons for files: those of the runs once there are any, the others at any time.
+  // Buttons for files: files of runs once there are any, the others at any time.
   downloads(root, ofRuns, others) {
     const names = ofRuns.map(([what]) => what);
     const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/download/${what}`);
@@ -101,16 +101,16 @@ export class Study {
   }
 
   async #load() {
-    const asked = this.token;
-    if (!asked) return;
+    const token = this.token;
+    if (!token) return;
     try {
-      const answer = await ask(`/api/study/${this.kind}/${asked}`, { state: this.app.state });
-      if (asked !== this.token) return;
+      const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.app.state });
+      if (token !== this.token) return;
       this.answer = answer;
       this.app.complain(this.#root, {});
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
-      if (asked !== this.token) return;
+      if (token !== this.token) return;
       this.app.complain(this.#root, error.errors);
       if (error.status === 404) this.token = this.answer = null;
       this.cancel.disabled = !this.token;
@@ -127,7 +127,7 @@ export class Study {
     this.cancel.disabled = !on;
     this.bar.value = answer.done / answer.total;
     for (const button of this.needRuns) button.disabled = !answer.done;
-    const changed = old ? ` Something was changed since: ${this.verb.toLowerCase()} again.` : "";
+    const changed = old ? ` The input has changed: ${this.verb.toLowerCase()} again.` : "";
     this.status.textContent = SAID[answer.status](answer) + changed;
     this.results.classList.toggle("stale", old);
     this.show(answer);

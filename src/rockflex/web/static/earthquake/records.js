@@ -28,7 +28,7 @@ export function records(app) {
         shown = suite;
       } catch (error) {
         if (!(error instanceof Refusal)) throw error;
-        return; // the question for the record itself tells what is wrong
+        return; // the query for the record itself reports the error
       }
     }
     for (const button of thumbs.children) button.setAttribute("aria-pressed", String(button.dataset.record === name));

@@ -1,10 +1,10 @@
-// A record from a file of the visitor.
+// A record from an uploaded file.
 
 import { Refusal, send } from "../api.js";
 import { h, number, tooLarge } from "../dom.js";
 import { box, field, select } from "../form.js";
 
-const UNITS = [["", "as the file says"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
+const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
 
 // `complain` takes messages by the path of their field.
 export function uploading(app, complain) {
@@ -38,9 +38,9 @@ export function uploading(app, complain) {
   }
 
   return h("div", {},
-    field("record.upload", "File", input, { hint: `AT2, CSV or columns of text; up to ${most / 1e6} MB and ${duration} s` }),
+    field("record.upload", "File", input, { hint: `AT2, CSV or text columns; up to ${most / 1e6} MB and ${duration} s` }),
     select("upload.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "AT2 files are in g by definition" }),
-    box("upload.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "only where the file has no times" }),
+    box("upload.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "only if the file has no times" }),
     said,
-    h("p", { class: "help" }, "A link does not hold the file: whoever opens it needs the file, too."));
+    h("p", { class: "help" }, "A link does not contain the file: whoever opens it needs the file, too."));
 }

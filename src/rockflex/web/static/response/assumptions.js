@@ -5,35 +5,35 @@ import { select, slider, tableField, trouble } from "../form.js";
 import { yields } from "../models.js";
 
 const IMPACTS = [
-  ["", "as each model has it"],
+  ["", "default of each model"],
   ["simplified", "simplified (Eq. 25)"],
   ["complete", "complete (Eq. 19)"],
   ["restitution", "restitution"],
 ];
 const MEANT = {
-  "": "How much of its motion the structure keeps.",
-  simplified: "Every mass keeps its horizontal velocity; the rotation is lost.",
-  complete: "All masses together keep their horizontal energy; the rotation is lost.",
-  restitution: "Every mass keeps its horizontal velocity, and a share of the rotation carries on to the other edge.",
+  "": "The law sets the velocities after an impact.",
+  simplified: "Conserves the horizontal velocity of each mass; the rotation stops.",
+  complete: "Conserves the total horizontal kinetic energy; the rotation stops.",
+  restitution: "Conserves the horizontal velocity of each mass; part of the rotation continues about the other edge.",
 };
-const RESTITUTION = 0.8; // to begin with
-const RANGE = "0: no bounce, the base rests until it is lifted anew; 1: it rocks on and nothing is lost";
+const RESTITUTION = 0.8; // default
+const RANGE = "0: the base stays down until the next uplift; 1: it rocks on without loss";
 const YIELDING = ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"];
-const DISPLACEMENT = 0.05; // m, where the server suggests none
+const DISPLACEMENT = 0.05; // m, if the server suggests none
 
-// `suggested` tells the yield displacement that suits the response that is shown.
+// `suggested` returns a yield displacement that suits the response shown.
 export function assumptions(app, suggested) {
-  const impact = select("impact", "When the base strikes the ground", IMPACTS, "", (value) => app.change({
+  const impact = select("impact", "Impact law", IMPACTS, "", (value) => app.change({
     impact: value || undefined,
     restitution: value === "restitution" ? RESTITUTION : undefined,
   }), { hint: MEANT[""] });
-  const restitution = slider("restitution", "Share of the rotation's speed that is left",
+  const restitution = slider("restitution", "Coefficient of restitution",
     { low: 0, high: 1, step: 0.01, hint: RANGE }, RESTITUTION, (value) => app.change({ restitution: value }));
   const tick = h("input", { type: "checkbox", id: "yields", onchange: () => (tick.checked ? begin() : end()) });
   const fields = h("div");
   const yielding = h("div", { "data-path": "bouc_wen" },
     h("label", { class: "check" }, tick, "The superstructure yields (Bouc–Wen)"),
-    h("p", { class: "hint" }, "Only models with -BW in their label yield; all others stay elastic."),
+    h("p", { class: "hint" }, "Only models with -BW in their label yield; the others stay elastic."),
     fields, trouble());
   let drawn = false;
 
@@ -43,7 +43,7 @@ export function assumptions(app, suggested) {
   }
 
   function end() {
-    const { state } = app.about; // the first state, whose models do not yield
+    const { state } = app.about; // the default state, whose models do not yield
     const without = (labels, otherwise) => {
       const left = labels.filter((label) => !yields(label));
       return left.length ? left : [...otherwise];

@@ -1,21 +1,21 @@
-// Where the energy that the ground puts in has gone, over time.
+// Where the input energy goes, over time.
 
 import { Chart } from "../chart.js";
 import { decode, h } from "../dom.js";
 import { legend } from "../marks.js";
 
 const PARTS = [
-  ["kinetic", "motion"],
-  ["strain", "flexure"],
+  ["kinetic", "kinetic"],
+  ["strain", "strain"],
   ["gravity", "raised weight"],
   ["tendons", "tendons"],
-  ["damped", "damped"],
+  ["damped", "damping"],
   ["yielded", "yielding"],
-  ["lost", "lost in impacts"],
+  ["lost", "impacts"],
 ];
 
 export class Energy {
-  // `chosen` is called once somebody asks for the energy of another model.
+  // `chosen` is called when another model is chosen.
   constructor(chosen) {
     this.focus = "";
     this.chart = new Chart({
@@ -23,7 +23,7 @@ export class Energy {
     });
     this.keys = h("div");
     this.note = h("p", { class: "hint" });
-    this.of = h("select", { id: "energy-of", "aria-label": "Model whose energy is shown", onchange: () => {
+    this.of = h("select", { id: "energy-of", "aria-label": "Model for the energy", onchange: () => {
       this.focus = this.of.value;
       chosen();
     } });
@@ -50,10 +50,10 @@ export class Energy {
       below = high;
     }
     const input = decode(energy.input).map((value) => value / 1000);
-    series.push({ x, y: input, color: "text", width: 1.2, label: "put in by the ground", until });
+    series.push({ x, y: input, color: "text", width: 1.2, label: "input", until });
     this.chart.set({
       series, xRange: [0, view.end],
-      vlines: until < Infinity ? [{ x: until, color: "error", label: "does not come back" }] : [],
+      vlines: until < Infinity ? [{ x: until, color: "error", label: "falls" }] : [],
     });
     this.keys.replaceChildren(legend(series));
   }

@@ -5,17 +5,17 @@ import { slider } from "../form.js";
 import { Stage } from "../stage.js";
 
 const SPEEDS = [["0.05", "1/20"], ["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2"], ["1", "real time"], ["2", "× 2"]];
-const STEPS = 200; // of the arrow keys, through the whole time
+const STEPS = 200; // of the arrow keys over the whole duration
 
 export class Player {
-  // `moved` is called with every time that is shown.
+  // `moved` is called with each time shown.
   constructor(moved) {
     this.moved = moved;
     this.stage = new Stage();
     this.view = null;
     this.time = 0;
     this.amplification = 1;
-    this.chosen = false; // whether somebody chose the amplification
+    this.chosen = false; // whether the user chose the amplification
     this.playing = null;
     this.button = h("button", { type: "button", class: "primary", id: "play", onclick: () => this.toggle() }, "Play");
     this.speed = h("select", { id: "speed", "aria-label": "Speed" },
@@ -25,13 +25,13 @@ export class Player {
       type: "button", title: "Go to the largest rotation",
       onclick: () => this.view && this.go(this.view.models[0].peaks.time_of_max_rotation),
     }, "Largest rotation");
-    // Read out by the slider of the time: spoken at every frame it would never end.
+    // Screen readers read the time from its slider: announcing every frame would never end.
     this.clock = h("output", { id: "clock", for: "scrub", "aria-live": "off" }, "0.00 s");
     this.scrub = h("input", {
       type: "range", id: "scrub", min: 0, max: 1, step: 0.001, value: 0, "aria-label": "Time",
       oninput: () => this.go(Number(this.scrub.value)),
     });
-    this.amplify = slider("amplification", "Amplification of what is drawn", { low: 1, high: 200, log: true }, 1, (value) => {
+    this.amplify = slider("amplification", "Amplification of the drawing", { low: 1, high: 200, log: true }, 1, (value) => {
       this.chosen = true;
       this.amplification = Number(value) > 0 ? Number(value) : 1;
       this.stage.show(this.time, this.amplification);
@@ -64,7 +64,7 @@ export class Player {
     this.moved(this.time);
   }
 
-  // To a time that somebody chose.
+  // To a time chosen by the user.
   go(time) {
     this.pause();
     if (this.view) this.move(time);
@@ -108,7 +108,7 @@ export class Player {
   }
 }
 
-// Let the largest movement fill a good part of the picture.
+// The amplification that lets the largest displacement fill a good part of the picture.
 function suited(view) {
   const top = view.heights[view.heights.length - 1];
   let largest = 1e-9;

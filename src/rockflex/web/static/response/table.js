@@ -1,10 +1,10 @@
-// The largest values of every model, and what happened in words.
+// The peaks of every model, and a summary in words.
 
 import { h, number, symbol } from "../dom.js";
 import { yields } from "../models.js";
 
-// Name, heading, factor, and whether it may be held against a fixed base. A displacement relative to the base may not:
-// what the base turns is missing from it.
+// Name, heading, factor, and whether it may be compared with a fixed base. A displacement relative to the base may not:
+// it lacks the part due to the rotation.
 const PEAKS = [
   ["max_rotation", "θ_max [mrad]", 1000, false],
   ["max_top_displacement", "u_top,max relative to the base [m]", 1, false],
@@ -14,10 +14,10 @@ const PEAKS = [
   ["max_horizontal_reaction", "ΣF_x,max [kN]", 1e-3, true],
   ["min_vertical_reaction", "N_min [kN]", 1e-3, false],
 ];
-const MEANT = "In total: relative to the ground, what the turn of the base adds to it included. ΣF_x: what the ground must hold "
-  + "across, the mass of the base and the damping included, which V_b leaves out. N_min: least force between base and ground.";
+const MEANT = "In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; "
+  + "unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.";
 
-// What a model is held against: one on a fixed base, if there is, that yields as it does, if there is.
+// The fixed-base model to compare with, if any; preferably one that yields too if the model does.
 function reference(view, model) {
   const fixed = view.models.filter((m) => !m.lifts);
   return fixed.find((m) => yields(m.label) === yields(model.label)) ?? fixed[0];
@@ -38,7 +38,7 @@ export function table(view) {
     h("table", {},
       h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, symbol(text))))),
       h("tbody", {}, view.models.map((m) => row(m, view, held)))),
-    h("p", { class: "hint" }, ...symbol(MEANT), fixed.length ? ` In brackets: as a share of ${fixed.join(" and of ")}.` : ""),
+    h("p", { class: "hint" }, ...symbol(MEANT), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
   ];
 }
 
@@ -64,12 +64,12 @@ function row(m, view, held) {
     held ? h("td", {}, m.lifts ? number(m.peaks.max_tendon_force / 1000) : "–") : null);
 }
 
-// What the models ask of the ground or of their tendons that these cannot do, a paragraph each.
+// Demands on the ground or tendons that they cannot meet, one paragraph each.
 export function warnings(view) {
   return view.models.flatMap((m) => m.warnings.map((text) => h("p", { "data-model": m.label }, `${m.label}: ${text}`)));
 }
 
-// A sentence or two on the first model, and whether others fall.
+// A sentence or two on the first model, and whether others overturn.
 export function words(view) {
   const [first] = view.models;
   const fixed = reference(view, first);
@@ -81,20 +81,19 @@ export function words(view) {
   } else if (first.status === "overturned") {
     text += `the structure overturns; it lies on its side at ${number(p.end_time, 3)} s.`;
   } else if (first.status === "no_uplift") {
-    text += "the base stays on the ground; the structure answers as on a fixed base.";
+    text += "the base stays on the ground; the structure responds as on a fixed base.";
   } else {
     const impacts = `${p.n_impacts} impact${p.n_impacts === 1 ? "" : "s"}`;
-    text += `the base lifts and rocks with up to ${number(1000 * p.max_rotation, 3)} mrad `;
+    text += `the base rocks with up to ${number(1000 * p.max_rotation, 3)} mrad `;
     text += `at ${number(p.time_of_max_rotation, 3)} s, with ${impacts}.`;
-    if (p.nominal_overturning) text += " That is past the nominal limit 0.7 atan(B/h*₁), though it did not fall.";
+    if (p.nominal_overturning) text += " This exceeds the nominal limit 0.7 atan(B/h*₁), but it did not overturn.";
     if (p.max_total_top_displacement !== null) {
       text += ` The top moves by up to ${number(p.max_total_top_displacement, 3)} m relative to the ground`;
-      text += fixed ? `; that of ${named(fixed)} by ${number(fixed.peaks.max_total_top_displacement, 3)} m.` : ".";
+      text += fixed ? `, and ${number(fixed.peaks.max_total_top_displacement, 3)} m for ${named(fixed)}.` : ".";
     }
     if (fixed && fixed.peaks.max_base_moment > 0) {
       const change = 100 * (p.max_base_moment / fixed.peaks.max_base_moment - 1);
-      text += ` Against ${named(fixed)} the base moment is `;
-      text += `${number(Math.abs(change), 3)} % ${change < 0 ? "smaller" : "larger"}.`;
+      text += ` The base moment is ${number(Math.abs(change), 3)} % ${change < 0 ? "smaller" : "larger"} than for ${named(fixed)}.`;
     }
   }
   const fallen = view.models.filter((m) => m !== first && m.status === "overturned").map((m) => m.label);

@@ -1,4 +1,4 @@
-// Matrices of a finite element program, from a file.
+// Matrices from a file of a finite element program.
 
 import { Refusal, send } from "../api.js";
 import { h, tooLarge } from "../dom.js";
@@ -7,7 +7,7 @@ import { trouble } from "../form.js";
 const PARTS = ["mass", "stiffness", "heights", "rotations"];
 const REST = { base_mass: 0, half_width: 1, damping_ratio: 0.02 };
 
-// `structure` tells the present one, `put` takes the one with the matrices.
+// `structure` returns the present structure, `put` takes the one with the matrices.
 export function importing(limit, structure, put) {
   const part = h("select", { id: "part" }, PARTS.map((name) => h("option", { value: name }, name)));
   const input = h("input", {
@@ -36,6 +36,6 @@ export function importing(limit, structure, put) {
 
   return h("fieldset", { "data-path": "import" }, h("legend", {}, "Import matrices"),
     h("p", { class: "help" }, "From any finite element program: a .npz file with the arrays mass, stiffness and heights,",
-      " or one CSV file for each. Units: kg, N/m, m; the base held."),
-    h("div", { class: "buttons" }, h("label", { for: "part" }, "CSV holds"), part), input, said);
+      " or one CSV file for each. Units: kg, N/m, m; fixed base."),
+    h("div", { class: "buttons" }, h("label", { for: "part" }, "CSV contains"), part), input, said);
 }

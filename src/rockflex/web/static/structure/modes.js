@@ -1,4 +1,4 @@
-// The modes of a structure: their pictures and their table.
+// The modes of a structure: drawings and a table.
 
 import { color, h, number, svg } from "../dom.js";
 
@@ -6,12 +6,12 @@ const [WIDTH, HEIGHT] = [110, 240];
 const SWAY = 38; // px
 const ROWS = 12;
 
-// The structure and its first modes, each displaced by its share of a unit motion.
+// The structure and its first modes, each drawn with its contribution to a unit displacement.
 export function pictures(view) {
   const shapes = view.shapes.length ? view.shapes : [view.heights.map(() => 0)];
   return h("div", { class: "modes" }, shapes.map((shape, n) => picture(view, shape, n)),
     view.shapes_known ? null
-      : h("p", { class: "hint" }, "The shape over the height is not known: it is drawn as a straight line."));
+      : h("p", { class: "hint" }, "The mode shapes are not known and drawn as straight lines."));
 }
 
 function picture(view, shape, n) {
@@ -39,9 +39,9 @@ function picture(view, shape, n) {
 
 export function table(view) {
   if (!view.modes.length)
-    return h("p", { class: "help" }, "A rigid block has no modes: simulate it with the model “rigid”.");
+    return h("p", { class: "help" }, "A rigid block has no modes. Use the model “rigid”.");
   const edges = view.modes[0].uplifted.length > 1 ? [", right edge", ", left edge"] : [""];
-  const head = ["Mode", "Period T [s]", "Mass m* [kg]", "of the total", "Height h* [m]", "Damping",
+  const head = ["Mode", "Period T [s]", "Mass m* [kg]", "Share of total mass", "Height h* [m]", "Damping",
     ...edges.flatMap((edge) => [`Period while uplifted${edge} [s]`, `Damping while uplifted${edge}`])];
   const value = (v) => h("td", { "data-value": v }, number(v));
   const percent = (v) => h("td", {}, `${number(100 * v, 3)} %`);

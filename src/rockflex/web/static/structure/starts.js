@@ -1,4 +1,4 @@
-// What a form begins with where no preset has the kind, and where a table is added to a structure.
+// Default values of a form where no preset has the kind, and of a table added to a structure.
 
 export const KINDS = {
   fish_bone: {
@@ -25,7 +25,7 @@ export const KINDS = {
 
 export const TENDON = { position: 0, initial_force: 1e5, stiffness: 1e6 };
 
-// A table within that of a structure, by its name.
+// Tables nested in that of a structure, by name.
 export const INNER = {
   lumped_masses: (beam) => ({ heights: [beam.height], masses: [1e4] }),
 };

@@ -11,7 +11,7 @@ import { assumed, Study } from "../study.js";
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
 const RUNS = ["suites", "scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
-const WIDTH = "half the width of the base B [m]";
+const WIDTH = "half width of the base B [m]";
 
 const numbers = (values) => values.map((value) => value ?? NaN);
 
@@ -23,17 +23,17 @@ export default function designTab(app) {
   const list = (name, label, options) =>
     select(`design.${name}`, label, options, choice()[name], (value) => put({ [name]: value }));
 
-  const asked = app.about.limit_states.filter((each) => each.noun);
-  const limit = list("limit", "What is not to be exceeded", asked.map((each) => [each.name, each.noun]));
+  const limitStates = app.about.limit_states.filter((each) => each.noun);
+  const limit = list("limit", "Limit state", limitStates.map((each) => [each.name, each.noun]));
   const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
-  const target = entry("target", "Probability that is accepted", { hint: "0.0001 to 0.99" });
-  const measure = list("measure", "Strength of the earthquake, by", measuresOf(app.about, false));
-  const at = entry("at", "At the level", { unit: "m/s", hint: "of this measure, above 0" });
+  const target = entry("target", "Acceptable probability", { hint: "0.0001 to 0.99" });
+  const measure = list("measure", "Intensity measure", measuresOf(app.about, false));
+  const at = entry("at", "Intensity", { unit: "m/s", hint: "value of this measure, above 0" });
   const narrowest = entry("narrowest", "From", { unit: "× present B", hint: "0.2 to 2" });
   const widest = entry("widest", "To", { unit: "× present B", hint: "1 to 10" });
   const widths = entry("widths", "Widths", { hint: "3 to 20" });
-  const own = h("p", { class: "help" }, "The structure has tendons of its own, which it keeps.");
-  const tendons = entry("tendons", "Initial forces of a tendon in the axis",
+  const own = h("p", { class: "help" }, "The structure already has tendons; they stay unchanged.");
+  const tendons = entry("tendons", "Initial forces of a central tendon",
     { many: true, unit: "× weight", hint: "up to four, 0 for none" });
   const stiffness = entry("stiffness", "Stiffness EA/L of the tendon",
     { unit: "L₀ʳ g/B²", hint: "0 to 100; at 1 the moment stays constant while rocking" });
@@ -43,22 +43,22 @@ export default function designTab(app) {
   const model = list("model", "Model", []);
 
   const chart = new Chart({
-    label: "Probability over half the width of the base", yLabel: "probability", xLabel: WIDTH, height: 360, xName: "B [m]",
+    label: "Probability over half width of the base", yLabel: "probability", xLabel: WIDTH, height: 360, xName: "B [m]",
   });
   const moments = new Chart({
-    label: "Median base moment over half the width", yLabel: "M_b [kN m]", xLabel: WIDTH, height: 190, zero: true, xName: "B [m]",
+    label: "Median base moment over half width", yLabel: "M_b [kN m]", xLabel: WIDTH, height: 190, zero: true, xName: "B [m]",
   });
   const keys = h("div");
-  const verdict = h("div", { class: "answer", id: "width", role: "status" }, "How wide must the base be? Search to find out.");
+  const verdict = h("div", { class: "answer", id: "width", role: "status" }, "Press Search to find how wide the base must be.");
   const notes = h("ul", { class: "notes" });
   const remarks = h("details", { hidden: true }, h("summary", {}, "Remarks on the fits"), notes);
   const table = h("div", { class: "scroll", id: "designs" });
   const drawing = h("div", { hidden: true }, keys, chart.element,
-    h("p", { class: "hint" }, "Lines: probability that the limit is exceeded at the level of the earthquake, falling over",
-      " included; bands: 90 % confidence over the recordings; dashed: what is accepted."),
+    h("p", { class: "hint" }, "Lines: probability of exceeding the limit at this intensity, overturning included; ",
+      "bands: 90 % confidence over the recordings; dashed: acceptable probability."),
     table,
-    h("h2", {}, "What the structure then carries"), moments.element,
-    h("p", { class: "hint" }, "Median of the largest base moments over all runs."),
+    h("h2", {}, "Base moment"), moments.element,
+    h("p", { class: "hint" }, "Median over all runs of the largest base moment."),
     remarks);
   const results = h("div", { class: "results" }, verdict, drawing);
   const study = new Study(app, "design", {
@@ -67,7 +67,7 @@ export default function designTab(app) {
   });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      h("fieldset", {}, h("legend", {}, "Question"), limit, rotation, target, measure, at),
+      h("fieldset", {}, h("legend", {}, "Target"), limit, rotation, target, measure, at),
       h("fieldset", {}, h("legend", {}, "Search"),
         narrowest, widest, widths, own, tendons, stiffness, suites, scales, model, study.element)),
     results);
@@ -90,7 +90,7 @@ export default function designTab(app) {
         ...met.map((each) => (
           { kind: "points", x: [each.half_width], y: [choice().target], color: each.color, hollow: true, size: 7, width: 2 })),
       ],
-      hlines: [{ y: choice().target, label: "accepted", color: "muted" }],
+      hlines: [{ y: choice().target, label: "acceptable", color: "muted" }],
       vlines: [
         { x: answer.present, label: "present base", color: "muted", dash: [2, 3] },
         ...met.map((each) => ({ x: each.half_width, label: `B = ${number(each.half_width, 3)} m`, color: each.color })),
@@ -122,12 +122,12 @@ export default function designTab(app) {
   return { element, refresh, close: () => study.close() };
 }
 
-// What a search found for one tendon.
+// The result of a search for one tendon.
 function sentence(each, present) {
   const half = `B = ${number(each.half_width, 3)} m`;
   const width = `${number(2 * each.half_width, 3)} m`;
   const now = `now ${number(2 * present, 3)} m`;
-  const sure = each.half_width_upper ? `; to be sure at 95 %, ${number(2 * each.half_width_upper, 3)} m` : "";
+  const sure = each.half_width_upper ? `; with 95 % confidence, ${number(2 * each.half_width_upper, 3)} m` : "";
   const said = {
     met: `a base ${width} wide (${half}) is enough (${now}${sure}).`,
     "met more than once": `a base ${width} wide (${half}) is enough (${now}${sure}).`,
@@ -154,7 +154,7 @@ function designs(curves) {
     h("tbody", {}, curves.flatMap((c) => c.half_width.map((_, i) => row(c, i)))));
 }
 
-// The stretches of a band where both of its limits are known.
+// The parts of a band where both limits are known.
 function band(c) {
   const kept = c.half_width.map((_, i) => i).filter((i) => c.low[i] !== null && c.high[i] !== null);
   if (kept.length < 2) return null;

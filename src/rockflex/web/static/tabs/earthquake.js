@@ -1,4 +1,4 @@
-// Earthquake: what shakes it. Records of suites, pulses, files, and a scale factor.
+// Earthquake: records of suites, pulses, files, and a scale factor.
 
 import { get } from "../api.js";
 import { Chart } from "../chart.js";
@@ -7,7 +7,7 @@ import { records } from "../earthquake/records.js";
 import { uploading } from "../earthquake/upload.js";
 import { select, slider } from "../form.js";
 
-const SOURCES = [["suite", "A recorded suite"], ["pulse", "A pulse"], ["upload", "A file of yours"]];
+const SOURCES = [["suite", "A recorded suite"], ["pulse", "A pulse"], ["upload", "Your own file"]];
 const PULSE = {
   amplitude: ["Amplitude", { low: 0.1, high: 15, step: 0.05, unit: "m/s²" }],
   period: ["Period", { low: 0.1, high: 5, step: 0.01, unit: "s" }],
@@ -24,7 +24,7 @@ export default function earthquakeTab(app) {
   const { about } = app;
   const { record } = app.state;
   const put = (patch) => app.change({ record: patch });
-  const source = select("record.source", "Where from", SOURCES, record.source, (value) => put({ source: value }));
+  const source = select("record.source", "Source", SOURCES, record.source, (value) => put({ source: value }));
   const suite = select("record.suite", "Suite", about.suites.map((name) => [name, name]), record.suite, async (value) => {
     const found = await get(`/api/suite/${encodeURIComponent(value)}`);
     put({ suite: value, name: found.records[0].name });
@@ -34,7 +34,7 @@ export default function earthquakeTab(app) {
   const shape = select("record.pulse.shape", "Shape", titles, record.pulse.shape, (value) => put({ pulse: { shape: value } }));
   const sliders = Object.fromEntries(Object.entries(PULSE).map(([key, [label, spec]]) => [key,
     slider(`record.pulse.${key}`, label, spec, record.pulse[key], (value) => put({ pulse: { [key]: value } }))]));
-  const scale = slider("scale", "Scale factor on the record", { low: 0.01, high: 20, log: true }, app.state.scale,
+  const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const panels = {
     suite: h("div", {}, suite, thumbs.element),
@@ -61,7 +61,7 @@ export default function earthquakeTab(app) {
   const drawing = h("div", {},
     title, charts.map(([, , chart]) => chart.element), measures,
     h("h2", {}, "Response spectrum, 5 % damping"), spectrum.element);
-  const empty = h("p", { class: "answer", hidden: true }, "Choose a file: its motion and its spectrum come here.");
+  const empty = h("p", { class: "answer", hidden: true }, "Choose a file; its motion and spectrum will appear here.");
   const results = h("div", { class: "results" }, empty, drawing);
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
@@ -69,7 +69,7 @@ export default function earthquakeTab(app) {
         h("p", { class: "error foot", role: "alert" })),
       h("fieldset", {}, h("legend", {}, "Scale"), scale)),
     results);
-  drawing.append(app.downloads(element, [["record", "Record (CSV)"]]), app.next("response", "Next: see the structure rock."));
+  drawing.append(app.downloads(element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
 
   const load = latest(async () => {
     const answer = await app.ask("/api/record", element);
@@ -86,7 +86,7 @@ export default function earthquakeTab(app) {
       const lifting = { color: "c1", dash: [4, 4] };
       chart.set({
         series: [{ x, y: decode(answer[key]), color, width: 1, label: key }],
-        hlines: level ? [{ ...lifting, y: level, label: "lifts the base if slow" }, { ...lifting, y: -level }] : [],
+        hlines: level ? [{ ...lifting, y: level, label: "static uplift" }, { ...lifting, y: -level }] : [],
       });
     }
     measures.replaceChildren(...answer.measures.map((m) => h("div", {},

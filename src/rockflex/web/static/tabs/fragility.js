@@ -1,4 +1,4 @@
-// Fragility: many records, and the probability that a limit is passed, as it comes.
+// Fragility: many records, and the probability of exceeding a limit, updated as runs finish.
 
 import { Chart } from "../chart.js";
 import { h, number } from "../dom.js";
@@ -10,7 +10,7 @@ import { models } from "../models.js";
 import { assumed, Study } from "../study.js";
 
 const LEVELS = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
-const FOOT = 1.2e-5; // rad, where runs without rotation stand
+const FOOT = 1.2e-5; // rad, where runs without rotation are drawn
 
 export default function fragilityTab(app) {
   const choice = () => app.state.cloud;
@@ -23,14 +23,14 @@ export default function fragilityTab(app) {
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
   const measures = measuresOf(app.about, true);
   const measure = select("cloud.measure", "Intensity measure", measures, choice().measure, (value) => put({ measure: value }));
-  const asked = app.about.limit_states;
-  const limit = select("cloud.limit", "Limit state", asked.map((each) => [each.name, each.clause]), choice().limit,
+  const limitStates = app.about.limit_states;
+  const limit = select("cloud.limit", "Limit state", limitStates.map((each) => [each.name, each.clause]), choice().limit,
     (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
     { unit: "rad", hint: "0.0001 to 1.5" });
   const offered = LEVELS.some(([value]) => value === choice().level) ? LEVELS
     : [...LEVELS, [choice().level, `${number(100 * choice().level)} %`]];
-  const level = select("cloud.level", "Confidence of the bands", offered, choice().level,
+  const level = select("cloud.level", "Confidence level of the bands", offered, choice().level,
     (value) => put({ level: Number(value) }));
 
   const curves = new Chart({ label: "Probability over intensity", yLabel: "probability", height: 320, xName: "IM", xLog: true });
@@ -43,14 +43,14 @@ export default function fragilityTab(app) {
   const table = h("div", { class: "scroll", id: "fits" });
   const drawing = h("div", { hidden: true },
     h("h2", {}, "Fragility curves"), keys, curves.element,
-    h("p", { class: "hint" }, "Lines: fitted curves; bands: their confidence; rings: share of runs in groups of",
-      " neighbouring intensities."),
+    h("p", { class: "hint" }, "Lines: fitted curves; bands: their confidence; circles: observed fraction in groups of runs ",
+      "of similar intensity."),
     table,
     h("h2", {}, "All runs"), cloud.element,
-    h("p", { class: "hint" }, "Runs that overturned stand at π/2; runs below 0.01 mrad stand at the foot."),
+    h("p", { class: "hint" }, "Overturned runs are drawn at π/2, runs below 0.01 mrad at the bottom."),
     remarks);
   const empty = h("p", { class: "answer" },
-    "How likely is it? Run the cloud: every record of the suites at every scale factor, and the curves come while it runs.");
+    "Press Run to simulate every record of the suites at every scale factor. The curves appear while it runs.");
   const results = h("div", { class: "results" }, empty, drawing);
   const study = new Study(app, "cloud", {
     verb: "Run", results, show,
@@ -59,7 +59,7 @@ export default function fragilityTab(app) {
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Cloud of runs"), suites, scales, labels, study.element),
-      h("fieldset", {}, h("legend", {}, "Reading"), limit, rotation, measure, level)),
+      h("fieldset", {}, h("legend", {}, "Fragility curves"), limit, rotation, measure, level)),
     results);
   results.append(study.downloads(element,
     [["figure", "Rocking and overturning (SVG)"], ["table", "Runs (CSV)"]],
@@ -85,7 +85,7 @@ export default function fragilityTab(app) {
       ],
     });
     const at = choice().limit === "rotation" ? choice().rotation
-      : asked.find((each) => each.name === choice().limit).line;
+      : limitStates.find((each) => each.name === choice().limit).line;
     cloud.set({
       yRange: [1e-5, 2],
       series: all.map((c) => ({
@@ -111,7 +111,7 @@ export default function fragilityTab(app) {
 }
 
 function fits(curves, label) {
-  const head = ["Model", "Runs", "Beyond the limit", `Median ${label}`];
+  const head = ["Model", "Runs", "Exceeding the limit", `Median ${label}`];
   return h("table", {},
     h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),
     h("tbody", {}, curves.map((c) => h("tr", { "data-model": c.model },

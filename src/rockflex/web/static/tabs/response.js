@@ -1,4 +1,4 @@
-// Response: the structure rocks, in step with everything that is known of it.
+// Response: the rocking structure, animated with its response histories.
 
 import { Chart } from "../chart.js";
 import { decode, h, latest } from "../dom.js";
@@ -20,7 +20,7 @@ const PANELS = [
 ];
 const DISPLACEMENTS = [
   ["total_top_displacement", "relative to the ground", "u_top total [m]"],
-  ["top_displacement", "relative to the base, which turns", "u_top relative [m]"],
+  ["top_displacement", "relative to the rotating base", "u_top relative [m]"],
 ];
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear"];
 const FILES = [
@@ -28,13 +28,13 @@ const FILES = [
   ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
 ];
 
-const PATIENCE = 1500; // ms after which somebody wonders
-const FIRST = "Computing … The first time after an installation the kernels are compiled, which takes half a minute or so.";
+const PATIENCE = 1500; // ms before the page says that it is computing
+const FIRST = "Computing … The first run after an installation compiles the kernels, which takes about half a minute.";
 
 export default function responseTab(app) {
   let view = null;
   const player = new Player(follow);
-  const scale = slider("scale", "Scale factor on the record", { low: 0.01, high: 20, log: true }, app.state.scale,
+  const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const labels = models("models", app.state.models, app.about.limits.models, (value) => app.change({ models: value }));
   const free = slider("free_vibration", "Free vibration after the record", { low: 0, high: 60, step: 1, unit: "s" },
@@ -54,7 +54,7 @@ export default function responseTab(app) {
     firstOnTop: true,
   });
   const energy = new Energy(() => load());
-  const seen = select("displacement", "Displacement of the top in the plot", DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
+  const seen = select("displacement", "Plotted top displacement", DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
     if (!view) return;
     choose(view);
     draw();
@@ -64,14 +64,14 @@ export default function responseTab(app) {
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, panels.map(([, chart]) => chart.element),
-    h("p", { class: "hint" }, "Shade: the base of the first model is off the ground. Triangles: its impacts. ",
-      "Click or use the arrow keys for the time; drag or press + and − to zoom; double click or press Escape to see all."),
+    h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
+      "Click or use the arrow keys to set the time; drag or press + and − to zoom; double-click or press Escape to reset."),
     h("h2", {}, "Largest values"), peaks,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.element), energy.element));
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       player.element,
-      h("fieldset", {}, h("legend", {}, "What to compare"), scale, labels, free, h("p", { class: "error foot", role: "alert" })),
+      h("fieldset", {}, h("legend", {}, "Runs"), scale, labels, free, h("p", { class: "error foot", role: "alert" })),
       h("fieldset", {}, h("legend", {}, "Assumptions"), assumed.element)),
     results);
   results.append(app.downloads(element, FILES));
@@ -85,7 +85,7 @@ export default function responseTab(app) {
         { x: m.t, y: m.scaled[key], until: m.fall_time ?? Infinity, label: m.label, ...m.look, width: i ? 1.2 : 1.6 })),
       spans, xRange: [0, view.end],
       ticks: p === 0 ? first.impact_times : [],
-      vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "does not come back" : "" })),
+      vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
     }));
     const lifting = view.models.filter((m) => m.lifts);
     loop.set({ series: lifting.map((m) => {
@@ -103,7 +103,7 @@ export default function responseTab(app) {
     player.set(view, view.models.map((m) => m.look.color));
   }
 
-  // The displacement that is plotted: in total, if it is known and nobody chose otherwise.
+  // The displacement to plot: the total one, if it is known and no other was chosen.
   function choose(answer) {
     const known = answer.models.every((m) => m.scaled.total_top_displacement);
     seen.hidden = !known;
@@ -127,10 +127,10 @@ export default function responseTab(app) {
   }
 
   const load = latest(async () => {
-    const begun = performance.now();
+    const started = performance.now();
     const before = verdict.textContent;
     const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? "Computing …" : FIRST), PATIENCE);
-    const asked = JSON.stringify([app.state.scale, app.state.models]);
+    const requested = JSON.stringify([app.state.scale, app.state.models]);
     const answer = await app.ask("/api/response", element, { focus: energy.focus });
     clearTimeout(patience);
     results.classList.toggle("stale", !answer);
@@ -149,8 +149,8 @@ export default function responseTab(app) {
     answer.end = Math.max(...answer.models.map((m) => m.t[m.t.length - 1]));
     view = answer;
     draw();
-    element.dataset.redrawn = String(Math.round(performance.now() - begun));
-    element.dataset.shows = asked;
+    element.dataset.redrawn = String(Math.round(performance.now() - started));
+    element.dataset.shows = requested;
   });
 
   function refresh() {
@@ -172,17 +172,17 @@ export default function responseTab(app) {
   return { element, refresh, leave: () => player.pause() };
 }
 
-// Stretches of time in which the base of a model is off the ground.
+// Intervals of time in which the base of a model is uplifted.
 function uplifts(model) {
   const spans = [];
-  let begun = null;
+  let start = null;
   for (let i = 0; i < model.t.length; i++) {
-    if (model.side[i] !== 0 && begun === null) begun = model.t[i];
-    if (model.side[i] === 0 && begun !== null) {
-      spans.push([begun, model.t[i]]);
-      begun = null;
+    if (model.side[i] !== 0 && start === null) start = model.t[i];
+    if (model.side[i] === 0 && start !== null) {
+      spans.push([start, model.t[i]]);
+      start = null;
     }
   }
-  if (begun !== null) spans.push([begun, model.t[model.t.length - 1]]);
+  if (start !== null) spans.push([start, model.t[model.t.length - 1]]);
   return spans;
 }

@@ -1,4 +1,4 @@
-// Structure: what rocks. A form, its modes, and how many of them it needs.
+// Structure: a form, its modes, and how many of them are needed.
 
 import { clone, h, latest, number, symbol } from "../dom.js";
 import { field, select, tableField, tableGroup, trouble } from "../form.js";
@@ -20,15 +20,15 @@ export default function structureTab(app) {
     app.change({ structure, ...(rigid === "block" in app.state.structure ? {} : modelsFor(rigid)) });
   }
 
-  // A rigid block has no modes, and all but one of the models need some.
+  // A rigid block has no modes, and all models but one need some.
   function modelsFor(rigid) {
     const { models, cloud, design } = app.about.state;
     return rigid ? { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } }
       : { models, cloud: { models: cloud.models }, design: { model: design.model } };
   }
 
-  const own = [["", "a structure of your own"], ...presets.map((p, i) => [String(i), p.title])];
-  const preset = select("preset", "Begin with", own, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
+  const own = [["", "custom structure"], ...presets.map((p, i) => [String(i), p.title])];
+  const preset = select("preset", "Start from", own, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
   const titles = Object.entries(kinds).map(([name, { title }]) => [name, title]);
   const kind = select("kind", "Kind", titles, "frame", (name) => put(fresh(name), true));
   const name = h("input", { type: "text", maxlength: 80, onchange: () => put({ ...current(), name: name.value }) });
@@ -42,10 +42,10 @@ export default function structureTab(app) {
         h("div", { "data-path": "structure" }, fields, moved, trouble()), h("p", { class: "error foot", role: "alert" })),
       importing(limits.file, current, (structure) => put(structure, true)),
       h("fieldset", { "data-path": "structure.tendons" },
-        h("legend", {}, "Tendons that hold the base down"), tendonList, trouble())),
+        h("legend", {}, "Tendons"), tendonList, trouble())),
     results);
 
-  // The first preset of a kind, or one to begin with.
+  // The first preset of a kind, or default values.
   function fresh(wanted) {
     const found = presets.find((p) => p.structure[wanted]);
     return found ? clone(found.structure) : { name: "", [wanted]: clone(KINDS[wanted] ?? {}) };
@@ -116,12 +116,12 @@ export default function structureTab(app) {
     return [
       h("h2", {}, view.name || kinds[view.kind].title),
       view.adequacy ? h("p", { class: "answer", id: "adequacy" }, view.adequacy.reason) : "",
-      view.adequacy ? h("p", { class: "hint" }, "Judged by masses and frequencies. Impacts excite higher modes than that, and ",
-        "the base shear most of all: compare with MDOF-S on the Response tab.") : "",
+      view.adequacy ? h("p", { class: "hint" }, "This check uses masses and frequencies only. Impacts also excite higher modes, ",
+        "which affect the base shear most: compare with MDOF-S on the Response tab.") : "",
       pictures(view),
       h("dl", { class: "values" }, view.properties.map(parameter)),
       table(view),
-      app.downloads(element, [["modes", "Figure of the modes (SVG)"], ["structure", "Structure (TOML)"]]),
+      app.downloads(element, [["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]),
       app.next("earthquake", "Next: choose the earthquake."),
     ];
   }
