@@ -9,7 +9,8 @@ from scipy.optimize import minimize
 
 import rockflex as rf
 from design_case import HAZARD, HEIGHT, WIDTHS
-from rockflex.study.plans._design_resamples import _firth, exceedances, resample_weights
+from rockflex.fragility import resample_weights, resampled_exceedance
+from rockflex.fragility._regression import Scoring, fit_curves
 
 
 @pytest.fixture
@@ -130,8 +131,9 @@ def test_penalised_fits_maximise_the_penalised_likelihood():
         corners = [[0.0, 0.0], [4.0, 4.0], [-4.0, 4.0]]
         options = {"xatol": 1e-8, "fatol": 1e-12, "maxiter": 2000, "initial_simplex": corners}
         best = minimize(unlikely, corners[0], method="Nelder-Mead", options=options)
-        (b,) = _firth(x, y, times[None].astype(float))
-        np.testing.assert_allclose(b, best.x, rtol=1e-5, atol=1e-5)
+        curve = fit_curves(x, y, times[None].astype(float), Scoring(1e-8))
+        assert curve.separated
+        np.testing.assert_allclose(curve.parameters[0], best.x, rtol=1e-5, atol=1e-5)
 
 
 def test_resamples_with_nothing_to_fit():
@@ -139,7 +141,7 @@ def test_resamples_with_nothing_to_fit():
     fallen = np.array([False, False, False, True])
     weights = np.array([[2.0, 2, 0, 0], [0.0, 0, 0, 4], [4.0, 0, 0, 0], [0.0, 2, 2, 0], [0.0, 4, 0, 0]])
     with np.errstate(all="raise"):
-        found = exceedances(im, rotation, fallen, weights, np.array([2.5]), 0.024, 1e-4)[:, 0]
+        found = resampled_exceedance(im, rotation, fallen, weights, np.array([2.5]), 0.024)[:, 0]
     assert math.isnan(found[0])  # one rotation is no line
     assert found[1] == 1.0  # all overturned
     assert found[2] == 0.0  # none rocks

@@ -12,6 +12,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, same_length
+from rockflex.fragility._resamples import draws
 
 Float = NDArray[np.float64]
 MOST = 1_000_000  # resamples
@@ -111,22 +112,21 @@ def bootstrap_band(
         raise InputError("curve must return numbers, one for each of `at`, but it returned something else.")
 
     blocks = _blocks(labels)
-    generator = np.random.default_rng(whole_number("seed", seed, 0))
     curves: list[Float] = []
     failures: list[str] = []
     separated = 0
-    for _ in range(times):
-        rows = np.concatenate([blocks[i] for i in generator.integers(len(blocks), size=len(blocks))])
+    for drawn in draws(len(blocks), times, whole_number("seed", seed, 0)):
+        rows = np.concatenate([blocks[i] for i in drawn])
         try:
             fit = fit_function(measures[rows], values[rows])
-            drawn = np.asarray(evaluate(fit, grid), dtype=np.float64)
+            found = np.asarray(evaluate(fit, grid), dtype=np.float64)
         except (InputError, SolverError) as error:
             failures.append(str(error))
             continue
-        if not np.isfinite(drawn).all():
+        if not np.isfinite(found).all():
             failures.append("The curve is not finite everywhere.")
             continue
-        curves.append(drawn)
+        curves.append(found)
         separated += bool(getattr(fit, "separated", False))
     if len(curves) < NEEDED:
         raise InputError(

@@ -1,5 +1,6 @@
 """Cloud analysis: a straight line through the logarithms of response and intensity measure."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
+from rockflex.fragility._regression import fit_lines
 
 Float = NDArray[np.float64]
 
@@ -100,16 +102,13 @@ def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
 
 
 def fit_line(x: Float, y: Float) -> tuple[CloudFit, Float]:
-    """Least squares through logarithms of equal length; the residuals beside the fit."""
-    from statsmodels.api import OLS
-
+    """Least squares through logarithms of equal length; the fit and its residuals."""
     if x.size < 3 or np.ptp(y) == 0.0:
         raise InputError(
             f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
             "different responses were given."
         )
-    result = OLS(y, np.column_stack((np.ones(x.size), x))).fit()
-    c1, c2 = (float(value) for value in result.params)
-    dispersion = float(np.sqrt(result.mse_resid))
-    fit = CloudFit(c1, c2, dispersion, float(result.rsquared), x.size, np.array(result.cov_params()))
-    return fit, np.asarray(result.resid)
+    c1, c2, mean, n, sxx, syy, residual = (float(value[0]) for value in fit_lines(x, y, np.ones((1, x.size))))
+    variance = residual / (n - 2.0)
+    covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
+    return CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance), y - (c1 + c2 * x)

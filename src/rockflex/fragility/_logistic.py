@@ -1,7 +1,6 @@
 """Logistic regression of an outcome that happens or does not, on the logarithm of an intensity measure."""
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,11 +11,13 @@ from rockflex._errors import InputError, SolverError
 from rockflex._values import Value
 from rockflex.fragility._arguments import confidence, flags, log_at, log_measures, same_length
 from rockflex.fragility._predictor import Standardised, standard_error
+from rockflex.fragility._regression import Scoring, fit_curves, information
 from rockflex.fragility._unanimous import UnanimousOutcome
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 Method = Literal["maximum likelihood", "Firth"]
+CONVERGED = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,10 +109,17 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
             "Add runs at other measures, or use fit_outcomes, which goes on with such a group."
         )
     scaled = Standardised(x)
-    separated = is_separated(x, y)
-    found = None if separated else _maximum_likelihood(scaled, y)
-    method: Method = "maximum likelihood" if found else "Firth"
-    b0, b1, covariance = scaled.unscaled(*(found or _firth(scaled, y)))
+    unit = np.ones((1, x.size))
+    curve = fit_curves(scaled.x, y, unit, Scoring(CONVERGED / y.size, CONVERGED, augmented=True))
+    if not np.isfinite(curve.parameters).all():
+        raise SolverError(
+            f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
+            "Look for a single run far from all others."
+        )
+    covariance = np.linalg.inv(information(scaled.x, unit, curve.parameters)[0])
+    b0, b1, covariance = scaled.unscaled(curve.parameters[0], covariance)
+    separated = bool(curve.separated[0])
+    method: Method = "Firth" if curve.penalised[0] else "maximum likelihood"
     notes: list[str] = []
     if separated:
         low, high = _gap(x, y)
@@ -126,47 +134,6 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     return LogisticFit(b0, b1, covariance, y.size, int(y.sum()), method, separated, " ".join(notes))
 
 
-def is_separated(x: Float, y: Bool) -> bool:
-    """Whether some value of one regressor parts the outcomes, runs at that value aside (quasi-separation)."""
-    return bool(x[~y].max() <= x[y].min() or x[y].max() <= x[~y].min())
-
-
 def _gap(x: Float, y: Bool) -> tuple[float, float]:
     below, above = (~y, y) if x[~y].max() <= x[y].min() else (y, ~y)
     return math.exp(x[below].max()), math.exp(x[above].min())
-
-
-def _maximum_likelihood(scaled: Standardised, y: Bool) -> tuple[Float, Float] | None:
-    """Parameters and covariance; None where Newton's method does not arrive."""
-    from statsmodels.api import Logit
-    from statsmodels.tools.sm_exceptions import PerfectSeparationWarning
-
-    with warnings.catch_warnings(), np.errstate(over="ignore"):
-        warnings.simplefilter("ignore", PerfectSeparationWarning)  # runs in which the outcome is all but certain
-        try:
-            result = Logit(y.astype(np.float64), scaled.design).fit(disp=0, maxiter=100, warn_convergence=False)
-        except np.linalg.LinAlgError:
-            return None
-    parameters, covariance = np.asarray(result.params), np.asarray(result.cov_params())
-    arrived = result.mle_retvals["converged"] and np.isfinite(parameters).all() and np.isfinite(covariance).all()
-    return (parameters, covariance) if arrived else None
-
-
-def _firth(scaled: Standardised, y: Bool) -> tuple[Float, Float]:
-    from firthmodels import FirthLogisticRegression
-    from scipy.special import expit
-
-    # NumPy's backend: compiling the other takes longer than any study of one regressor.
-    model = FirthLogisticRegression(backend="numpy", max_iter=1000)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # `converged_` says the same
-        model.fit(scaled.x[:, None], y)
-    if not model.converged_:
-        raise SolverError(
-            f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
-            "Look for a single run far from all others."
-        )
-    parameters = np.array([model.intercept_, model.coef_[0]])
-    p = expit(scaled.design @ parameters)
-    information = (scaled.design.T * (p * (1.0 - p))) @ scaled.design
-    return parameters, np.asarray(np.linalg.inv(information), dtype=np.float64)

@@ -116,9 +116,10 @@ class OutcomeFragility(Value):
                 f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was given. "
                 "Below, a run counts as one without rocking; above, overturned runs need not exceed it."
             )
-        _, rocks, falls = self.probabilities(im)
+        falls = self.overturning.probability(im)
+        rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
         beyond = np.full_like(limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
-        return falls + _weighted(rocks, beyond)
+        return total_probability(falls, rocks, beyond)
 
 
 def fit_outcomes(
@@ -214,6 +215,11 @@ def _cloud(im: Float, rotation: Float, notes: list[Note]) -> CloudFit | None:
     except InputError as error:
         notes.append(Note(f"rotation: {error}", "rotation"))
         return None
+
+
+def total_probability(falls: Float, rocks: Float, beyond: Float) -> Float:
+    """P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking)."""
+    return falls + _weighted(_weighted(1.0 - falls, rocks), beyond)
 
 
 def _weighted(weight: Float, values: Float) -> Float:

@@ -11,9 +11,14 @@ class Standardised:
 
     def __init__(self, x: Float) -> None:
         mean, spread = float(x.mean()), float(x.std())
-        self.x = (x - mean) / spread
+        self._mean, self._spread = mean, spread
+        self.x = self.of(x)
         self.design = np.column_stack((np.ones(x.size), self.x))
         self._back = np.array([[1.0, -mean / spread], [0.0, 1.0 / spread]])
+
+    def of(self, x: Float) -> Float:
+        """Other logarithms on the same scale."""
+        return (x - self._mean) / self._spread
 
     def unscaled(self, parameters: Float, covariance: Float) -> tuple[float, float, Float]:
         """Intercept, slope and covariance for the logarithms as they were given."""

@@ -13,15 +13,15 @@ from rockflex._errors import InputError
 from rockflex.fragility import (
     OVERTURNED,
     OVERTURNING,
-    ROCKED,
     HazardCurve,
     OutcomeFragility,
     UnanimousOutcome,
     annual_rate,
     fit_outcomes,
+    resample_weights,
+    resampled_exceedance,
 )
 from rockflex.study.plans._design_limits import rotation_of
-from rockflex.study.plans._design_resamples import exceedances, resample_weights
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -140,7 +140,7 @@ def _answers(runs: Runs, question: Question, band: Band | None) -> dict[str, Any
     if not runs.im.size:
         return found | {"note": "No run was solved: see the column error."}
     try:
-        fit = fit_outcomes(runs.im, runs.rotation, runs.fallen, threshold=ROCKED)
+        fit = fit_outcomes(runs.im, runs.rotation, runs.fallen)
         found["overturning"] = question.answer(fit.overturning.probability)[0]
         notes: list[str] = [note for note in fit.notes if note.kind != "initiation"]
         if question.hazard is None and not runs.im.min() <= question.nodes[0] <= runs.im.max():
@@ -170,8 +170,7 @@ def _limits(runs: Runs, question: Question, band: Band, fit: OutcomeFragility) -
     if len(names) < 2:
         return math.nan, math.nan, "No band: all runs belong to one recording."
     weights = resample_weights(codes, int(band.n), band.seed)
-    limit = None if runs.limit == OVERTURNED else runs.limit
-    drawn = exceedances(runs.im, runs.rotation, runs.fallen, weights, question.nodes, limit, ROCKED)
+    drawn = resampled_exceedance(runs.im, runs.rotation, runs.fallen, weights, question.nodes, runs.limit)
     values = drawn @ question.weights
     values = values[np.isfinite(values)]
     if values.size < FEWEST:
