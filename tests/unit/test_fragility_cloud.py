@@ -95,7 +95,7 @@ def test_columns_that_cannot_be_fitted_are_refused(im, response, text):
         (lambda fit: fit.median("x"), "im must be a number or an array of numbers, but str"),
         (lambda fit: fit.exceedance(1.0, -0.1), "limit must be positive and finite, but -0.1"),
         (lambda fit: fit.quantile(1.0, 84), "p must lie between 0 and 1, but 84 .* p=0.84"),
-        (lambda fit: fit.band(1.0, 90), r"level must lie in \[0, 1\), but 90 .* level=0.9"),
+        (lambda fit: fit.band(1.0, 90), r"confidence must lie in \[0, 1\), but 90 .* confidence=0.9"),
     ],
 )
 def test_places_that_cannot_be_evaluated_are_refused(call, text):

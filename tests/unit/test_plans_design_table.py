@@ -93,7 +93,7 @@ def test_bands_are_those_of_the_bootstrap(runs, limit):
             return fit
 
         band = rf.bootstrap_band(
-            fitted, im, np.column_stack((rotation, fallen)), groups, at=[0.8], n=60, seed=5, level=0.8, curve=curve
+            fitted, im, np.column_stack((rotation, fallen)), groups, at=[0.8], n=60, seed=5, confidence=0.8, curve=curve
         )
         separated += sum(failed)
         np.testing.assert_allclose([row.low, row.high], [band.low[0], band.high[0]], rtol=1e-5, atol=1e-6)

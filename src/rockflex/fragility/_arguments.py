@@ -83,6 +83,6 @@ def fractions(name: str, values: ArrayLike) -> Float:
     return array
 
 
-def confidence(level: float) -> float:
-    """Level of confidence in [0, 1)."""
-    return in_range("level", level, 0.0, 1.0, hint="A 90 % band is level=0.9.")
+def checked_confidence(confidence: float) -> float:
+    """Confidence of a band, in [0, 1)."""
+    return in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is confidence=0.9.")

@@ -11,7 +11,7 @@ from rockflex._checks import finite_vector, float_array, whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, same_length
+from rockflex.fragility._arguments import checked_confidence, same_length
 from rockflex.fragility._resamples import draws
 
 Float = NDArray[np.float64]
@@ -27,8 +27,8 @@ class BootstrapBand(Value):
     ----------
     at, estimate, low, high : ndarray, shape (m,)
         Where the curve was evaluated, the curve of the data as given, and the limits of the band.
-    level : float
-        Confidence level.
+    confidence : float
+        Confidence of the band.
     n : int
         Resamples asked for.
     n_failed : int
@@ -45,7 +45,7 @@ class BootstrapBand(Value):
     estimate: Float
     low: Float
     high: Float
-    level: float
+    confidence: float
     n: int
     n_failed: int
     n_separated: int
@@ -60,7 +60,7 @@ def bootstrap_band(
     groups: ArrayLike | None = None,
     *,
     at: ArrayLike,
-    level: float = 0.9,
+    confidence: float = 0.9,
     n: SupportsIndex = 1000,
     seed: int = 0,
     curve: Callable[[Any, Float], Any] | None = None,
@@ -83,8 +83,8 @@ def bootstrap_band(
         Name or number of the record of every run, the same for both components.
     at : array_like, shape (m,)
         Measures at which the curve is wanted.
-    level
-        Confidence level in [0, 1).
+    confidence
+        Confidence of the band, in [0, 1).
     n
         Number of resamples, at least 20.
     seed
@@ -102,7 +102,7 @@ def bootstrap_band(
     values = _column("outcome_or_response", outcome_or_response)
     labels = np.arange(measures.size) if groups is None else _column("groups", groups)
     same_length(im=measures, outcome_or_response=values, groups=labels)
-    wanted, times = confidence(level), whole_number("n", n, NEEDED, MOST)
+    wanted, times = checked_confidence(confidence), whole_number("n", n, NEEDED, MOST)
     evaluate = _curve if curve is None else curve
     for name, function in (("fit_function", fit_function), ("curve", evaluate)):
         if not callable(function):

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, fractions, log_at, log_column, log_measures, same_length
+from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
 from rockflex.fragility._regression import fit_lines
 
@@ -54,12 +54,12 @@ class CloudFit(Value):
 
         return self.median(im) * np.exp(self.dispersion * ndtri(fractions("p", p)))
 
-    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
         """Lower and upper confidence limits of the median, from Student's t with n - 2 degrees of freedom."""
         from scipy.special import stdtrit
 
         x = log_at(im)
-        half = stdtrit(self.n - 2, 0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
+        half = stdtrit(self.n - 2, 0.5 + 0.5 * checked_confidence(confidence)) * standard_error(x, self.covariance)
         centre = self.c1 + self.c2 * x
         with np.errstate(over="ignore"):
             return np.exp(centre - half), np.exp(centre + half)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, flags, log_at, log_measures, same_length
+from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
 from rockflex.fragility._predictor import Standardised, standard_error
 from rockflex.fragility._regression import Scoring, fit_curves, information
 from rockflex.fragility._unanimous import UnanimousOutcome
@@ -69,12 +69,12 @@ class LogisticFit(Value):
 
         return expit(self.b0 + self.b1 * log_at(im))
 
-    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
         """Lower and upper confidence limits of the probability: delta method on b0 + b1 log IM, then the curve."""
         from scipy.special import expit, ndtri
 
         x = log_at(im)
-        half = ndtri(0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
+        half = ndtri(0.5 + 0.5 * checked_confidence(confidence)) * standard_error(x, self.covariance)
         centre = self.b0 + self.b1 * x
         return expit(centre - half), expit(centre + half)
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._checks import finite_matrix, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, fractions, log_at
+from rockflex.fragility._arguments import checked_confidence, fractions, log_at
 
 Float = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ class LognormalFragility(Value):
 
         return self.median * np.exp(self.beta * ndtri(fractions("p", p)))
 
-    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
         """Lower and upper confidence limits of the probability: delta method on ln(IM/median)/beta, then Φ.
 
         Raises
@@ -78,7 +78,7 @@ class LognormalFragility(Value):
         z = self._score(im)
         gradient = np.stack((np.full_like(z, -1.0), -z)) / self.beta
         error = np.sqrt(np.einsum("i...,ij,j...->...", gradient, self.covariance, gradient))
-        half = ndtri(0.5 + 0.5 * confidence(level)) * error
+        half = ndtri(0.5 + 0.5 * checked_confidence(confidence)) * error
         return ndtr(z - half), ndtr(z + half)
 
     def _score(self, im: ArrayLike) -> Float:

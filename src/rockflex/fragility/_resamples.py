@@ -24,7 +24,7 @@ def draws(n_groups: int, n: int, seed: int) -> Iterator[Integer]:
 
 
 def resample_weights(groups: Integer, n: int, seed: int) -> Float:
-    """How often each run occurs in each resample of its groups, shape (n, n_runs); the draws are those of `bootstrap_band`.
+    """How often each run occurs in each resample of its groups, shape (n, n_runs), drawn as in `bootstrap_band`.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def _probability(x: Float, outcome: Bool, weights: Float, nodes: Float) -> Float
 
 
 def _beyond(x: Float, y: Float, weights: Float, at: Float, log_limit: float) -> Float:
-    """P(θ_max > limit | rocking) of each row at `at`; NaN for fewer than three runs, or if all x or all y are the same."""
+    """P(θ_max > limit | rocking) of each row at `at`; NaN for fewer than three runs or two x or y."""
     from scipy.special import ndtr
 
     lines = fit_lines(x, y, weights)

@@ -27,7 +27,7 @@ def plot_fragility(
     clouds: "pd.DataFrame | Sequence[CloudFits]",
     measure: str | None = None,
     *,
-    level: float | None = None,
+    confidence: float | None = None,
     overturning: bool = False,
     bins: SupportsIndex = 0,
 ) -> Figure:
@@ -43,7 +43,7 @@ def plot_fragility(
         The table of a cloud study, such as `run_cloud` returns, or what `fit_clouds` made of it.
     measure
         Column of the intensity measure; default: ``"pgv"``, or the measure of the fits.
-    level
+    confidence
         Confidence of bands around the curves, between 0 and 1. Default: no bands.
     overturning
         Whether to draw the probability of overturning too, as thin lines.
@@ -73,7 +73,7 @@ def plot_fragility(
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
                 look, marker = looks[fit.model]
-                _draw(axes, fit, look, limit, level, overturning=overturning)
+                _draw(axes, fit, look, limit, confidence, overturning=overturning)
                 if runs is not None and groups:
                     _mark(axes, _of(runs, fit), fit, marker, look.color, groups)
             if runs is not None:
@@ -139,14 +139,14 @@ def _limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -
     return strongest if whole else min(max(ends, default=strongest), strongest)
 
 
-def _draw(axes: Axes, fit: CloudFits, look: Look, limit: float, level: float | None, *, overturning: bool) -> None:
+def _draw(axes: Axes, fit: CloudFits, look: Look, limit: float, confidence: float | None, *, overturning: bool) -> None:
     im = np.linspace(limit / _POINTS, limit, _POINTS)
     curves = [(fit.outcomes.initiation, 1.2, fit.model)]
     if overturning:
         curves.append((fit.outcomes.overturning, 0.6, "_overturning"))
     for curve, width, label in curves:
-        if level is not None:
-            low, high = curve.band(im, level)
+        if confidence is not None:
+            low, high = curve.band(im, confidence)
             axes.fill_between(im, low, high, color=look.color, alpha=0.13, linewidth=0.0, label="_band")
         axes.plot(im, curve.probability(im), color=look.color, linestyle=look.dashes, linewidth=width, label=label)
 

@@ -37,7 +37,7 @@ class _Capacities(NamedTuple):
     fit: LognormalFragility | None
 
 
-def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, level: float | None = 0.9) -> Figure:
+def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | None = 0.9) -> Figure:
     """Plot θ_max over an intensity measure, a curve a record, with the capacities beside, a row a structure and model.
 
     Curves are broken where a run overturns, by the limit of the study; the first such run is a red cross at the top.
@@ -51,7 +51,7 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, level: float | None 
         The table of an incremental study, such as `run_incremental` returns.
     measure
         Column of the intensity measure.
-    level
+    confidence
         Confidence of the band around the lognormal curve, between 0 and 1; None for no band.
 
     Returns
@@ -81,7 +81,7 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, level: float | None 
             left, right = grid[row]
             found = _capacities(_of(capacities, structure, model))
             failed = _draw_curves(left, _of(runs, structure, model), measure)
-            _draw_capacities(right, found, level, failed)
+            _draw_capacities(right, found, confidence, failed)
             left.set_title(literal(f"{structure}, {model}"))
             left.set_ylabel(r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
@@ -145,7 +145,7 @@ def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
     return int(runs["overturned"].isna().sum())
 
 
-def _draw_capacities(axes: Axes, found: _Capacities, level: float | None, failed: int) -> None:
+def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, failed: int) -> None:
     """Steps of the observed fraction, the lognormal curve, and the numbers."""
     axes.set_ylim(-0.03, 1.03)
     lines = [f"{found.reached.size} records"]
@@ -158,8 +158,8 @@ def _draw_capacities(axes: Axes, found: _Capacities, level: float | None, failed
         end = float(found.reached.max()) * 1.3
         im = np.linspace(end / _POINTS, end, _POINTS)
         axes.plot(im, found.fit.probability(im), color=RED, linestyle="--", linewidth=1.1, label="_fit")
-        if level is not None:
-            axes.fill_between(im, *found.fit.band(im, level), color=RED, alpha=0.13, linewidth=0.0, label="_band")
+        if confidence is not None:
+            axes.fill_between(im, *found.fit.band(im, confidence), color=RED, alpha=0.13, linewidth=0.0, label="_band")
         lines.append(f"median {short(found.fit.median)}, β = {found.fit.beta:.2f}")
     lines.append(f"{found.resurrected} with resurrections")
     if failed:

@@ -25,7 +25,7 @@ def plot_stripes(
     limit: Literal["overturning", "nominal", "uplift"] | float = "overturning",
     measure: str = "level of the stripe",
     *,
-    level: float | None = 0.9,
+    confidence: float | None = 0.9,
 ) -> Figure:
     """Plot the fraction of runs that exceed a limit in each stripe, a panel a structure, symbols and a curve a model.
 
@@ -39,7 +39,7 @@ def plot_stripes(
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
     measure
         Name of the measure of the levels, such as ``"pgv"``, for the axis; the table does not say it.
-    level
+    confidence
         Confidence of the bands around the curves, between 0 and 1; None for no bands.
 
     Returns
@@ -72,7 +72,7 @@ def plot_stripes(
             for model, (look, marker) in looks.items():
                 stripes = counts[(counts["structure"].astype(str) == name) & (counts["model"].astype(str) == model)]
                 if len(stripes):
-                    text = _draw(axes, stripes, model, look, marker, end, level)
+                    text = _draw(axes, stripes, model, look, marker, end, confidence)
                     notes.append((text, look.color))
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
@@ -85,7 +85,7 @@ def plot_stripes(
 
 
 def _draw(
-    axes: Axes, stripes: "pd.DataFrame", model: str, look: Look, marker: str, end: float, level: float | None
+    axes: Axes, stripes: "pd.DataFrame", model: str, look: Look, marker: str, end: float, confidence: float | None
 ) -> str:
     """Symbols, curve and band; return what to write of them."""
     at, events, total = (stripes[name].to_numpy(dtype=float) for name in ("level", "n_exceeding", "n_total"))
@@ -98,8 +98,8 @@ def _draw(
         return "no curve fits"
     im = np.linspace(end / _POINTS, end, _POINTS)
     axes.plot(im, fit.probability(im), color=look.color, linestyle=look.dashes, label=model)
-    if level is not None:
-        axes.fill_between(im, *fit.band(im, level), color=look.color, alpha=0.13, linewidth=0.0, label="_band")
+    if confidence is not None:
+        axes.fill_between(im, *fit.band(im, confidence), color=look.color, alpha=0.13, linewidth=0.0, label="_band")
     return f"median {fit.median:.3g}, β = {fit.beta:.2f}"
 
 

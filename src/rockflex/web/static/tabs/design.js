@@ -28,7 +28,7 @@ export default function designTab(app) {
   const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
   const target = entry("target", "Probability that is accepted", { hint: "0.0001 to 0.99" });
   const measure = list("measure", "Strength of the earthquake, by", measuresOf(app.about, false));
-  const at = entry("at", "At the level", { unit: "m/s", hint: "of this measure, above 0" });
+  const at = entry("at", "At the level", { unit: unitOf(app.about, choice().measure), hint: "of this measure, above 0" });
   const narrowest = entry("narrowest", "From", { unit: "× present B", hint: "0.2 to 2" });
   const widest = entry("widest", "To", { unit: "× present B", hint: "1 to 10" });
   const widths = entry("widths", "Widths", { hint: "3 to 20" });

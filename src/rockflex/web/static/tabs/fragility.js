@@ -9,7 +9,7 @@ import { axisOf, measuresOf, suitesOf } from "../measures.js";
 import { models } from "../models.js";
 import { assumed, Study } from "../study.js";
 
-const LEVELS = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
+const CONFIDENCES = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation stand
 
 export default function fragilityTab(app) {
@@ -28,10 +28,10 @@ export default function fragilityTab(app) {
     (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
     { unit: "rad", hint: "0.0001 to 1.5" });
-  const offered = LEVELS.some(([value]) => value === choice().level) ? LEVELS
-    : [...LEVELS, [choice().level, `${number(100 * choice().level)} %`]];
-  const level = select("cloud.level", "Confidence of the bands", offered, choice().level,
-    (value) => put({ level: Number(value) }));
+  const offered = CONFIDENCES.some(([value]) => value === choice().confidence) ? CONFIDENCES
+    : [...CONFIDENCES, [choice().confidence, `${number(100 * choice().confidence)} %`]];
+  const confidence = select("cloud.confidence", "Confidence of the bands", offered, choice().confidence,
+    (value) => put({ confidence: Number(value) }));
 
   const curves = new Chart({ label: "Probability over intensity", yLabel: "probability", height: 320, xName: "IM", xLog: true });
   const cloud = new Chart({
@@ -59,7 +59,7 @@ export default function fragilityTab(app) {
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Cloud of runs"), suites, scales, labels, study.element),
-      h("fieldset", {}, h("legend", {}, "Reading"), limit, rotation, measure, level)),
+      h("fieldset", {}, h("legend", {}, "Reading"), limit, rotation, measure, confidence)),
     results);
   results.append(study.downloads(element,
     [["figure", "Rocking and overturning (SVG)"], ["table", "Runs (CSV)"]],
