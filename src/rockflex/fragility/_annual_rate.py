@@ -39,6 +39,14 @@ class AnnualRate:
         as hazard curves flatten towards small measures. Infinite where that integral grows without bound.
     above : float
         Largest rate in 1/year from larger measures: that at which the last point is exceeded.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> rate = rf.annual_rate(hazard, rf.LognormalFragility(median=0.5, beta=0.4))
+    >>> print(f"{rate.rate:.3g}, {rate.probability_in(50):.3g}")
+    0.000436, 0.0216
     """
 
     rate: float
@@ -72,6 +80,16 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate
     ------
     InputError
         If the probabilities are not finite numbers from 0 to 1.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> found = rf.annual_rate(hazard, rf.LognormalFragility(median=0.5, beta=0.4))
+    >>> print(f"{found.rate:.3g}")
+    0.000436
+    >>> print(f"{found.beyond:.3g}")
+    0.0001
     """
     instance("hazard", hazard, HazardCurve)
     probability = _probability(fragility)
@@ -103,6 +121,13 @@ def risk_targeted_median(
     InputError
         If an argument is out of range, no median within the curve meets the target, or too much of the rate lies
         beyond the ends of the curve.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> print(f"{rf.risk_targeted_median(hazard, dispersion=0.4, target_rate=1e-3, allowed_beyond=0.3):.3g}")
+    0.364
     """
     from scipy.optimize import brentq
 

@@ -39,6 +39,16 @@ class BootstrapBand(Value):
         Number of blocks that were drawn from: the groups, or the runs where none were given.
     note : str
         What to know before the band is used; empty if there is nothing.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im, response = [0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026]
+    >>> band = rf.bootstrap_band(rf.fit_cloud, im, response, at=[0.5], n=200)
+    >>> bool(band.low[0] < band.estimate[0] < band.high[0])
+    True
+    >>> band.confidence, band.n_groups
+    (0.9, 4)
     """
 
     at: Float
@@ -97,6 +107,14 @@ def bootstrap_band(
     InputError
         If the columns differ in length, an argument is out of range, the data as given cannot be fitted, or fewer than
         20 resamples can.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im, response = [0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026]
+    >>> band = rf.bootstrap_band(rf.fit_cloud, im, response, at=[0.5], n=200, seed=1)
+    >>> print(f"{band.estimate[0]:.3g} from {band.low[0]:.3g} to {band.high[0]:.3g}")
+    0.0137 from 0.013 to 0.0152
     """
     measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
     values = _column("outcome_or_response", outcome_or_response)

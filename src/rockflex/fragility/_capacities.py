@@ -32,6 +32,13 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
     ------
     InputError
         If a value is not positive, or the capacities that are known are fewer than two different ones.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_capacities([0.4, 0.6, 0.9, 1.0], censored=[False, False, False, True])
+    >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
+    0.73, 0.458
     """
     x = log_column("im", im, "Leave those records out.")
     above = np.zeros(x.size, dtype=np.bool_) if censored is None else flags("censored", censored)

@@ -34,6 +34,16 @@ class CloudFit(Value):
         Number of runs.
     covariance : ndarray, shape (2, 2)
         Covariance of (c1, c2); read-only.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_cloud([0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026])
+    >>> print(f"{fit.median(0.5):.3g}, {fit.exceedance(0.5, 0.02):.3g}")
+    0.0137, 2.09e-06
+    >>> low, high = fit.band([0.4, 0.6], confidence=0.9)
+    >>> low.shape
+    (2,)
     """
 
     c1: float
@@ -92,6 +102,13 @@ def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
     InputError
         If a value is not positive and finite, fewer than three runs are given, or all have the same measure or the
         same response.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_cloud([0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026])
+    >>> print(f"{fit.c1:.3g}, {fit.c2:.3g}, {fit.dispersion:.3g}, {fit.r2:.3g}")
+    -3.38, 1.32, 0.083, 0.993
     """
     x = log_measures(im)
     y = log_column(

@@ -40,6 +40,16 @@ class CloudFits(Value):
         is not known.
     n_failed : int
         Runs that could not be solved, which are in no fit.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> (fit,) = rf.fit_clouds(runs, "pga")
+    >>> fit.model, fit.measure, fit.n_failed
+    ('rigid', 'pga', 0)
     """
 
     structure: str
@@ -71,6 +81,16 @@ def fit_clouds(
     ------
     InputError
         If `runs` lacks a column, a structure has no solved run with a model, or its measures are not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> (fit,) = rf.fit_clouds(runs, "pga")
+    >>> fit.outcomes.n_no_rocking, fit.outcomes.n_rocking, fit.outcomes.n_overturned
+    (3, 9, 0)
     """
     return [
         _fits(structure, model, group, measure, threshold, nominal=nominal)
@@ -94,6 +114,17 @@ def fit_each_cloud(
     ------
     InputError
         If `runs` lacks a column.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from rockflex.fragility import fit_each_cloud
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> fits, reasons = fit_each_cloud(runs, "pga")
+    >>> len(fits), reasons
+    (1, {})
     """
     fits: list[CloudFits] = []
     reasons: dict[tuple[str, str], str] = {}

@@ -28,6 +28,13 @@ class HazardCurve(Value):
     ------
     InputError
         If the columns differ in length, are not positive, or do not rise and fall as they should.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> print(f"{hazard.rate_at(0.3):.3g}, {hazard.im_at(1e-3):.3g}")
+    0.00117, 0.321
     """
 
     im: Float

@@ -27,6 +27,14 @@ class LimitState:
         Rotation in rad; NaN where every structure has its own.
     bound : str
         The rotation at which it lies, in text; empty if the label says it.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import LIMIT_STATES
+    >>> list(LIMIT_STATES)
+    ['uplift', 'rocking', 'nominal', 'overturning']
+    >>> LIMIT_STATES["overturning"].rotation
+    '|θ| = π/2'
     """
 
     name: str
@@ -53,7 +61,16 @@ def _overturned(runs: Any) -> Any:
 
 
 def beyond(rotation: float, name: str = "rotation", label: str = "") -> LimitState:
-    """Return the limit of a rotation in rad; a run that overturned passed every one below π/2."""
+    """Return the limit of a rotation in rad; a run that overturned passed every one below π/2.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import beyond
+    >>> beyond(0.02).label
+    '0.02 rad'
+    >>> bool(beyond(0.02).exceeded({"max_rotation": 0.03, "status": "rocking"}))
+    True
+    """
 
     def exceeded(runs: Any) -> Any:
         return (runs["max_rotation"] > rotation) | (_overturned(runs) & (rotation < OVERTURNED))
@@ -86,5 +103,12 @@ LIMIT_STATES = {state.name: state for state in (UPLIFT, ROCKING, NOMINAL, OVERTU
 
 
 def limit_label(limit: float | str) -> str:
-    """Return what a reader is shown of a limit as files have it: words as they are, or a rotation in rad."""
+    """Return what a reader is shown of a limit as files have it: words as they are, or a rotation in rad.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import limit_label
+    >>> limit_label(0.02), limit_label("overturning")
+    ('0.02 rad', 'overturning')
+    """
     return limit if isinstance(limit, str) else beyond(limit).label

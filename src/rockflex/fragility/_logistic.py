@@ -39,6 +39,15 @@ class LogisticFit(Value):
         slope.
     note : str
         What to know before the curve is used; empty if there is nothing.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [False, False, True, False, True, True])
+    >>> print(f"{fit.median:.3g}, {fit.dispersion:.3g}")
+    0.327, 0.253
+    >>> fit.probability([0.2, 0.5]).round(3).tolist()
+    [0.125, 0.843]
     """
 
     b0: float
@@ -98,6 +107,15 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     InputError
         If a measure is not positive and finite, all are the same, an outcome is neither true nor false, or all
         outcomes are alike.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [False, False, True, False, True, True])
+    >>> print(f"{fit.b0:.3g}, {fit.b1:.3g}")
+    4.42, 3.96
+    >>> fit.method
+    'maximum likelihood'
     """
     x = log_measures(im)
     y = flags("outcome", outcome)

@@ -35,6 +35,13 @@ class LognormalFragility(Value):
     ------
     InputError
         If the median or beta is not positive and finite, or the covariance is not a finite 2 by 2 matrix.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> curve = rf.LognormalFragility(median=0.5, beta=0.4)
+    >>> print(f"{curve.probability(0.3):.3g}, {curve.quantile(0.84):.3g}")
+    0.101, 0.744
     """
 
     median: float

@@ -47,6 +47,17 @@ def compare_measures(
     ------
     InputError
         If a table is not a DataFrame, has no column or other rows than the response, or a measure cannot be fitted.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import pandas as pd
+    >>> measures = pd.DataFrame({"pga": [2.0, 3.0, 6.0, 5.0], "pgv": [0.2, 0.4, 0.6, 0.8]})
+    >>> table = rf.compare_measures(measures, [0.004, 0.011, 0.016, 0.026])
+    >>> list(table.index)
+    ['pgv', 'pga']
+    >>> table["dispersion"].round(3).tolist()
+    [0.083, 0.432]
     """
     import pandas as pd
 

@@ -37,7 +37,18 @@ class Note(str):
 
 @dataclass(frozen=True, eq=False)
 class OutcomeProbabilities(Value, Sequence[Float]):
-    """Probabilities of the three outcomes, which sum to 1; a sequence in this order."""
+    """Probabilities of the three outcomes, which sum to 1; a sequence in this order.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
+    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> p = outcomes.probabilities(0.5)
+    >>> print(f"{p.no_rocking + p.rocking + p.overturning:.3g}")
+    1
+    """
 
     no_rocking: Float
     rocking: Float
@@ -79,6 +90,17 @@ class OutcomeFragility(Value):
     notes : tuple of str
         What to know before the fits are used: parts that rest on few runs, or could not be fitted. The `kind` of each
         is ``"runs"`` or the attribute above that it is about.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
+    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> print(f"{outcomes.exceedance(0.5, 0.02):.3g}")
+    0.747
+    >>> outcomes.notes[0]
+    'Only 3 of 8 runs do not rock: what rests on them is uncertain, see bootstrap_band.'
     """
 
     overturning: LogisticFit | UnanimousOutcome
@@ -146,6 +168,17 @@ def fit_outcomes(
     ------
     InputError
         If a value is out of range, all measures are the same, or a run overturned with a rotation up to `threshold`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
+    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> outcomes.n_no_rocking, outcomes.n_rocking, outcomes.n_overturned
+    (3, 3, 2)
+    >>> outcomes.overturning.method
+    'Firth'
     """
     log_measures(im)
     measures = finite_vector("im", im, "one unit")

@@ -32,6 +32,16 @@ def resample_weights(groups: Integer, n: int, seed: int) -> Float:
         Number of the group of every run, from 0 in the order in which the groups first appear.
     n, seed
         As in `bootstrap_band`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockflex.fragility import resample_weights
+    >>> weights = resample_weights(np.array([0, 0, 1]), n=20, seed=0)
+    >>> weights.shape
+    (20, 3)
+    >>> bool((weights[:, 0] + weights[:, 2] == 2.0).all())
+    True
     """
     count = int(groups.max()) + 1
     return np.array([np.bincount(drawn, minlength=count)[groups] for drawn in draws(count, n, seed)], dtype=np.float64)
@@ -44,6 +54,16 @@ def resampled_exceedance(
 
     The same as `fit_outcomes` of each resample and its `exceedance`; P(OV) where the limit is π/2. NaN where a factor
     that matters cannot be fitted.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockflex.fragility import fit_outcomes, resampled_exceedance
+    >>> im, overturned = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]), np.array([False] * 6 + [True])
+    >>> rotation = np.array([0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6])
+    >>> found = resampled_exceedance(im, rotation, overturned, np.ones((1, 7)), np.array([0.5]), 0.02)
+    >>> print(f"{found[0, 0]:.3g}, {fit_outcomes(im, rotation, overturned).exceedance(0.5, 0.02):.3g}")
+    0.759, 0.759
     """
     scaled = Standardised(np.log(im))
     nodes, moves = scaled.of(np.log(at)), rotation > threshold

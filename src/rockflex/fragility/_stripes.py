@@ -35,6 +35,13 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
         dispersion (one level parts all runs that exceed from all others), or the curve does not rise.
     SolverError
         If the fit does not converge.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_stripes([0.2, 0.4, 0.8], n_exceeding=[1, 4, 9], n_total=[10, 10, 10])
+    >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
+    0.427, 0.539
     """
     x = log_measures(im_levels, "im_levels")
     total, events = _counts("n_total", n_total, 1), _counts("n_exceeding", n_exceeding, 0)

@@ -20,6 +20,13 @@ class UnanimousOutcome:
         Whether it happened in all runs, or in none.
     n : int
         Number of runs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> never = rf.UnanimousOutcome(outcome=False, n=44)
+    >>> print(f"{never.bound(0.95):.3g}")
+    0.0658
     """
 
     outcome: bool
@@ -37,8 +44,8 @@ class UnanimousOutcome:
     def bound(self, confidence: float = 0.95) -> float:
         """Exact one-sided bound of the probability averaged over the runs, with the given confidence.
 
-        Above, 1 - (1 - confidence)^(1/n), if it never happened; below, (1 - confidence)^(1/n), if it always did (Clopper &
-        Pearson 1934, Biometrika 26(4), 404-413).
+        An upper bound, 1 - (1 - confidence)^(1/n), if it never happened; a lower one, (1 - confidence)^(1/n), if it
+        always did (Clopper & Pearson 1934, Biometrika 26(4), 404-413).
         """
         root = (1.0 - checked_confidence(confidence)) ** (1.0 / self.n)
         return root if self.outcome else 1.0 - root

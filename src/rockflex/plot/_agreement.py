@@ -35,7 +35,7 @@ _EDGE = "#303030"
 
 
 def plot_agreement(pairs: "pd.DataFrame") -> Figure:
-    """Plot peaks of MDOF-S over those of 2DOF-S, a symbol a pair.
+    r"""Plot peaks of MDOF-S over those of 2DOF-S, a symbol a pair.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 9. Symbols tell the aspect ratio, their size the stories,
     reds (shear) and blues (flexure) the period. R² is of the line of equality, c1 the slope of y = c1 x by least
@@ -56,6 +56,14 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
     ------
     InputError
         If the table lacks a column, no pair was solved, or there are more aspect ratios than symbols.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("fema-p695-far-field")[:2], pairs=8)
+    >>> figure = rf.plot_agreement(pairs)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$u_{\\mathrm{top,max}}$, 2DOF-S [m]', '$u_{\\mathrm{top,max}}$, MDOF-S [m]')
     """
     groups = groups_of(pairs, _NEEDED)
     markers = _markers(pairs)

@@ -63,7 +63,7 @@ def plot_clouds(
     threshold: float = ROCKED,
     nominal: bool = False,
 ) -> Figure:
-    """Plot the response of every run that rocked and stands over an intensity measure, a panel a structure.
+    r"""Plot the response of every run that rocked and stands over an intensity measure, a panel a structure.
 
     The figure is that of Silva & Stojadinović 2024, Figs. 6 and 7: lines log(y) = c1 + c2 log(IM), with natural
     logarithms, by least squares, and their dispersion σ. The numbers stand in the panel, with how many runs `n` rocked
@@ -94,6 +94,16 @@ def plot_clouds(
     InputError
         If the quantity is unknown, the table lacks a column or holds no solved run, a measure is not positive, or there
         are too many structures or models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
+    >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> figure = rf.plot_clouds(runs, measure="pga")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
     if quantity not in _QUANTITIES:
         raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")

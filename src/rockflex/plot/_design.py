@@ -45,7 +45,7 @@ class _Value(NamedTuple):
 
 
 def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithmic: bool | None = None) -> Figure:
-    """Plot the probability, or the annual rate, of exceeding a limit over the half width, a curve a tendon.
+    r"""Plot the probability, or the annual rate, of exceeding a limit over the half width, a curve a tendon.
 
     Symbols are the designs, bands those of the table. With a target, a ring marks where each curve meets it, as
     `smallest_width` finds it, and the half widths are written. A model has a panel; the axis on top is h*_1/B.
@@ -69,6 +69,18 @@ def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithm
     InputError
         If the table lacks a column, has no rows or more than one limit to say, the target is not positive, or there
         are too many models or tendons.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> table = rf.design_table(runs, 0.005, at=0.5, confidence=None)
+    >>> figure = rf.plot_design(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('half width $B$ [m]', 'P($θ_{\\mathrm{max}}>0.005\\ \\mathrm{rad}$)')
     """
     value = "rate" if "rate" in getattr(table, "columns", ()) else "probability"
     check_columns(table, (*_NEEDED, value), _SOURCE)

@@ -45,6 +45,16 @@ def plot_energy(response: "Response") -> Figure:
     ------
     InputError
         If the response has no history.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_energy(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('time [s]', 'energy [kJ]')
     """
     (curve,) = curves_of([response])
     history = curve.history

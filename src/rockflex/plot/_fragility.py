@@ -31,7 +31,7 @@ def plot_fragility(
     overturning: bool = False,
     bins: SupportsIndex = 0,
 ) -> Figure:
-    """Plot the probability that a structure rocks over an intensity measure, a panel a structure, a curve a model.
+    r"""Plot the probability that a structure rocks over an intensity measure, a panel a structure, a curve a model.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of θ_max > 1e-4 rad. Where all runs rock,
     or none, the line is flat; left of the weakest motion, in the shade, curves are extrapolated. For another threshold
@@ -61,6 +61,16 @@ def plot_fragility(
     InputError
         If the table lacks a column or holds no solved run of a structure and model, the fits are of several measures or
         of another one, bins are asked of fits, or there are too many structures or models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
+    >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> figure = rf.plot_fragility(runs, "pga")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGA [m/s²]', '$P(θ_{\\mathrm{max}}>10^{-4}\\ \\mathrm{rad})$')
     """
     groups = whole_number("bins", bins, 0)
     fits, runs = _fits(clouds, measure, groups)

@@ -36,7 +36,7 @@ def plot_frequency_equation(
     highest: float | None = None,
     side: int | None = None,
 ) -> Figure:
-    """Plot the frequency equation of an uplifted structure over ω, a curve a model, and mark its zeros.
+    r"""Plot the frequency equation of an uplifted structure over ω, a curve a model, and mark its zeros.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 12. The ordinate is `frequency_equation` over I_θ ω_1², which
     moves no zero. Dotted lines stand at the frequencies ω_n of the fixed base, where the equation has poles and the
@@ -63,6 +63,15 @@ def plot_frequency_equation(
     ------
     InputError
         If there is no structure, one has no modes or not as many, `highest` is not positive, or `side` is neither.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_frequency_equation(frame)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$ω/ω_1$', 'frequency equation / $I_θ\\,ω_1^2$')
     """
     named = structures if isinstance(structures, Mapping) else {"": structures}
     if not named or not len(n_modes):

@@ -59,6 +59,16 @@ def plot_frequency_ratios(
     InputError
         If no mode is given, a table lacks a column or has no row of a mode, a limit belongs to no table or has not as
         many modes, or there are more tables than can be told apart.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> table = rf.frequency_ratios(frame, [2.0, 4.0, 8.0])
+    >>> figure = rf.plot_frequency_ratios(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$h^*_1/B$', '$ω^*_{1}/ω_{1}$')
     """
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     bounds = limits if isinstance(limits, Mapping) else {} if limits is None else dict.fromkeys(named, limits)

@@ -60,6 +60,16 @@ def plot_history(
     InputError
         If there are no responses or too many, one has no history, there is not one label a response, or a panel is
         unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_history(response, panels=["rotation", "base_moment"])
+    >>> len(figure.axes), figure.axes[1].get_xlabel()
+    (2, 'time [s]')
     """
     curves = curves_of(responses, labels)
     quantities = quantities_of(usual_panels(curves) if panels is None else panels)

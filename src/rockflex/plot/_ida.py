@@ -38,7 +38,7 @@ class _Capacities(NamedTuple):
 
 
 def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | None = 0.9) -> Figure:
-    """Plot θ_max over an intensity measure, a curve a record, with the capacities beside, a row a structure and model.
+    r"""Plot θ_max over an intensity measure, a curve a record, with the capacities beside, a row a structure and model.
 
     Curves are broken where a run overturns, by the limit of the study; the first such run is a red cross at the top.
     Runs that stand at a larger scale than one that overturned ("resurrections", Vamvatsikos & Cornell 2002) are open
@@ -63,6 +63,16 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
     ------
     InputError
         If the table lacks a column or has no rows, the measure is unknown, or there are too many structures and models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
+    >>> runs = rf.run_incremental(structure, motions, "rigid", growth=1.5)
+    >>> figure = rf.plot_ida(runs)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
     check_columns(runs, (*_NEEDED, measure), _SOURCE)
     from rockflex.study.plans import incremental_capacities

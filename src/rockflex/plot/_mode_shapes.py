@@ -42,6 +42,15 @@ def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: i
     ------
     InputError
         If what is given has no modes, or not as many.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_mode_shapes(frame, n_modes=2)
+    >>> len(figure.axes), figure.axes[0].get_ylabel()
+    (2, 'height [m]')
     """
     modes = _modes_of(structure_or_modal)
     # With all modes, and with no fewer, a unit translation is the sum of what they take of it.

@@ -50,6 +50,16 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
     InputError
         If there are no responses or too many, one has no history, there is not one label a response, or no base
         can lift.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_moment_rotation(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('', '')
     """
     curves = [curve for curve in curves_of(responses, labels) if curve.lifts]
     if not curves:

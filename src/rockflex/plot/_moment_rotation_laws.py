@@ -44,6 +44,15 @@ def plot_moment_rotation_laws(
     ------
     InputError
         If no structure is given, or a number is not positive and finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_moment_rotation_laws(frame)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('θ [rad]', 'M [MN m]')
     """
     p = properties_of(structure)
     sides = (p.pivot(1), p.pivot(-1))

@@ -38,6 +38,13 @@ def plot_motion(motion: "GroundMotion") -> Figure:
     ------
     InputError
         If it is not a ground motion.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> figure = rf.plot_motion(rf.ricker_pulse(4.0, 0.6))
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['$a$ [m/s²]', '$S_a$ [m/s²]', '$v$ [m/s]', '$d$ [m]']
     """
     if not hasattr(motion, "acceleration"):
         raise InputError(

@@ -46,6 +46,14 @@ def plot_population(pairs: "pd.DataFrame") -> Figure:
     ------
     InputError
         If the table lacks a column or has no rows.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("fema-p695-far-field")[:2], pairs=8)
+    >>> figure = rf.plot_population(pairs)
+    >>> len(figure.axes), figure.axes[0].get_xlabel()
+    (6, 'stories')
     """
     check_columns(pairs, ("behaviour", *_PANELS), "what run_population returned")
     with styled():

@@ -19,7 +19,7 @@ _LOOKS = (Look(BLACK, "-"), Look(RED, "-."), Look(GREEN, "--"), Look(BLUE, ":"),
 
 
 def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
-    """Plot θ_max/α over 2π/p, a curve for each slenderness.
+    r"""Plot θ_max/α over 2π/p, a curve for each slenderness.
 
     Blocks that overturn have no θ_max: the curve is broken, and crosses along the top stand for them, a row a
     slenderness.
@@ -40,6 +40,14 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
     ------
     InputError
         If the table lacks a column that it needs, has no rows, or has more slendernesses than can be told apart.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = rf.rocking_spectrum(rf.ricker_pulse(4.0, 0.6), slendernesses=[0.2], periods=[2.0, 4.0, 6.0])
+    >>> figure = rf.plot_rocking_spectrum(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$2π/p$ [s]', '$θ_{\\mathrm{max}}/α$')
     """
     _check(table, ("slenderness", "period", "relative_rotation", "overturned"), "rocking_spectrum")
     groups = list(table.groupby("slenderness"))
@@ -74,7 +82,7 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
 
 
 def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]", *, title: str = "") -> Figure:
-    """Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, a curve for each table.
+    r"""Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, a curve for each table.
 
     Where amplitudes above it stand too, the range up to the largest of them is hatched: overturning is not monotone.
 
@@ -94,6 +102,16 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
     ------
     InputError
         If a table lacks a column that it needs or has no rows, or there are more than can be told apart.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> pulse = lambda amplitude, frequency: rf.ricker_pulse(amplitude, 6.28 / frequency)
+    >>> table = rf.overturning_spectrum(structure, pulse, [1.0, 2.0], relative_amplitudes=[1.0, 2.0, 4.0, 8.0])
+    >>> figure = rf.plot_overturning_spectrum(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$ω_g/p$', '$a_p/(g\\,α)$')
     """
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     if not named:

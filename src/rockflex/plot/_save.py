@@ -37,6 +37,15 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     ------
     InputError
         If the suffix is none of .png, .pdf and .svg.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import rockflex as rf
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> rf.save_figure(rf.plot_motion(rf.ricker_pulse(4.0, 0.6)), folder / "pulse.svg").name
+    'pulse.svg'
     """
     target = path_of("path", path)
     suffix = target.suffix.lower()

@@ -57,6 +57,17 @@ def plot_spread(
     ------
     InputError
         If there is not one group of variations a response, one is empty or without history, or a panel is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> others = [rf.simulate(frame, rf.ricker_pulse(a, 0.6), "2DOF-S") for a in (3.9, 4.1)]
+    >>> figure = rf.plot_spread([response], [others], panels=["rotation"])
+    >>> len(figure.axes), figure.axes[0].get_xlabel()
+    (1, 'time [s]')
     """
     curves = curves_of(responses, labels)
     if len(varied) != len(curves) or not all(len(group) for group in varied):

@@ -52,6 +52,19 @@ def plot_stripes(
     InputError
         If the table lacks a column or has no solved run, the limit is unknown, or there are too many structures or
         models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import pandas as pd
+    >>> levels, n = [0.2] * 10 + [0.4] * 10 + [0.8] * 10, [1, 5, 9]
+    >>> fell = [place % 10 < n[place // 10] for place in range(30)]
+    >>> runs = pd.DataFrame({"structure": "#1", "model": "MDOF-S", "level": levels, "nominal_overturning": fell})
+    >>> runs["status"] = ["overturned" if each else "rocking" for each in fell]
+    >>> runs["max_rotation"] = [1.571 if each else 0.01 for each in fell]
+    >>> figure = rf.plot_stripes(runs, measure="pgv")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGV [m/s]', 'P(overturning)')
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
     check_columns(runs, needed, "the table of a stripe study")

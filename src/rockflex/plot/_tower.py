@@ -41,6 +41,15 @@ def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
     ------
     InputError
         If no tower is given, or the section is outside it.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tower = rf.TaperedTower(height=200, base_radius=8, top_radius=4, wall=1, density=2400, elastic_modulus=25e9,
+    ...                         damping_ratio=0.02)
+    >>> figure = rf.plot_tower(tower)
+    >>> len(figure.axes), figure.axes[0].get_ylabel()
+    (2, 'height [m]')
     """
     if not hasattr(tower, "top_radius"):
         raise InputError(f"tower must be a TaperedTower, but {type(tower).__name__} was given.")

@@ -189,6 +189,13 @@ class Document:
         Meaning of every kind of remark.
     sections : sequence of Section
         In the publication's order.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> document.counts
+    {'met': 0}
     """
 
     title: str

@@ -25,6 +25,13 @@ def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
         What to show.
     drawings
         Text of the SVG file of each figure, by its stem.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_html
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> "<h1>A title</h1>" in to_html(document, drawings={})
+    True
     """
     from markupsafe import Markup, escape
 

@@ -12,7 +12,15 @@ HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict",
 
 
 def to_markdown(document: "Document") -> str:
-    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``."""
+    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_markdown
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> to_markdown(document).splitlines()[0]
+    '# A title'
+    """
     counts = document.counts
     parts = [
         f"# {_plain(document.title)}",

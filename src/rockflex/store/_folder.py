@@ -44,6 +44,20 @@ class StudyFolder:
     whoever reads ``parts/*.parquet`` with another program sees finished chunks only.
 
     Use it as a context, or call `close`, to let another process in.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import pyarrow as pa
+    >>> import rockflex as rf
+    >>> path = tempfile.mkdtemp()
+    >>> with rf.StudyFolder.open(path, {"seed": 1}, n_chunks=2, versions={"rockflex": "1"}) as folder:
+    ...     part = folder.write(0, pa.table({"run": [0, 1]}))
+    >>> folder = rf.StudyFolder.load(path)
+    >>> folder.finished, folder.missing()
+    (False, [1])
+    >>> folder.frame(partial=True)["run"].tolist()
+    [0, 1]
     """
 
     path: Path

@@ -49,6 +49,16 @@ class DesignStudy(StructuresSpec):
 
     The table has one row a run; its columns are those of `run_design`. `limits`, `measure`, `level` or `hazard`, and
     `target` say what is asked of it: see `design_table` and `smallest_width`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = {"n_stories": 3, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": 1e9,
+    ...          "period": 0.6, "aspect_ratio": 6.0, "damping_ratio": 0.02}
+    >>> study = rf.DesignStudy(
+    ...     structures=[{"frame": frame}], records={"suites": ["el-centro-1940"]}, half_widths=[1.0, 1.5], level=0.5)
+    >>> study.plan().columns["structure"]
+    ['B = 1 m', 'B = 1.5 m']
     """
 
     study: Literal["design"] = Field("design", description='"design"')
@@ -223,6 +233,18 @@ def run_design(
     InputError
         If a half width is not positive or occurs twice, a model's base cannot lift, a design cannot be built, or as in
         `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> len(runs)
+    16
+    >>> runs["structure"].cat.categories.tolist()
+    ['B = 1 m', 'B = 1.5 m']
     """
     given: Any = scales
     if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]

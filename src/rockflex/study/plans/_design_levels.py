@@ -41,6 +41,16 @@ class TendonLevel:
     ------
     InputError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> level = rf.TendonLevel(prestress_ratio=0.2, stiffness_ratio=0.5)
+    >>> (tendon,) = level.held(frame.rocking()).tendons
+    >>> print(f"{tendon.initial_force:.3g}, {tendon.stiffness:.3g}")
+    3.14e+05, 2.8e+06
     """
 
     prestress_ratio: float = 0.0

@@ -64,6 +64,19 @@ def design_table(
     ------
     InputError
         If the table lacks a column, or an argument is out of range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> table = rf.design_table(runs, 0.005, at=0.5, confidence=None)
+    >>> table["half_width"].tolist()
+    [1.0, 1.5]
+    >>> table["probability"].round(3).tolist()
+    [1.0, 0.999]
     """
     check_same_for_all(measure)
     lacking = [name for name in ("structure", "model", *FACTS, *RESULTS, measure) if name not in runs]

@@ -45,6 +45,17 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     ------
     InputError
         If the table lacks a column, or the target is not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import pandas as pd
+    >>> facts = {"model": "MDOF-S", "tendon": "no tendon", "prestress_ratio": 0.0, "stiffness_ratio": 0.0}
+    >>> values = {"probability": [0.4, 0.1, 0.05], "high": [0.5, 0.2, 0.1]}
+    >>> table = pd.DataFrame({"half_width": [1.0, 1.5, 2.0], **values, **facts})
+    >>> found = rf.smallest_width(table, target=0.2).iloc[0]
+    >>> print(f"{found.half_width:.3g}, {found.half_width_upper:.3g}, {found.outcome}")
+    1.25, 1.5, met
     """
     import pandas as pd
 
