@@ -76,7 +76,7 @@ def test_the_covariance_is_read_only():
         ),
         ([0.1, 0.2, 0.3], [1, 0, 3], r"response must be positive.* 1 of 3 .* row 1\. .*see fit_outcomes"),
         ([0.1, 0.2, math.nan], [1, 2, 3], r"im must be finite, but 1 of 3"),
-        ([0.1, 0.2, 0.3], [1, 2], r"one row a run, but im has 3, response has 2"),
+        ([0.1, 0.2, 0.3], [1, 2], r"one row per run, but im has 3, response has 2"),
         ([0.1, 0.2], [1, 2], r"at least 3 runs with different responses, but 2 runs with 2 different"),
         ([0.1, 0.2, 0.3], [1, 1, 1], r"3 runs with 1 different"),
         ([0.2, 0.2, 0.2], [1, 2, 3], r"at least two different values, but 1 were given in 3 runs"),

@@ -78,7 +78,7 @@ def test_bands_are_those_of_the_bootstrap(runs, limit):
         im, rotation, fallen, groups = columns(runs, row.tendon, row.half_width)
         if limit == "overturning" and not fallen.any():
             assert math.isnan(row.low)
-            assert "No band: all runs ended alike." in row.note
+            assert "No band: all runs had the same outcome." in row.note
             continue
         curve = (
             (lambda fit, at: fit.exceedance(at, 0.02))
@@ -172,7 +172,7 @@ def test_what_a_row_says_of_itself(runs):
     few = few.assign(status="no_uplift", max_rotation=[0.0, 0.0, 0.0, 0.01, 0.0, 0.02] * 2)
     unknown = rf.design_table(few, 0.02, at=0.6)
     assert unknown["probability"].isna().all()
-    assert unknown["note"].str.contains("There is no probability: a part that counts could not be fitted.").all()
+    assert unknown["note"].str.contains("There is no probability: a curve that it needs could not be fitted.").all()
     some = rf.design_table(runs[runs["motion"].str.startswith("FF-1")], 0.02, at=0.6)
     assert some["note"].str.contains("recordings is too narrow|could be fitted").all()
 

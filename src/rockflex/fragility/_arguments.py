@@ -1,4 +1,4 @@
-"""Checks of the columns that are fitted, and of where a fit is evaluated."""
+"""Checks of the columns of a fit, and of the values at which a fit is evaluated."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -56,7 +56,7 @@ def same_length(**columns: NDArray[np.generic]) -> None:
     if len(set(sizes.values())) > 1:
         listed = ", ".join(f"{name} has {size}" for name, size in sizes.items())
         raise InputError(
-            f"The columns must have one row a run, but {listed}. Take them from the same rows of one table."
+            f"The columns must have one row per run, but {listed}. Take them from the same rows of one table."
         )
 
 

@@ -16,7 +16,7 @@ from rockflex.fragility._resamples import draws
 
 Float = NDArray[np.float64]
 MOST = 1_000_000  # resamples
-NEEDED = 20  # resamples that can be fitted, for quantiles of any meaning
+NEEDED = 20  # fewest fitted resamples for meaningful quantiles
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,19 +26,19 @@ class BootstrapBand(Value):
     Attributes
     ----------
     at, estimate, low, high : ndarray, shape (m,)
-        Where the curve was evaluated, the curve of the data as given, and the limits of the band.
+        Measures at which the curve was evaluated, the curve of the original data, and the limits of the band.
     confidence : float
         Confidence of the band.
     n : int
-        Resamples asked for.
+        Number of resamples requested.
     n_failed : int
-        Resamples that could not be fitted, such as those without a single event; they are not in the band.
+        Resamples that could not be fitted, such as those without a single event; the band excludes them.
     n_separated : int
         Resamples with separated outcomes, which were fitted with Firth's penalty.
     n_groups : int
-        Number of blocks that were drawn from: the groups, or the runs where none were given.
+        Number of blocks resampled: the groups, or the runs if no groups were given.
     note : str
-        What to know before the band is used; empty if there is nothing.
+        Warnings about the band; empty if there are none.
 
     Examples
     --------
@@ -77,8 +77,8 @@ def bootstrap_band(
 ) -> BootstrapBand:
     """Percentile band of a fitted curve from resamples of the runs, or of the records that they share.
 
-    With `groups`, whole groups are drawn: the components of a record and its scale factors are not independent, and a
-    band that takes them so is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
+    With `groups`, whole groups are drawn. The components and scale factors of one record are not independent, and a
+    band that treats them as independent is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
     Application, Section 3.8).
 
     Parameters
@@ -92,13 +92,13 @@ def bootstrap_band(
     groups : array_like, shape (k,), optional
         Name or number of the record of every run, the same for both components.
     at : array_like, shape (m,)
-        Measures at which the curve is wanted.
+        Measures at which the curve is evaluated.
     confidence
         Confidence of the band, in [0, 1).
     n
         Number of resamples, at least 20.
     seed
-        Of NumPy's default generator; the same seed gives the same band.
+        Seed of NumPy's default generator; the same seed gives the same band.
     curve
         Function of a fit and `at`; by default the fit's `probability`, or its `median` where it has none.
 
@@ -189,8 +189,8 @@ def _note(n: int, failures: list[str], separated: int, groups: int) -> str:
     notes: list[str] = []
     if failures:
         notes.append(
-            f"{len(failures)} of {n} resamples could not be fitted and are not in the band, which is too narrow for "
-            f"it. The first failure: {failures[0]}"
+            f"{len(failures)} of {n} resamples could not be fitted and are left out, so the band is too narrow. "
+            f"The first failure: {failures[0]}"
         )
     if separated:
         notes.append(f"{separated} of {n} resamples were separated and fitted with Firth's penalty.")

@@ -25,7 +25,7 @@ class CloudFit(Value):
     Attributes
     ----------
     c1, c2 : float
-        Intercept (of the logarithm of the response in the unit given, at IM = 1) and slope.
+        Intercept (logarithm of the response at IM = 1, in the unit given) and slope.
     dispersion : float
         Standard deviation of the residuals of log(y), with n - 2 degrees of freedom.
     r2 : float
@@ -87,8 +87,7 @@ class CloudFit(Value):
 def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
     """Fit log(y) = c1 + c2 log(IM) by least squares (Silva & Stojadinović 2024, Figures 6 and 7).
 
-    The covariance takes the runs as independent; where several of them share a record, `bootstrap_band` with `groups`
-    does not.
+    The covariance assumes independent runs. If several runs share a record, use `bootstrap_band` with `groups`.
 
     Parameters
     ----------

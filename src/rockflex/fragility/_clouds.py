@@ -22,7 +22,7 @@ DISPLACEMENTS = ("max_top_displacement", "max_total_top_displacement")
 
 @dataclass(frozen=True, eq=False)
 class CloudFits(Value):
-    """What the cloud of one structure and one model says.
+    """Fits of the cloud of one structure and one model.
 
     Attributes
     ----------
@@ -31,15 +31,15 @@ class CloudFits(Value):
     measure : str
         Column of the intensity measure.
     outcomes : OutcomeFragility
-        No rocking, rocking and overturning, and the rotations of the runs that rocked and stand.
+        No rocking, rocking and overturning, and the rotations of the runs that rocked without overturning.
     top_displacement : CloudFit or None
-        log u_top,max, relative to the base, on log IM of the same runs, as in Figure 7. None where these cannot be
+        log u_top,max, relative to the base, on log IM of the same runs, as in Figure 7. None if it cannot be
         fitted.
     total_top_displacement : CloudFit or None
-        The same of the largest displacement of the top relative to the ground. None also where the height of the top
-        is not known.
+        The same for the largest displacement of the top relative to the ground. Also None if the height of the top is
+        not known.
     n_failed : int
-        Runs that could not be solved, which are in no fit.
+        Runs that could not be solved; the fits exclude them.
 
     Examples
     --------
@@ -73,9 +73,9 @@ def fit_clouds(
     measure
         Column of the intensity measure.
     threshold
-        Rotation in rad up to which a run counts as one without rocking.
+        A run counts as rocking if its rotation in rad is larger.
     nominal
-        Count runs as overturned that pass 0.7 atan(B/h*_1), and not only those that reach π/2.
+        Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
 
     Raises
     ------
@@ -101,14 +101,14 @@ def fit_clouds(
 def fit_each_cloud(
     runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = ROCKED, nominal: bool = False
 ) -> tuple[list[CloudFits], dict[tuple[str, str], str]]:
-    """Fit the clouds of a study as `fit_clouds` does, and beside them say why others cannot be fitted.
+    """Fit the clouds of a study as `fit_clouds` does, and report why others cannot be fitted.
 
     Returns
     -------
     fits : list of CloudFits
-        Of each structure and model whose runs can be fitted.
+        One for each structure and model that can be fitted.
     reasons : dict
-        By structure and model, why there is no fit.
+        Why there is no fit, by structure and model.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def _fits(
 
 
 def _line(im: NDArray[np.float64], values: NDArray[np.float64]) -> CloudFit | None:
-    """The fit, or None where there is none."""
+    """The fit, or None if it fails."""
     try:
         return fit_cloud(im, values)
     except InputError:

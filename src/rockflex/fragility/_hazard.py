@@ -66,7 +66,7 @@ class HazardCurve(Value):
         return -np.diff(np.log(self.rate)) / np.diff(np.log(self.im))
 
     def rate_at(self, im: ArrayLike) -> Float:
-        """Annual rate at which `im` is exceeded, straight in logarithms between the points."""
+        """Annual rate at which `im` is exceeded, interpolated linearly in logarithms."""
         return np.exp(_between("im", log_at(im), np.log(self.im), np.log(self.rate)))
 
     def im_at(self, rate: ArrayLike) -> Float:

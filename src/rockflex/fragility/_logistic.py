@@ -1,4 +1,4 @@
-"""Logistic regression of an outcome that happens or does not, on the logarithm of an intensity measure."""
+"""Logistic regression of a yes-or-no outcome on the logarithm of an intensity measure."""
 
 import math
 from dataclasses import dataclass
@@ -35,10 +35,10 @@ class LogisticFit(Value):
     method : str
         "maximum likelihood", or "Firth" where that has no finite slope.
     separated : bool
-        Whether one measure parts all runs with the outcome from all without, so that maximum likelihood has no finite
-        slope.
+        Whether one measure separates the runs with the outcome from those without, so that maximum likelihood has no
+        finite slope.
     note : str
-        What to know before the curve is used; empty if there is nothing.
+        Warnings about the curve; empty if there are none.
 
     Examples
     --------
@@ -91,9 +91,10 @@ class LogisticFit(Value):
 def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     """Fit a logistic curve by maximum likelihood (Silva & Stojadinović 2024, Figure 5).
 
-    Where one measure parts the runs with the outcome from those without, the likelihood grows with the slope for ever.
-    The curve is then fitted with Firth's penalty, which is finite for any data (Firth 1993, Biometrika 80(1), 27-38;
-    Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419), and `method`, `separated` and `note` say so.
+    If one measure separates the runs with the outcome from those without, the likelihood increases with the slope
+    without limit. The curve is then fitted with Firth's penalty, which gives a finite slope for any data (Firth 1993,
+    Biometrika 80(1), 27-38; Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419), and `method`, `separated` and `note`
+    report it.
 
     Parameters
     ----------
@@ -124,7 +125,7 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
         alike = UnanimousOutcome(bool(y[0]), y.size)
         raise InputError(
             f"outcome is {alike.outcome} in all {alike.n} runs, so there is no curve to fit. {alike.note} "
-            "Add runs at other measures, or use fit_outcomes, which goes on with such a group."
+            "Add runs at other measures, or use fit_outcomes, which accepts such a group."
         )
     scaled = Standardised(x)
     unit = np.ones((1, x.size))
@@ -142,11 +143,11 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     if separated:
         low, high = _gap(x, y)
         notes.append(
-            f"Separated between im = {low:.4g} and {high:.4g}: no finite slope is the likeliest, so Firth's penalty "
-            "set it. Median and slope are known no better than that gap."
+            f"Separated between im = {low:.4g} and {high:.4g}: maximum likelihood has no finite slope, so "
+            "Firth's penalty was used. Median and slope are uncertain by the width of that gap."
         )
     elif method == "Firth":
-        notes.append("Nearly separated: maximum likelihood found no slope, so Firth's penalty set it.")
+        notes.append("Nearly separated: maximum likelihood did not converge, so Firth's penalty was used.")
     if b1 <= 0.0:
         notes.append(f"The probability does not rise with im (b1 = {b1:.3g}), so there is no median or dispersion.")
     return LogisticFit(b0, b1, covariance, y.size, int(y.sum()), method, separated, " ".join(notes))

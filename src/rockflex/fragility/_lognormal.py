@@ -27,9 +27,9 @@ class LognormalFragility(Value):
     covariance : ndarray, shape (2, 2), or None
         Covariance of (ln median, beta), read-only; None where it is not known.
     n : int
-        Number of runs or records behind the curve; 0 for one that was given.
+        Number of runs or records in the fit; 0 for a curve that was given.
     method : str
-        How it was found.
+        Method of the fit.
 
     Raises
     ------
@@ -89,5 +89,5 @@ class LognormalFragility(Value):
         return ndtr(z - half), ndtr(z + half)
 
     def _score(self, im: ArrayLike) -> Float:
-        with np.errstate(over="ignore"):  # a dispersion of all but zero makes a step
+        with np.errstate(over="ignore"):  # a nearly zero dispersion makes a step
             return (log_at(im) - math.log(self.median)) / self.beta

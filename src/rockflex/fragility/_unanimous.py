@@ -1,4 +1,4 @@
-"""Runs that all ended alike, from which only a one-sided bound follows."""
+"""Runs with one common outcome, which give only a one-sided bound."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class UnanimousOutcome:
-    """An outcome that happened in every run, or in none; it stands in for a curve that cannot be fitted.
+    """An outcome that happened in every run, or in none; it replaces a curve that cannot be fitted.
 
     Attributes
     ----------
@@ -34,10 +34,10 @@ class UnanimousOutcome:
 
     @property
     def note(self) -> str:
-        """What can be concluded, in words."""
+        """The conclusion in words."""
         side = "above" if self.outcome else "below"
         return (
-            f"What follows is a bound only: with 95 % confidence the probability, averaged over these runs, is {side} "
+            f"This gives only a bound: with 95 % confidence the probability, averaged over these runs, is {side} "
             f"{100.0 * self.bound(0.95):.3g} %."
         )
 

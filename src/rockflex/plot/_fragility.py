@@ -31,16 +31,16 @@ def plot_fragility(
     overturning: bool = False,
     bins: SupportsIndex = 0,
 ) -> Figure:
-    r"""Plot the probability that a structure rocks over an intensity measure, a panel a structure, a curve a model.
+    r"""Plot the probability of rocking over an intensity measure, one panel per structure and one curve per model.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of θ_max > 1e-4 rad. Where all runs rock,
-    or none, the line is flat; left of the weakest motion, in the shade, curves are extrapolated. For another threshold
-    give what `fit_clouds` returned with it.
+    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of θ_max > 1e-4 rad. If all runs
+    rock, or none, the line is flat. In the shaded range, below the weakest motion, curves are extrapolated. For another
+    threshold, pass the result of `fit_clouds`.
 
     Parameters
     ----------
     clouds
-        The table of a cloud study, such as `run_cloud` returns, or what `fit_clouds` made of it.
+        The table of a cloud study, such as that of `run_cloud`, or the result of `fit_clouds`.
     measure
         Column of the intensity measure; default: ``"pgv"``, or the measure of the fits.
     confidence
@@ -48,19 +48,19 @@ def plot_fragility(
     overturning
         Whether to draw the probability of overturning too, as thin lines.
     bins
-        Number of groups, of equally many runs of neighbouring intensities, whose fraction of rocking runs is marked;
-        needs the table. Default: none.
+        Number of groups of equally many runs, sorted by intensity, for which the fraction of rocking runs is marked;
+        requires the table. Default: none.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a structure, over the measure in its unit.
+        One axes per structure, over the measure in its unit.
 
     Raises
     ------
     InputError
-        If the table lacks a column or holds no solved run of a structure and model, the fits are of several measures or
-        of another one, bins are asked of fits, or there are too many structures or models.
+        If the table lacks a column or holds no solved run of a structure and model, the fits use several measures or
+        another one, bins are given with fits, or there are too many structures or models.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def plot_fragility(
 def _fits(
     clouds: "pd.DataFrame | Sequence[CloudFits]", measure: str | None, groups: int
 ) -> "tuple[list[CloudFits], pd.DataFrame | None]":
-    """The fits, and the solved runs where they are known."""
+    """The fits, and the solved runs if they are known."""
     if hasattr(clouds, "columns"):
         runs: pd.DataFrame = clouds  # pyright: ignore[reportAssignmentType]
         found = fit_clouds(runs, measure or "pgv")
@@ -135,7 +135,7 @@ def _of(runs: "pd.DataFrame", fit: CloudFits) -> "pd.DataFrame":
 
 
 def _limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
-    """End of the axis: where the curves of rocking have arrived, or the strongest motion if all is to be shown."""
+    """End of the axis: where the curves of rocking approach 1, or the strongest motion if overturning is shown."""
     ends: list[float] = []
     for fit in fits:
         rocks, falls = fit.outcomes.initiation, fit.outcomes.overturning

@@ -32,33 +32,33 @@ def plot_frequency_ratios(
     modes: Sequence[SupportsIndex] = (1, 2),
     mark: float | None = 10.0,
 ) -> Figure:
-    """Plot ω*_n/ω_n over the aspect ratio h*_1/B, a panel a mode.
+    """Plot ω*_n/ω_n over the aspect ratio h*_1/B, one panel per mode.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 10. Models differ by colour, structures by dashes. A blue line
-    with its value is the frequency ratio of the pinned beam, to which all modes of a structure with its mass spread
-    evenly tend as the base narrows; fewer modes go beyond it.
+    with its value is the frequency ratio of the pinned beam, which a structure of evenly distributed mass with all its
+    modes approaches as the base narrows; models with fewer modes exceed it.
 
     Parameters
     ----------
     tables
-        From `frequency_ratios`: one, or several by their names, four at most.
+        A table of `frequency_ratios`, or up to four by name.
     limits
-        From `pinned_beam`, by the same names.
+        Results of `pinned_beam`, by the same names.
     modes
-        Which modes to show, counted from 1.
+        Modes to show, counted from 1.
     mark
         Aspect ratio of a vertical gray line; None for none.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a mode, over a logarithmic axis; no units.
+        One axes per mode, over a logarithmic axis; no units.
 
     Raises
     ------
     InputError
-        If no mode is given, a table lacks a column or has no row of a mode, a limit belongs to no table or has not as
-        many modes, or there are more tables than can be told apart.
+        If no mode is given, a table lacks a column or has no row of a mode, a limit belongs to no table or has too
+        few modes, or there are too many tables to distinguish.
 
     Examples
     --------
@@ -98,7 +98,7 @@ def plot_frequency_ratios(
 
 
 def _draw(axes: Axes, table: "pd.DataFrame", mode: int, looks: dict[str, Look], dashes: Dashes) -> float:
-    """One curve a model that has the mode; return the largest ordinate."""
+    """Draw one curve per model that has the mode; return the largest ordinate."""
     top = 1.0
     for model, look in looks.items():
         rows = table[(table["model"] == model) & (table["mode"] == mode)].sort_values("aspect_ratio")

@@ -21,15 +21,15 @@ _LOOKS = (Look(BLACK, "-"), Look(RED, "-."), Look(GREEN, "--"), Look(BLUE, ":"),
 def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
     r"""Plot θ_max/α over 2π/p, a curve for each slenderness.
 
-    Blocks that overturn have no θ_max: the curve is broken, and crosses along the top stand for them, a row a
+    Blocks that overturn have no θ_max: the curve is interrupted, and crosses at the top mark them, one row per
     slenderness.
 
     Parameters
     ----------
     table
-        From `rocking_spectrum`.
+        The table of `rocking_spectrum`.
     title
-        Over the figure; the name of the motion, for instance.
+        Title of the figure, such as the name of the motion.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
     Raises
     ------
     InputError
-        If the table lacks a column that it needs, has no rows, or has more slendernesses than can be told apart.
+        If the table lacks a column that it needs, has no rows, or has too many slendernesses to distinguish.
 
     Examples
     --------
@@ -82,16 +82,17 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
 
 
 def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]", *, title: str = "") -> Figure:
-    r"""Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, a curve for each table.
+    r"""Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, one curve per table.
 
-    Where amplitudes above it stand too, the range up to the largest of them is hatched: overturning is not monotone.
+    Some larger amplitudes may not overturn, because overturning is not monotone: the range up to the largest of them
+    is hatched.
 
     Parameters
     ----------
     tables
-        From `overturning_spectrum`: one, or several by their names.
+        A table of `overturning_spectrum`, or several by name.
     title
-        Over the figure.
+        Title of the figure.
 
     Returns
     -------
@@ -101,7 +102,7 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
     Raises
     ------
     InputError
-        If a table lacks a column that it needs or has no rows, or there are more than can be told apart.
+        If a table lacks a column that it needs or has no rows, or there are too many tables to distinguish.
 
     Examples
     --------
@@ -158,5 +159,5 @@ def _check(table: "pd.DataFrame", columns: tuple[str, ...], source: str) -> None
 def _check_number(given: int, what: str) -> None:
     if given > len(_LOOKS):
         raise InputError(
-            f"{given} {what} are too many to be told apart in one figure; {len(_LOOKS)} can be. Plot fewer."
+            f"{given} {what} are too many to distinguish in one figure; at most {len(_LOOKS)} can be shown."
         )

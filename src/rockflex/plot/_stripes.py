@@ -1,4 +1,4 @@
-"""Multiple stripes: fractions observed at each level, and the lognormal curve through them."""
+"""Multiple stripes: observed fractions at each level, and the lognormal curve through them."""
 
 from typing import TYPE_CHECKING, Literal
 
@@ -27,9 +27,9 @@ def plot_stripes(
     *,
     confidence: float | None = 0.9,
 ) -> Figure:
-    """Plot the fraction of runs that exceed a limit in each stripe, a panel a structure, symbols and a curve a model.
+    """Plot the fraction of runs that exceed a limit in each stripe, one panel per structure, one curve per model.
 
-    The curves are those of `fit_stripes`; where the stripes determine none, there are symbols alone.
+    The curves are those of `fit_stripes`; if the stripes do not determine one, there are only symbols.
 
     Parameters
     ----------
@@ -38,14 +38,14 @@ def plot_stripes(
     limit
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
     measure
-        Name of the measure of the levels, such as ``"pgv"``, for the axis; the table does not say it.
+        Name of the measure of the levels, such as ``"pgv"``, for the axis; it is not in the table.
     confidence
         Confidence of the bands around the curves, between 0 and 1; None for no bands.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a structure, over the measure in its unit.
+        One axes per structure, over the measure in its unit.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def plot_stripes(
 def _draw(
     axes: Axes, stripes: "pd.DataFrame", model: str, look: Look, marker: str, end: float, confidence: float | None
 ) -> str:
-    """Symbols, curve and band; return what to write of them."""
+    """Draw symbols, curve and band; return their text."""
     at, events, total = (stripes[name].to_numpy(dtype=float) for name in ("level", "n_exceeding", "n_total"))
     axes.plot(
         at, events / total, marker, color=look.color, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8,

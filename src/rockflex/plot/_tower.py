@@ -20,7 +20,7 @@ _SLICE = 0.015  # height of the slice over that of the tower
 
 
 def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
-    """Plot a tower's elevation, and one of its sections with what it adds to I_θ.
+    """Plot a tower's elevation, and one of its sections with its contribution to I_θ.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 14. A slice of mass m at the height z turns about the pivot O
     with m((R² + r²)/4 + Δ²), where Δ² = z² + B² (Eq. 33).
@@ -30,12 +30,12 @@ def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
     tower
         A `TaperedTower`.
     section
-        Height z of the section in m, at most that of the tower. Default: half of it.
+        Height z of the section in m, at most the tower's height. Default: half the height.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Two axes, elevation and section, in m. Widths and heights of the elevation have scales of their own.
+        Two axes, elevation and section, in m. Widths and heights of the elevation have different scales.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def _say(
     below: bool = False,
     boxed: bool = False,
 ) -> None:
-    """Write beside a point, `offset` points away."""
+    """Write next to a point, `offset` points away."""
     axes.annotate(
         text, at, xytext=offset, textcoords="offset points", color=color, fontsize=SMALL, annotation_clip=False,
         ha="right" if turned else "center" if below or boxed else "left",

@@ -1,4 +1,4 @@
-"""Hysteresis of the superstructure, by itself and beside the histories."""
+"""Hysteresis of the superstructure, alone and with the histories."""
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
@@ -21,27 +21,27 @@ def plot_hysteresis(
 ) -> Figure:
     r"""Plot the restoring force V_b of the superstructure over its top displacement u_top.
 
-    For one mode V_b is Eq. 37 of Silva & Stojadinović 2024 times m*_1, and an elastic superstructure draws a line; for
-    several modes the two are not tied to each other. A fall is drawn until the weight pulls the structure over.
+    For one mode V_b is Eq. 37 of Silva & Stojadinović 2024 times m*_1, and an elastic superstructure gives a line; for
+    several modes V_b is not a function of u_top. Overturning is plotted until the weight overturns the structure.
 
     Parameters
     ----------
     responses
         One response or several, each with its history.
     labels
-        A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
+        A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     title
         Default: the name of the motion, if there is only one.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes; u_top in m, V_b in the unit that suits its size.
+        One axes; u_top in m, V_b in a unit that suits its size.
 
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, or there is not one label a response.
+        If there are no responses or too many, one has no history, or the number of labels differs.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def plot_yielding(
     responses
         One response or several, each with its history.
     labels
-        A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
+        A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     title
         Default: the name of the motion, if there is only one.
 
@@ -87,7 +87,7 @@ def plot_yielding(
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, or there is not one label a response.
+        If there are no responses or too many, one has no history, or the number of labels differs.
 
     Examples
     --------

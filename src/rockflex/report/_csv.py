@@ -12,7 +12,7 @@ COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference
 
 
 def to_csv(document: "Document") -> str:
-    """Write one row a number, in UTF-8 with a head; `rockflex` has all digits, and is "inf" or "nan" where it is.
+    """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan".
 
     Examples
     --------

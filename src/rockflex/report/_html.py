@@ -1,4 +1,4 @@
-"""A report as one page of HTML: nothing is loaded, figures are drawn within, light and dark."""
+"""A report as one page of HTML: self-contained, with inline figures, light and dark."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -22,7 +22,7 @@ def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
     Parameters
     ----------
     document
-        What to show.
+        The report.
     drawings
         Text of the SVG file of each figure, by its stem.
 

@@ -1,4 +1,4 @@
-"""A report as Markdown, with its figures beside it."""
+"""A report as Markdown, with its figures in separate files."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -75,5 +75,5 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _plain(text: str) -> str:
-    """Keep what is no markup from being read as such."""
+    """Escape characters that Markdown would read as markup."""
     return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", text)

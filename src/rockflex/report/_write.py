@@ -17,9 +17,9 @@ def write_report(document: Document, folder: Path, progress: Callable[[str], Non
     Parameters
     ----------
     document
-        What to write.
+        The report.
     folder
-        Where to; it is made if it is not there.
+        The folder; it is created if needed.
     progress
         Called with the stem of every figure that is drawn.
 
