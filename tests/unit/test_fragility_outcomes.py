@@ -116,7 +116,7 @@ def test_limits_reach_up_to_the_nominal_definition_of_overturning():
     fit = fit_outcomes(IM, rotation, FALLS)
     assert fit.highest_limit == rotation[FALLS].min()
     fit.exceedance(AT, 0.08)
-    text = r"limit must lie in \[0\.0001, 0\..*\) rad, but {} was given\. Below, .*; above, overturned"
+    text = r"limit must lie in \[0\.0001, 0\..*\) rad, but {} was given\. Below, .*; above, an overturned"
     for limit in (0.5, 5e-5):
         with pytest.raises(InputError, match=text.format(limit)):
             fit.exceedance(AT, limit)

@@ -149,7 +149,7 @@ def test_the_example_is_a_study():
         ({"measure": "relative_pgv"}, "measure: measure must not depend on the base, as a level of relative_pgv does."),
         ({"measure": "pgw"}, "measure: measure must be one of pga, pgv,"),
         ({"level": None}, "level and hazard: give one of them, not both, for the strength of the shaking."),
-        ({"hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-4]}}, "level and hazard: one of them is needed, and not"),
+        ({"hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-4]}}, "level and hazard: give one of them, not both,"),
         (
             {"level": None, "hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-1]}},
             "rate must be positive and fall from point to point",
