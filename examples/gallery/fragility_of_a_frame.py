@@ -22,7 +22,7 @@ frame = rf.Frame(
 )
 suite = rf.load_suite("fema-p695-far-field")
 runs = rf.run_cloud({"#1": frame}, suite, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0, 2.0, 4.0), free_vibration="settle")
-curves = rf.plot_fragility(runs, level=0.9, overturning=True)
+curves = rf.plot_fragility(runs, confidence=0.9, overturning=True)
 
 # %%
 # The rotations of the runs that rocked without overturning; crosses at the top overturned.

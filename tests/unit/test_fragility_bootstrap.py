@@ -90,7 +90,7 @@ def test_a_few_blocks_are_told():
     ("change", "text"),
     [
         ({"n": 5}, "n must be a whole number from 20 to 1000000, but 5"),
-        ({"level": 1.0}, r"level must lie in \[0, 1\)"),
+        ({"confidence": 1.0}, r"confidence must lie in \[0, 1\)"),
         ({"at": [0.0, 1.0]}, "im must be positive and finite, but 0"),
         ({"groups": [1, 2]}, "im has 144, outcome_or_response has 144, groups has 2"),
         ({"groups": np.ones(144)}, "at least two groups, but all 144 runs belong to 1"),

@@ -76,7 +76,7 @@ def test_the_covariance_is_read_only():
         ),
         ([0.1, 0.2, 0.3], [1, 0, 3], r"response must be positive.* 1 of 3 .* row 1\. .*see fit_outcomes"),
         ([0.1, 0.2, math.nan], [1, 2, 3], r"im must be finite, but 1 of 3"),
-        ([0.1, 0.2, 0.3], [1, 2], r"one row a run, but im has 3, response has 2"),
+        ([0.1, 0.2, 0.3], [1, 2], r"one row per run, but im has 3, response has 2"),
         ([0.1, 0.2], [1, 2], r"at least 3 runs with different responses, but 2 runs with 2 different"),
         ([0.1, 0.2, 0.3], [1, 1, 1], r"3 runs with 1 different"),
         ([0.2, 0.2, 0.2], [1, 2, 3], r"at least two different values, but 1 were given in 3 runs"),
@@ -95,7 +95,7 @@ def test_columns_that_cannot_be_fitted_are_refused(im, response, text):
         (lambda fit: fit.median("x"), "im must be a number or an array of numbers, but str"),
         (lambda fit: fit.exceedance(1.0, -0.1), "limit must be positive and finite, but -0.1"),
         (lambda fit: fit.quantile(1.0, 84), "p must lie between 0 and 1, but 84 .* p=0.84"),
-        (lambda fit: fit.band(1.0, 90), r"level must lie in \[0, 1\), but 90 .* level=0.9"),
+        (lambda fit: fit.band(1.0, 90), r"confidence must lie in \[0, 1\), but 90 .* confidence=0.9"),
     ],
 )
 def test_places_that_cannot_be_evaluated_are_refused(call, text):

@@ -129,9 +129,9 @@ def test_stripes_that_give_no_curve_are_refused(levels, events, total, text):
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (lambda: fit_capacities([0.5, 1, 1], [0, 1, 1]), "two different capacities .* 1 were given beside 2 censored"),
-        (lambda: fit_capacities([1.0, 1.0], [1, 1]), "but 0 were given beside 2 censored records. Scale"),
-        (lambda: fit_capacities([0.5, 0.5]), "1 were given beside 0"),
+        (lambda: fit_capacities([0.5, 1, 1], [0, 1, 1]), "two different capacities .* 1 were given besides 2 censored"),
+        (lambda: fit_capacities([1.0, 1.0], [1, 1]), "but 0 were given besides 2 censored records. Scale"),
+        (lambda: fit_capacities([0.5, 0.5]), "1 were given besides 0"),
         (lambda: fit_capacities([0.5, -1.0]), "im must be positive.*Leave those records out"),
         (lambda: fit_capacities([0.5, 0.6], [0]), "im has 2, censored has 1"),
         (lambda: LognormalFragility(0.0, 0.4), "median must be a positive, finite number in the unit of IM"),

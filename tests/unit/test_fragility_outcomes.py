@@ -68,7 +68,7 @@ def test_no_overturning_at_all_leaves_a_one_sided_bound():
     low, high = fit.overturning.band(AT, 0.95)
     assert (low == 0.0).all()
     assert (high == fit.overturning.bound(0.95)).all()
-    assert any(note.startswith(f"overturning: none of {n} runs. What follows is a bound only") for note in fit.notes)
+    assert any(note.startswith(f"overturning: none of {n} runs. This gives only a bound") for note in fit.notes)
     assert np.isfinite(fit.exceedance(AT, 0.01)).all()
 
 
@@ -77,7 +77,7 @@ def test_overturning_of_every_run_needs_no_other_fit():
     np.testing.assert_array_equal(fit.probabilities(AT), [np.zeros(4), np.zeros(4), np.ones(4)])
     np.testing.assert_array_equal(fit.exceedance(AT, 0.01), 1.0)
     assert fit.overturning.band(AT, 0.95)[0][0] == pytest.approx(0.05 ** (1 / N))
-    assert "rocking: no run stands, so there is nothing to fit." in fit.notes
+    assert "rocking: all runs overturned, so there is nothing to fit." in fit.notes
 
 
 def test_no_rocking_at_all_exceeds_nothing():
@@ -93,7 +93,7 @@ def test_two_rocking_runs_are_told_and_give_nan_where_they_count():
     fit = fit_outcomes(np.linspace(0.1, 2.0, 40), rotation, np.zeros(40))
     assert np.isnan(fit.exceedance(1.0, 0.01))
     assert sum(fit.probabilities(1.0)) == pytest.approx(1.0)
-    assert any("Only 2 of 40 runs rock and stand" in note for note in fit.notes)
+    assert any("Only 2 of 40 runs rock without overturning" in note for note in fit.notes)
     assert any(note.startswith("rotation: A cloud needs at least 3 runs") for note in fit.notes)
     assert any(note.startswith("rocking: Separated between") for note in fit.notes)
     kinds = [note.kind for note in fit.notes]
@@ -116,7 +116,7 @@ def test_limits_reach_up_to_the_nominal_definition_of_overturning():
     fit = fit_outcomes(IM, rotation, FALLS)
     assert fit.highest_limit == rotation[FALLS].min()
     fit.exceedance(AT, 0.08)
-    text = r"limit must lie in \[0\.0001, 0\..*\) rad, but {} was given\. Below, .*; above, overturned"
+    text = r"limit must lie in \[0\.0001, 0\..*\) rad, but {} was given\. Below, .*; above, an overturned"
     for limit in (0.5, 5e-5):
         with pytest.raises(InputError, match=text.format(limit)):
             fit.exceedance(AT, limit)

@@ -148,8 +148,8 @@ def test_the_example_is_a_study():
         ),
         ({"measure": "relative_pgv"}, "measure: measure must not depend on the base, as a level of relative_pgv does."),
         ({"measure": "pgw"}, "measure: measure must be one of pga, pgv,"),
-        ({"level": None}, "level and hazard: one of them is needed, and not both, to say how strong the ground"),
-        ({"hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-4]}}, "level and hazard: one of them is needed, and not"),
+        ({"level": None}, "level and hazard: give one of them, not both, for the strength of the shaking."),
+        ({"hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-4]}}, "level and hazard: give one of them, not both,"),
         (
             {"level": None, "hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-1]}},
             "rate must be positive and fall from point to point",
@@ -175,7 +175,7 @@ def test_a_specification_that_is_wrong(changes, message):
         ({"tendons": [{}, {}]}, "tendons: 'no tendon' occurs more than once. Give each once."),
         (
             {"structures": [{"frame": FRAME, "tendons": [{"initial_force": 1e5, "stiffness": 1e6}]}]},
-            "The structure has tendons of its own, and there are levels of tendons besides. Leave out the one or the",
+            "The structure has its own tendons, and levels of tendons are given too. Leave out one or the other",
         ),
         (
             {"limits": ["2.5 nominal"], "half_widths": [9.0]},

@@ -9,7 +9,8 @@ from scipy.optimize import minimize
 
 import rockflex as rf
 from design_case import HAZARD, HEIGHT, WIDTHS
-from rockflex.study.plans._design_resamples import _firth, exceedances, resample_weights
+from rockflex.fragility import resample_weights, resampled_exceedance
+from rockflex.fragility._regression import Scoring, fit_curves
 
 
 @pytest.fixture
@@ -77,7 +78,7 @@ def test_bands_are_those_of_the_bootstrap(runs, limit):
         im, rotation, fallen, groups = columns(runs, row.tendon, row.half_width)
         if limit == "overturning" and not fallen.any():
             assert math.isnan(row.low)
-            assert "No band: all runs ended alike." in row.note
+            assert "No band: all runs had the same outcome." in row.note
             continue
         curve = (
             (lambda fit, at: fit.exceedance(at, 0.02))
@@ -92,7 +93,7 @@ def test_bands_are_those_of_the_bootstrap(runs, limit):
             return fit
 
         band = rf.bootstrap_band(
-            fitted, im, np.column_stack((rotation, fallen)), groups, at=[0.8], n=60, seed=5, level=0.8, curve=curve
+            fitted, im, np.column_stack((rotation, fallen)), groups, at=[0.8], n=60, seed=5, confidence=0.8, curve=curve
         )
         separated += sum(failed)
         np.testing.assert_allclose([row.low, row.high], [band.low[0], band.high[0]], rtol=1e-5, atol=1e-6)
@@ -130,8 +131,9 @@ def test_penalised_fits_maximise_the_penalised_likelihood():
         corners = [[0.0, 0.0], [4.0, 4.0], [-4.0, 4.0]]
         options = {"xatol": 1e-8, "fatol": 1e-12, "maxiter": 2000, "initial_simplex": corners}
         best = minimize(unlikely, corners[0], method="Nelder-Mead", options=options)
-        (b,) = _firth(x, y, times[None].astype(float))
-        np.testing.assert_allclose(b, best.x, rtol=1e-5, atol=1e-5)
+        curve = fit_curves(x, y, times[None].astype(float), Scoring(1e-8))
+        assert curve.separated
+        np.testing.assert_allclose(curve.parameters[0], best.x, rtol=1e-5, atol=1e-5)
 
 
 def test_resamples_with_nothing_to_fit():
@@ -139,7 +141,7 @@ def test_resamples_with_nothing_to_fit():
     fallen = np.array([False, False, False, True])
     weights = np.array([[2.0, 2, 0, 0], [0.0, 0, 0, 4], [4.0, 0, 0, 0], [0.0, 2, 2, 0], [0.0, 4, 0, 0]])
     with np.errstate(all="raise"):
-        found = exceedances(im, rotation, fallen, weights, np.array([2.5]), 0.024, 1e-4)[:, 0]
+        found = resampled_exceedance(im, rotation, fallen, weights, np.array([2.5]), 0.024)[:, 0]
     assert math.isnan(found[0])  # one rotation is no line
     assert found[1] == 1.0  # all overturned
     assert found[2] == 0.0  # none rocks
@@ -170,7 +172,7 @@ def test_what_a_row_says_of_itself(runs):
     few = few.assign(status="no_uplift", max_rotation=[0.0, 0.0, 0.0, 0.01, 0.0, 0.02] * 2)
     unknown = rf.design_table(few, 0.02, at=0.6)
     assert unknown["probability"].isna().all()
-    assert unknown["note"].str.contains("There is no probability: a part that counts could not be fitted.").all()
+    assert unknown["note"].str.contains("There is no probability: a curve that it needs could not be fitted.").all()
     some = rf.design_table(runs[runs["motion"].str.startswith("FF-1")], 0.02, at=0.6)
     assert some["note"].str.contains("recordings is too narrow|could be fitted").all()
 

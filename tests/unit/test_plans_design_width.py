@@ -40,7 +40,7 @@ def test_exponentials_are_met_exactly():
         ([0.4, 0.0], 1.75, "met", True, ""),
         ([0.4, 0.1], 2.0, "met", True, ""),
         ([0.4, 0.3], math.nan, "not met", True, "The widest base, B = 2 m, has 0.3."),
-        ([0.1, 0.05], 1.0, "all meet it", True, "Every base meets it; one below B = 1 m might do."),
+        ([0.1, 0.05], 1.0, "all meet it", True, "Every base meets it; a base below B = 1 m might do."),
         (
             [0.4, 0.05, 0.2, 0.05],
             3.5,

@@ -189,7 +189,7 @@ def test_slopes_and_coefficients_are_what_their_definitions_say():
 def test_intervals_are_those_of_scipy():
     frame = made_up(200)
     x, y = frame["max_rotation_2dof"].to_numpy(), frame["max_rotation_mdof"].to_numpy()
-    found = population_statistics(frame, level=0.8, n_resamples=4000).agreement
+    found = population_statistics(frame, confidence=0.8, n_resamples=4000).agreement
     row = found[(found["quantity"] == "rotation") & (found["behaviour"] == "all")].iloc[0]
 
     def slope(x, y, axis=-1):
@@ -252,7 +252,7 @@ def test_few_pairs_say_nothing():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"level": 1.0}, "level must lie in [1e-09, 1), but 1.0 was given."),
+        ({"confidence": 1.0}, "confidence must lie in [1e-09, 1), but 1.0 was given."),
         ({"n_resamples": 0}, "n_resamples must be a whole number of at least 1, but 0 was given."),
         ({"seed": -1}, "seed must be a whole number of at least 0, but -1 was given."),
         ({"n_outliers": -1}, "n_outliers must be a whole number of at least 0, but -1 was given."),

@@ -35,7 +35,7 @@ def test_fragility_curves_are_the_most_likely_logistic_ones(cloud):
 
 def test_fragility_with_bands_overturning_and_observed_fractions(cloud):
     runs = cloud[cloud["structure"] == "#1"]
-    figure = drawn(rf.plot_fragility(runs, "sa_t1", level=0.8, overturning=True, bins=5))
+    figure = drawn(rf.plot_fragility(runs, "sa_t1", confidence=0.8, overturning=True, bins=5))
     (axes,) = figure.axes
     assert axes.get_xlabel() == r"$S_a(T_1)$ [m/s²]"
     assert axes.get_xlim()[1] == pytest.approx(runs["sa_t1"].max())
@@ -72,7 +72,7 @@ def test_fragility_of_fits_alone_with_another_threshold(cloud):
 
 def test_where_none_rocks_the_line_is_flat_and_the_cloud_empty(cloud):
     still = cloud[cloud["max_rotation"] <= 1e-4]
-    axes = drawn(rf.plot_fragility(still, level=0.9, overturning=True, bins=3)).axes[0]
+    axes = drawn(rf.plot_fragility(still, confidence=0.9, overturning=True, bins=3)).axes[0]
     assert not lines(axes, "MDOF-S")[0].get_ydata().any()
     for quantity in ("max_rotation", "max_top_displacement"):
         figure = drawn(rf.plot_clouds(still, quantity))

@@ -187,7 +187,7 @@ def test_takes_one_response_any_iterable_and_the_column_of_a_table(four):
 def test_sixteen_responses_are_told_apart_and_no_more(four):
     looks = [c.look for c in curves_of([*four, *[four[0]] * 12])]
     assert len({(look.color, look.dashes) for look in looks}) == 16
-    with pytest.raises(rf.InputError, match=r"^17 responses are too many to be told apart in one figure\. Plot fewer"):
+    with pytest.raises(rf.InputError, match=r"^17 responses are too many to distinguish in one figure\. Plot fewer"):
         plot_history([*four, *[four[0]] * 13])
 
 
@@ -212,8 +212,8 @@ def test_what_cannot_be_drawn_is_named(four):
             "responses[1] must be a Response, but NoneType was given. Give what simulate returned, or the column "
             '"response" of simulate_many(..., output="history").',
         ),
-        ((four, ["a"]), "labels must be a sequence of 4 strings, one a response, but 1 was given."),
-        ((four, "abcd"), "labels must be a sequence of 4 strings, one a response, but the string 'abcd' was given."),
+        ((four, ["a"]), "labels must be a sequence of 4 strings, one per response, but 1 was given."),
+        ((four, "abcd"), "labels must be a sequence of 4 strings, one per response, but the string 'abcd' was given."),
     ]
     for arguments, message in cases:
         with pytest.raises(rf.InputError) as caught:

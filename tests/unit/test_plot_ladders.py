@@ -50,7 +50,7 @@ def test_ida_of_records_that_never_overturn(ladders):
     weak["overturned"], weak["status"] = pd.array([False] * len(weak), dtype="boolean"), "rocking"
     weak["first_overturning_scale"], weak["resurrections"] = np.nan, 0
     weak.loc[weak.index[:1], "overturned"] = pd.NA
-    left, right = drawn(rf.plot_ida(weak, level=None)).axes
+    left, right = drawn(rf.plot_ida(weak, confidence=None)).axes
     assert not lines(left, "_overturned")
     assert not lines(right, "_fit")
     assert notes(right)[0].splitlines() == [
@@ -95,7 +95,7 @@ def test_stripes_with_their_curve(stripes):
     np.testing.assert_allclose(curve.get_ydata(), fit.probability(curve.get_xdata()))
     assert notes(axes) == [f"median {fit.median:.3g}, β = {fit.beta:.2f}"]
     assert len(axes.collections) == 1
-    axes = drawn(rf.plot_stripes(stripes[stripes["level"] < 1.0], 0.005, level=None)).axes[0]
+    axes = drawn(rf.plot_stripes(stripes[stripes["level"] < 1.0], 0.005, confidence=None)).axes[0]
     assert axes.get_ylabel() == r"$P(θ_{\mathrm{max}}>0.005\ \mathrm{rad})$"
     assert notes(axes) == ["no curve fits"]
     assert not axes.collections

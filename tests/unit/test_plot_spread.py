@@ -71,7 +71,7 @@ def test_what_falls_counts_no_more_and_stretches_nothing():
 
 
 def test_groups_must_fit(nominal, varied):
-    text = "varied must hold 2 groups, one a response, each of at least one response, but groups of {} were given."
+    text = "varied must hold 2 groups, one per response, each of at least one response, but groups of {} were given."
     for groups, sizes in (([varied[0]], "[2]"), ([varied[0], []], "[2, 0]")):
         with pytest.raises(rf.InputError) as caught:
             plot_spread(nominal, groups)

@@ -278,5 +278,5 @@ def test_what_cannot_be_drawn_is_named(call, message):
 def test_too_many_models_are_named():
     frame = rf.Frame(15, 3.0, 40e3, 40e3, 0.1, 1.0, 10.0, 0.02)
     table = rf.frequency_ratios(frame, [1.0], (*range(1, 16), None))
-    with pytest.raises(rf.InputError, match=r"16 models are too many to be told apart in one figure\. Plot fewer"):
+    with pytest.raises(rf.InputError, match=r"16 models are too many to distinguish in one figure\. Plot fewer"):
         rf.plot_frequency_ratios(table)

@@ -159,7 +159,7 @@ def test_what_is_no_study_is_refused(tmp_path: Path) -> None:
         opened(str(tmp_path / "file"), PLAN)
     with pytest.raises(InputError, match=r"cannot be used: Not a directory"):
         opened(str(tmp_path / "file" / "below"), PLAN)
-    with pytest.raises(InputError, match=r"is no study, and not empty \('thesis.tex' is in it\)"):
+    with pytest.raises(InputError, match=r"is not a study, and not empty \('thesis.tex' is in it\)"):
         opened(str(tmp_path / "other"), PLAN)
     assert [path.name for path in (tmp_path / "other").iterdir()] == ["thesis.tex"]
     for name in ("other", "file", "nothing"):
@@ -196,8 +196,8 @@ ENDLESS["itself"] = ENDLESS
         ({"n_chunks": 0}, r"n_chunks must be a whole number of at least 1"),
         (
             {"n_chunks": 10**12},
-            r"n_chunks must be at most 100000, for each chunk is a file, but 1000000000000 was given\. Compute more "
-            r"runs a chunk: runs_per_chunk in a study\.$",
+            r"n_chunks must be at most 100000, because each chunk is a file, but 1000000000000 was given\. Compute "
+            r"more runs per chunk: runs_per_chunk in a study\.$",
         ),
         (
             {"spec": {"a": nested(5000)}},
@@ -235,7 +235,7 @@ def test_bad_chunks_are_refused(tmp_path: Path) -> None:
             folder.write(0, other.select(list(reversed(other.column_names))))
         assert folder.missing() == [0, 2, 3]
         folder.write(1, retyped)  # the only part may be replaced
-    with pytest.raises(InputError, match="was opened to read"):
+    with pytest.raises(InputError, match="was opened for reading"):
         StudyFolder.load(tmp_path).write(0, other)
 
 
@@ -243,7 +243,7 @@ def test_changed_files_are_seen(done: Path) -> None:
     spec, manifest = done / "spec.json", done / "manifest.json"
     kept = spec.read_text(), manifest.read_text()
     spec.write_text(kept[0].replace("1.0", "2.0"))
-    with pytest.raises(InputError, match=r"spec.json was changed after the study began\. Undo"):
+    with pytest.raises(InputError, match=r"spec.json was changed after the study started\. Undo"):
         StudyFolder.load(done)
     spec.write_text(kept[0][:-5])
     with pytest.raises(InputError, match=r"spec.json beside it is damaged \(JSONDecodeError"):
@@ -282,7 +282,7 @@ def test_changed_files_are_seen(done: Path) -> None:
     manifest.write_text(kept[1])
     (done / "parts" / "part-00004.parquet").write_bytes(b"")
     for attempt in (StudyFolder.load, lambda path: opened(str(path), PLAN)):
-        with pytest.raises(InputError, match=r"files of no part of the study:\n  part-00004.parquet\nMove them"):
+        with pytest.raises(InputError, match=r"not parts of the study:\n  part-00004.parquet\nMove them"):
             attempt(done)
 
 

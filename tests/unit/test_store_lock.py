@@ -193,7 +193,7 @@ def test_a_lock_from_the_future_is_not_waited_for(
 
 def test_what_is_no_lock_is_not_taken_away(tmp_path: Path) -> None:
     (tmp_path / "lock").mkdir()
-    with pytest.raises(InputError, match=r"lock is no file, but the study's lock belongs there\. Move it away"):
+    with pytest.raises(InputError, match=r"lock is not a file, but the study's lock belongs there\. Move it away"):
         Lock.acquire(tmp_path / "lock")
     path = tmp_path / "other"
     path.write_text(holder(host="h" * 10**5))

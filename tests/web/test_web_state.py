@@ -93,6 +93,14 @@ def test_what_cannot_be_used_is_said_beside_its_field(state, path, text) -> None
     assert "Traceback" not in found[path]
 
 
+def test_links_with_the_old_name_of_the_confidence_still_open() -> None:
+    state = parse_state({"structure": FRAME, "cloud": {"level": 0.8}})
+    assert state.cloud.confidence == 0.8
+    assert "level" not in state.model_dump()["cloud"]
+    text = "it must be the confidence of the bands, from 0.5 to 0.99, but 2.0 was given."
+    assert errors({"structure": FRAME, "cloud": {"confidence": 2.0}}) == {"cloud.confidence": text}
+
+
 def test_text_never_becomes_the_path_of_a_file() -> None:
     matrices = {"mass": "/etc/passwd", "stiffness": "secret.npz", "heights": [3.0], "base_mass": 1.0}
     found = errors({"structure": {"matrices": matrices | {"half_width": 1.0, "damping_ratio": 0.0}}})

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
 from rockflex.cli._simulations import SLIDING, Plan, Run
+from rockflex.fragility import NOMINAL
 from rockflex.response import IMPACT_WINDOW
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ LEGEND = (
     "V_b, M_b: of the elastic forces; ΣF_x: what the ground must hold across, with\n"
     "the base's mass and the damping; N_min: least force between base and ground"
 )
-NOMINAL = "† θ passed 0.7 atan(B/h*_1), the nominal limit of overturning"
+PASSED = f"† θ passed {NOMINAL.label}, the nominal limit of overturning"
 FRICTION = (
     "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
     "the base slides where it passes {mu:g}"
@@ -52,7 +53,7 @@ def print_runs(title: str, plan: Plan, runs: Sequence[Run], elapsed: float, *, t
             show(console, grid(["model", *(heading for heading, _ in columns)], cells, 1 + n_words))
     console.print()
     if any(run.peaks["nominal_overturning"] for run in runs):
-        console.print(NOMINAL, markup=False, soft_wrap=True)
+        console.print(PASSED, markup=False, soft_wrap=True)
     console.print(LEGEND, markup=False, soft_wrap=True)
     if plan.friction is not None:
         console.print(FRICTION.format(window=IMPACT_WINDOW, mu=plan.friction), markup=False, soft_wrap=True)

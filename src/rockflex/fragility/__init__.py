@@ -23,6 +23,7 @@ from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._measures import compare_measures
 from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, fit_outcomes
+from rockflex.fragility._resamples import resample_weights, resampled_exceedance
 from rockflex.fragility._stripes import fit_stripes
 from rockflex.fragility._unanimous import UnanimousOutcome
 
@@ -57,6 +58,8 @@ __all__ = [
     "fit_outcomes",
     "fit_stripes",
     "limit_label",
+    "resample_weights",
+    "resampled_exceedance",
     "risk_targeted_median",
     "symbol_of_nominal",
 ]

@@ -15,11 +15,11 @@ from rockflex.fragility._lognormal import LognormalFragility
 
 Float = NDArray[np.float64]
 Curve = Callable[[Float], Float]
-SMALLEST = 60.0  # ln of how far below the curve's lower end its tail is followed
+SMALLEST = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
 
 
 class Fragility(Protocol):
-    """Anything with a probability of failure at a measure."""
+    """Any curve that gives a probability of failure at a measure."""
 
     def probability(self, im: Float, /) -> Float:
         """Probability of failure, of the shape of `im`."""
@@ -28,17 +28,25 @@ class Fragility(Protocol):
 
 @dataclass(frozen=True)
 class AnnualRate:
-    """Mean annual rate of failure, from what the hazard curve covers, and bounds of what lies beyond its ends.
+    """Mean annual rate of failure within the hazard curve, and bounds on the rate beyond its ends.
 
     Attributes
     ----------
     rate : float
         ∫ P(im) |dλ| in 1/year from the first to the last point of the curve.
     below : float
-        Rate in 1/year from smaller measures if the curve went on with the slope of its first segment: an upper bound,
-        as hazard curves flatten towards small measures. Infinite where that integral grows without bound.
+        Rate in 1/year from smaller measures if the curve continued with the slope of its first segment: an upper bound,
+        because hazard curves flatten towards small measures. Infinite if the integral diverges.
     above : float
-        Largest rate in 1/year from larger measures: that at which the last point is exceeded.
+        Largest possible rate in 1/year from larger measures: the rate of the last point.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> rate = rf.annual_rate(hazard, rf.LognormalFragility(median=0.5, beta=0.4))
+    >>> print(f"{rate.rate:.3g}, {rate.probability_in(50):.3g}")
+    0.000436, 0.0216
     """
 
     rate: float
@@ -47,7 +55,7 @@ class AnnualRate:
 
     @property
     def beyond(self) -> float:
-        """Upper bound in 1/year of what the curve does not cover: the true rate is at most `rate` + `beyond`."""
+        """Upper bound in 1/year on the rate outside the curve: the true rate is at most `rate` + `beyond`."""
         return self.below + self.above
 
     def probability_in(self, years: float) -> float:
@@ -58,7 +66,7 @@ class AnnualRate:
 def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate:
     """Integrate a fragility curve over a hazard curve, λ_f = ∫ P(im) |dλ(im)|.
 
-    Between two points λ is a power law, and adaptive Gauss-Kronrod quadrature in log IM takes all segments at once.
+    Between two points λ is a power law; adaptive Gauss-Kronrod quadrature in log IM integrates all segments at once.
 
     Parameters
     ----------
@@ -72,6 +80,16 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate
     ------
     InputError
         If the probabilities are not finite numbers from 0 to 1.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> found = rf.annual_rate(hazard, rf.LognormalFragility(median=0.5, beta=0.4))
+    >>> print(f"{found.rate:.3g}")
+    0.000436
+    >>> print(f"{found.beyond:.3g}")
+    0.0001
     """
     instance("hazard", hazard, HazardCurve)
     probability = _probability(fragility)
@@ -95,14 +113,21 @@ def risk_targeted_median(
     target_rate
         Annual rate of failure in 1/year.
     allowed_beyond
-        Largest `AnnualRate.beyond` at the solution, as a fraction of the target. The rate is met by what the curve
-        covers, so the true one may be larger by this fraction.
+        Largest `AnnualRate.beyond` at the solution, as a fraction of the target. The target is met by the rate within
+        the curve, so the true rate may be larger by this fraction.
 
     Raises
     ------
     InputError
         If an argument is out of range, no median within the curve meets the target, or too much of the rate lies
         beyond the ends of the curve.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> print(f"{rf.risk_targeted_median(hazard, dispersion=0.4, target_rate=1e-3, allowed_beyond=0.3):.3g}")
+    0.364
     """
     from scipy.optimize import brentq
 
@@ -169,7 +194,7 @@ def _covered(hazard: HazardCurve, probability: Curve) -> float:
 
 
 def _below(hazard: HazardCurve, probability: Curve) -> float:
-    """∫ P |dλ| below the first point, with the slope of the first segment; infinite if it does not settle."""
+    """∫ P |dλ| below the first point, with the slope of the first segment; infinite if it diverges."""
     from scipy.integrate import quad_vec
 
     im, k, rate = float(hazard.im[0]), float(hazard.slopes[0]), float(hazard.rate[0])

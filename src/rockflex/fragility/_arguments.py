@@ -1,4 +1,4 @@
-"""Checks of the columns that are fitted, and of where a fit is evaluated."""
+"""Checks of the columns of a fit, and of the values at which a fit is evaluated."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -56,7 +56,7 @@ def same_length(**columns: NDArray[np.generic]) -> None:
     if len(set(sizes.values())) > 1:
         listed = ", ".join(f"{name} has {size}" for name, size in sizes.items())
         raise InputError(
-            f"The columns must have one row a run, but {listed}. Take them from the same rows of one table."
+            f"The columns must have one row per run, but {listed}. Take them from the same rows of one table."
         )
 
 
@@ -83,6 +83,6 @@ def fractions(name: str, values: ArrayLike) -> Float:
     return array
 
 
-def confidence(level: float) -> float:
-    """Level of confidence in [0, 1)."""
-    return in_range("level", level, 0.0, 1.0, hint="A 90 % band is level=0.9.")
+def checked_confidence(confidence: float) -> float:
+    """Confidence of a band, in [0, 1)."""
+    return in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is confidence=0.9.")

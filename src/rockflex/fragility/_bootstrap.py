@@ -11,11 +11,12 @@ from rockflex._checks import finite_vector, float_array, whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, same_length
+from rockflex.fragility._arguments import checked_confidence, same_length
+from rockflex.fragility._resamples import draws
 
 Float = NDArray[np.float64]
 MOST = 1_000_000  # resamples
-NEEDED = 20  # resamples that can be fitted, for quantiles of any meaning
+NEEDED = 20  # fewest fitted resamples for meaningful quantiles
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,26 +26,36 @@ class BootstrapBand(Value):
     Attributes
     ----------
     at, estimate, low, high : ndarray, shape (m,)
-        Where the curve was evaluated, the curve of the data as given, and the limits of the band.
-    level : float
-        Confidence level.
+        Measures at which the curve was evaluated, the curve of the original data, and the limits of the band.
+    confidence : float
+        Confidence of the band.
     n : int
-        Resamples asked for.
+        Number of resamples requested.
     n_failed : int
-        Resamples that could not be fitted, such as those without a single event; they are not in the band.
+        Resamples that could not be fitted, such as those without a single event; the band excludes them.
     n_separated : int
         Resamples with separated outcomes, which were fitted with Firth's penalty.
     n_groups : int
-        Number of blocks that were drawn from: the groups, or the runs where none were given.
+        Number of blocks resampled: the groups, or the runs if no groups were given.
     note : str
-        What to know before the band is used; empty if there is nothing.
+        Warnings about the band; empty if there are none.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im, response = [0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026]
+    >>> band = rf.bootstrap_band(rf.fit_cloud, im, response, at=[0.5], n=200)
+    >>> bool(band.low[0] < band.estimate[0] < band.high[0])
+    True
+    >>> band.confidence, band.n_groups
+    (0.9, 4)
     """
 
     at: Float
     estimate: Float
     low: Float
     high: Float
-    level: float
+    confidence: float
     n: int
     n_failed: int
     n_separated: int
@@ -59,15 +70,15 @@ def bootstrap_band(
     groups: ArrayLike | None = None,
     *,
     at: ArrayLike,
-    level: float = 0.9,
+    confidence: float = 0.9,
     n: SupportsIndex = 1000,
     seed: int = 0,
     curve: Callable[[Any, Float], Any] | None = None,
 ) -> BootstrapBand:
     """Percentile band of a fitted curve from resamples of the runs, or of the records that they share.
 
-    With `groups`, whole groups are drawn: the components of a record and its scale factors are not independent, and a
-    band that takes them so is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
+    With `groups`, whole groups are drawn. The components and scale factors of one record are not independent, and a
+    band that treats them as independent is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
     Application, Section 3.8).
 
     Parameters
@@ -81,13 +92,13 @@ def bootstrap_band(
     groups : array_like, shape (k,), optional
         Name or number of the record of every run, the same for both components.
     at : array_like, shape (m,)
-        Measures at which the curve is wanted.
-    level
-        Confidence level in [0, 1).
+        Measures at which the curve is evaluated.
+    confidence
+        Confidence of the band, in [0, 1).
     n
         Number of resamples, at least 20.
     seed
-        Of NumPy's default generator; the same seed gives the same band.
+        Seed of NumPy's default generator; the same seed gives the same band.
     curve
         Function of a fit and `at`; by default the fit's `probability`, or its `median` where it has none.
 
@@ -96,12 +107,20 @@ def bootstrap_band(
     InputError
         If the columns differ in length, an argument is out of range, the data as given cannot be fitted, or fewer than
         20 resamples can.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im, response = [0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026]
+    >>> band = rf.bootstrap_band(rf.fit_cloud, im, response, at=[0.5], n=200, seed=1)
+    >>> print(f"{band.estimate[0]:.3g} from {band.low[0]:.3g} to {band.high[0]:.3g}")
+    0.0137 from 0.013 to 0.0152
     """
     measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
     values = _column("outcome_or_response", outcome_or_response)
     labels = np.arange(measures.size) if groups is None else _column("groups", groups)
     same_length(im=measures, outcome_or_response=values, groups=labels)
-    wanted, times = confidence(level), whole_number("n", n, NEEDED, MOST)
+    wanted, times = checked_confidence(confidence), whole_number("n", n, NEEDED, MOST)
     evaluate = _curve if curve is None else curve
     for name, function in (("fit_function", fit_function), ("curve", evaluate)):
         if not callable(function):
@@ -111,22 +130,21 @@ def bootstrap_band(
         raise InputError("curve must return numbers, one for each of `at`, but it returned something else.")
 
     blocks = _blocks(labels)
-    generator = np.random.default_rng(whole_number("seed", seed, 0))
     curves: list[Float] = []
     failures: list[str] = []
     separated = 0
-    for _ in range(times):
-        rows = np.concatenate([blocks[i] for i in generator.integers(len(blocks), size=len(blocks))])
+    for drawn in draws(len(blocks), times, whole_number("seed", seed, 0)):
+        rows = np.concatenate([blocks[i] for i in drawn])
         try:
             fit = fit_function(measures[rows], values[rows])
-            drawn = np.asarray(evaluate(fit, grid), dtype=np.float64)
+            found = np.asarray(evaluate(fit, grid), dtype=np.float64)
         except (InputError, SolverError) as error:
             failures.append(str(error))
             continue
-        if not np.isfinite(drawn).all():
+        if not np.isfinite(found).all():
             failures.append("The curve is not finite everywhere.")
             continue
-        curves.append(drawn)
+        curves.append(found)
         separated += bool(getattr(fit, "separated", False))
     if len(curves) < NEEDED:
         raise InputError(
@@ -171,8 +189,8 @@ def _note(n: int, failures: list[str], separated: int, groups: int) -> str:
     notes: list[str] = []
     if failures:
         notes.append(
-            f"{len(failures)} of {n} resamples could not be fitted and are not in the band, which is too narrow for "
-            f"it. The first failure: {failures[0]}"
+            f"{len(failures)} of {n} resamples could not be fitted and are left out, so the band is too narrow. "
+            f"The first failure: {failures[0]}"
         )
     if separated:
         notes.append(f"{separated} of {n} resamples were separated and fitted with Firth's penalty.")

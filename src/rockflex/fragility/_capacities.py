@@ -17,8 +17,8 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
     """Fit a lognormal fragility to the capacities of records.
 
     Without censored records: mean and standard deviation (n - 1) of the logarithms, the method of moments of Baker 2015
-    (Earthquake Spectra 31(1), 579-599). With them: maximum likelihood, to which a censored record contributes the
-    probability that its capacity is larger; that dispersion is not corrected for few records.
+    (Earthquake Spectra 31(1), 579-599). With them: maximum likelihood, in which a censored record contributes the
+    probability of a larger capacity; this dispersion is not corrected for small samples.
 
     Parameters
     ----------
@@ -26,12 +26,19 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
         Intensity measure at which each record first reached the limit or overturned, in any one unit; for a censored
         record the largest measure that was tried.
     censored : array_like, shape (n,), optional
-        Whether the record never got there.
+        Whether the record never reached the limit.
 
     Raises
     ------
     InputError
-        If a value is not positive, or the capacities that are known are fewer than two different ones.
+        If a value is not positive, or fewer than two different capacities are known.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_capacities([0.4, 0.6, 0.9, 1.0], censored=[False, False, False, True])
+    >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
+    0.73, 0.458
     """
     x = log_column("im", im, "Leave those records out.")
     above = np.zeros(x.size, dtype=np.bool_) if censored is None else flags("censored", censored)
@@ -40,7 +47,7 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
     if known.size < 2 or np.ptp(known) == 0.0:
         raise InputError(
             f"im must hold at least two different capacities that were reached, but {np.unique(known).size} were given "
-            f"beside {int(above.sum())} censored records. Scale the records further up."
+            f"besides {int(above.sum())} censored records. Scale the records further up."
         )
     if above.any():
         mean, beta = _maximum_likelihood(known, x[above])
@@ -61,7 +68,7 @@ def _maximum_likelihood(known: Float, above: Float) -> tuple[float, float]:
     # Shifted and scaled, so that the tolerances mean the same for every unit and dispersion.
     shift, scale = float(known.mean()), float(np.ptp(known))
     data = CensoredData(uncensored=(known - shift) / scale, right=(above - shift) / scale)
-    fit: Any = norm.fit  # its stubs know no function as an optimizer
+    fit: Any = norm.fit  # its stubs do not accept a function as the optimizer
     mean, beta = fit(data, loc=0.0, scale=0.5, optimizer=search)
     return shift + scale * float(mean), scale * float(beta)
 

@@ -1,5 +1,6 @@
 """Cloud analysis: a straight line through the logarithms of response and intensity measure."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,8 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, fractions, log_at, log_column, log_measures, same_length
+from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
+from rockflex.fragility._regression import fit_lines
 
 Float = NDArray[np.float64]
 
@@ -23,7 +25,7 @@ class CloudFit(Value):
     Attributes
     ----------
     c1, c2 : float
-        Intercept (of the logarithm of the response in the unit given, at IM = 1) and slope.
+        Intercept (logarithm of the response at IM = 1, in the unit given) and slope.
     dispersion : float
         Standard deviation of the residuals of log(y), with n - 2 degrees of freedom.
     r2 : float
@@ -32,6 +34,16 @@ class CloudFit(Value):
         Number of runs.
     covariance : ndarray, shape (2, 2)
         Covariance of (c1, c2); read-only.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_cloud([0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026])
+    >>> print(f"{fit.median(0.5):.3g}, {fit.exceedance(0.5, 0.02):.3g}")
+    0.0137, 2.09e-06
+    >>> low, high = fit.band([0.4, 0.6], confidence=0.9)
+    >>> low.shape
+    (2,)
     """
 
     c1: float
@@ -52,12 +64,12 @@ class CloudFit(Value):
 
         return self.median(im) * np.exp(self.dispersion * ndtri(fractions("p", p)))
 
-    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
         """Lower and upper confidence limits of the median, from Student's t with n - 2 degrees of freedom."""
         from scipy.special import stdtrit
 
         x = log_at(im)
-        half = stdtrit(self.n - 2, 0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
+        half = stdtrit(self.n - 2, 0.5 + 0.5 * checked_confidence(confidence)) * standard_error(x, self.covariance)
         centre = self.c1 + self.c2 * x
         with np.errstate(over="ignore"):
             return np.exp(centre - half), np.exp(centre + half)
@@ -75,8 +87,7 @@ class CloudFit(Value):
 def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
     """Fit log(y) = c1 + c2 log(IM) by least squares (Silva & Stojadinović 2024, Figures 6 and 7).
 
-    The covariance takes the runs as independent; where several of them share a record, `bootstrap_band` with `groups`
-    does not.
+    The covariance assumes independent runs. If several runs share a record, use `bootstrap_band` with `groups`.
 
     Parameters
     ----------
@@ -90,6 +101,13 @@ def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
     InputError
         If a value is not positive and finite, fewer than three runs are given, or all have the same measure or the
         same response.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_cloud([0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026])
+    >>> print(f"{fit.c1:.3g}, {fit.c2:.3g}, {fit.dispersion:.3g}, {fit.r2:.3g}")
+    -3.38, 1.32, 0.083, 0.993
     """
     x = log_measures(im)
     y = log_column(
@@ -100,16 +118,13 @@ def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
 
 
 def fit_line(x: Float, y: Float) -> tuple[CloudFit, Float]:
-    """Least squares through logarithms of equal length; the residuals beside the fit."""
-    from statsmodels.api import OLS
-
+    """Least squares through logarithms of equal length; the fit and its residuals."""
     if x.size < 3 or np.ptp(y) == 0.0:
         raise InputError(
             f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
             "different responses were given."
         )
-    result = OLS(y, np.column_stack((np.ones(x.size), x))).fit()
-    c1, c2 = (float(value) for value in result.params)
-    dispersion = float(np.sqrt(result.mse_resid))
-    fit = CloudFit(c1, c2, dispersion, float(result.rsquared), x.size, np.array(result.cov_params()))
-    return fit, np.asarray(result.resid)
+    c1, c2, mean, n, sxx, syy, residual = (float(value[0]) for value in fit_lines(x, y, np.ones((1, x.size))))
+    variance = residual / (n - 2.0)
+    covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
+    return CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance), y - (c1 + c2 * x)

@@ -22,7 +22,7 @@ DISPLACEMENTS = ("max_top_displacement", "max_total_top_displacement")
 
 @dataclass(frozen=True, eq=False)
 class CloudFits(Value):
-    """What the cloud of one structure and one model says.
+    """Fits of the cloud of one structure and one model.
 
     Attributes
     ----------
@@ -31,15 +31,25 @@ class CloudFits(Value):
     measure : str
         Column of the intensity measure.
     outcomes : OutcomeFragility
-        No rocking, rocking and overturning, and the rotations of the runs that rocked and stand.
+        No rocking, rocking and overturning, and the rotations of the runs that rocked without overturning.
     top_displacement : CloudFit or None
-        log u_top,max, relative to the base, on log IM of the same runs, as in Figure 7. None where these cannot be
+        log u_top,max, relative to the base, on log IM of the same runs, as in Figure 7. None if it cannot be
         fitted.
     total_top_displacement : CloudFit or None
-        The same of the largest displacement of the top relative to the ground. None also where the height of the top
-        is not known.
+        The same for the largest displacement of the top relative to the ground. Also None if the height of the top is
+        not known.
     n_failed : int
-        Runs that could not be solved, which are in no fit.
+        Runs that could not be solved; the fits exclude them.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> (fit,) = rf.fit_clouds(runs, "pga")
+    >>> fit.model, fit.measure, fit.n_failed
+    ('rigid', 'pga', 0)
     """
 
     structure: str
@@ -63,14 +73,24 @@ def fit_clouds(
     measure
         Column of the intensity measure.
     threshold
-        Rotation in rad up to which a run counts as one without rocking.
+        A run counts as rocking if its rotation in rad is larger.
     nominal
-        Count runs as overturned that pass 0.7 atan(B/h*_1), and not only those that reach π/2.
+        Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
 
     Raises
     ------
     InputError
         If `runs` lacks a column, a structure has no solved run with a model, or its measures are not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> (fit,) = rf.fit_clouds(runs, "pga")
+    >>> fit.outcomes.n_no_rocking, fit.outcomes.n_rocking, fit.outcomes.n_overturned
+    (3, 9, 0)
     """
     return [
         _fits(structure, model, group, measure, threshold, nominal=nominal)
@@ -81,19 +101,30 @@ def fit_clouds(
 def fit_each_cloud(
     runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = ROCKED, nominal: bool = False
 ) -> tuple[list[CloudFits], dict[tuple[str, str], str]]:
-    """Fit the clouds of a study as `fit_clouds` does, and beside them say why others cannot be fitted.
+    """Fit the clouds of a study as `fit_clouds` does, and report why others cannot be fitted.
 
     Returns
     -------
     fits : list of CloudFits
-        Of each structure and model whose runs can be fitted.
+        One for each structure and model that can be fitted.
     reasons : dict
-        By structure and model, why there is no fit.
+        Why there is no fit, by structure and model.
 
     Raises
     ------
     InputError
         If `runs` lacks a column.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from rockflex.fragility import fit_each_cloud
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> fits, reasons = fit_each_cloud(runs, "pga")
+    >>> len(fits), reasons
+    (1, {})
     """
     fits: list[CloudFits] = []
     reasons: dict[tuple[str, str], str] = {}
@@ -130,7 +161,7 @@ def _fits(
 
 
 def _line(im: NDArray[np.float64], values: NDArray[np.float64]) -> CloudFit | None:
-    """The fit, or None where there is none."""
+    """The fit, or None if it fails."""
     try:
         return fit_cloud(im, values)
     except InputError:

@@ -28,6 +28,13 @@ class HazardCurve(Value):
     ------
     InputError
         If the columns differ in length, are not positive, or do not rise and fall as they should.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
+    >>> print(f"{hazard.rate_at(0.3):.3g}, {hazard.im_at(1e-3):.3g}")
+    0.00117, 0.321
     """
 
     im: Float
@@ -59,7 +66,7 @@ class HazardCurve(Value):
         return -np.diff(np.log(self.rate)) / np.diff(np.log(self.im))
 
     def rate_at(self, im: ArrayLike) -> Float:
-        """Annual rate at which `im` is exceeded, straight in logarithms between the points."""
+        """Annual rate at which `im` is exceeded, interpolated linearly in logarithms."""
         return np.exp(_between("im", log_at(im), np.log(self.im), np.log(self.rate)))
 
     def im_at(self, rate: ArrayLike) -> Float:

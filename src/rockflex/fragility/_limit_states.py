@@ -1,4 +1,4 @@
-"""What a run may exceed. All limits are of its largest rotation |θ|, in rad."""
+"""Limit states of a run, in terms of its largest rotation |θ| in rad."""
 
 import math
 from collections.abc import Callable
@@ -6,27 +6,35 @@ from dataclasses import dataclass
 from typing import Any
 
 OVERTURNED = 0.5 * math.pi  # rad
-ROCKED = 1e-4  # rad up to which a run counts as one without rocking
+ROCKED = 1e-4  # rad; a run counts as rocking if its rotation is larger
 
 
 @dataclass(frozen=True, kw_only=True)
 class LimitState:
-    """A limit that a run may exceed: its names, where it lies, and which runs exceed it.
+    """A limit that a run may exceed: its names, its rotation, and which runs exceed it.
 
     Attributes
     ----------
     name : str
-        What files and calls call it.
+        Name in files and function calls.
     label : str
-        What a reader of text is shown.
+        Name in text.
     symbol : str
         The event of exceeding it, in figures: words, or Matplotlib's mathtext without its dollar signs.
     exceeded : callable
-        Tells of the rows of solved runs in a table, or of one row, whether they exceed it.
+        Returns whether the solved runs of a table, or the run of one row, exceed the limit.
     threshold : float
-        Rotation in rad; NaN where every structure has its own.
+        Rotation in rad; NaN if it depends on the structure.
     bound : str
-        The rotation at which it lies, in text; empty if the label says it.
+        The rotation in text; empty if the label states it.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import LIMIT_STATES
+    >>> list(LIMIT_STATES)
+    ['uplift', 'rocking', 'nominal', 'overturning']
+    >>> LIMIT_STATES["overturning"].rotation
+    '|θ| = π/2'
     """
 
     name: str
@@ -38,7 +46,7 @@ class LimitState:
 
     @property
     def rotation(self) -> str:
-        """The rotation at which it lies, in text."""
+        """The rotation in text."""
         return self.bound or self.label
 
 
@@ -53,7 +61,16 @@ def _overturned(runs: Any) -> Any:
 
 
 def beyond(rotation: float, name: str = "rotation", label: str = "") -> LimitState:
-    """Return the limit of a rotation in rad; a run that overturned passed every one below π/2."""
+    """Return the limit state of a rotation in rad; an overturned run exceeds every rotation below π/2.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import beyond
+    >>> beyond(0.02).label
+    '0.02 rad'
+    >>> bool(beyond(0.02).exceeded({"max_rotation": 0.03, "status": "rocking"}))
+    True
+    """
 
     def exceeded(runs: Any) -> Any:
         return (runs["max_rotation"] > rotation) | (_overturned(runs) & (rotation < OVERTURNED))
@@ -86,5 +103,12 @@ LIMIT_STATES = {state.name: state for state in (UPLIFT, ROCKING, NOMINAL, OVERTU
 
 
 def limit_label(limit: float | str) -> str:
-    """Return what a reader is shown of a limit as files have it: words as they are, or a rotation in rad."""
+    """Return the name in text of a limit from a file: a word unchanged, or a rotation in rad.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import limit_label
+    >>> limit_label(0.02), limit_label("overturning")
+    ('0.02 rad', 'overturning')
+    """
     return limit if isinstance(limit, str) else beyond(limit).label

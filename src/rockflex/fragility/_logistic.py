@@ -1,7 +1,6 @@
-"""Logistic regression of an outcome that happens or does not, on the logarithm of an intensity measure."""
+"""Logistic regression of a yes-or-no outcome on the logarithm of an intensity measure."""
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,13 +9,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, flags, log_at, log_measures, same_length
+from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
 from rockflex.fragility._predictor import Standardised, standard_error
+from rockflex.fragility._regression import Scoring, fit_curves, information
 from rockflex.fragility._unanimous import UnanimousOutcome
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 Method = Literal["maximum likelihood", "Firth"]
+CONVERGED = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +35,19 @@ class LogisticFit(Value):
     method : str
         "maximum likelihood", or "Firth" where that has no finite slope.
     separated : bool
-        Whether one measure parts all runs with the outcome from all without, so that maximum likelihood has no finite
-        slope.
+        Whether one measure separates the runs with the outcome from those without, so that maximum likelihood has no
+        finite slope.
     note : str
-        What to know before the curve is used; empty if there is nothing.
+        Warnings about the curve; empty if there are none.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [False, False, True, False, True, True])
+    >>> print(f"{fit.median:.3g}, {fit.dispersion:.3g}")
+    0.327, 0.253
+    >>> fit.probability([0.2, 0.5]).round(3).tolist()
+    [0.125, 0.843]
     """
 
     b0: float
@@ -68,12 +78,12 @@ class LogisticFit(Value):
 
         return expit(self.b0 + self.b1 * log_at(im))
 
-    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
         """Lower and upper confidence limits of the probability: delta method on b0 + b1 log IM, then the curve."""
         from scipy.special import expit, ndtri
 
         x = log_at(im)
-        half = ndtri(0.5 + 0.5 * confidence(level)) * standard_error(x, self.covariance)
+        half = ndtri(0.5 + 0.5 * checked_confidence(confidence)) * standard_error(x, self.covariance)
         centre = self.b0 + self.b1 * x
         return expit(centre - half), expit(centre + half)
 
@@ -81,9 +91,10 @@ class LogisticFit(Value):
 def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     """Fit a logistic curve by maximum likelihood (Silva & Stojadinović 2024, Figure 5).
 
-    Where one measure parts the runs with the outcome from those without, the likelihood grows with the slope for ever.
-    The curve is then fitted with Firth's penalty, which is finite for any data (Firth 1993, Biometrika 80(1), 27-38;
-    Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419), and `method`, `separated` and `note` say so.
+    If one measure separates the runs with the outcome from those without, the likelihood increases with the slope
+    without limit. The curve is then fitted with Firth's penalty, which gives a finite slope for any data (Firth 1993,
+    Biometrika 80(1), 27-38; Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419), and `method`, `separated` and `note`
+    report it.
 
     Parameters
     ----------
@@ -97,6 +108,15 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     InputError
         If a measure is not positive and finite, all are the same, an outcome is neither true nor false, or all
         outcomes are alike.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [False, False, True, False, True, True])
+    >>> print(f"{fit.b0:.3g}, {fit.b1:.3g}")
+    4.42, 3.96
+    >>> fit.method
+    'maximum likelihood'
     """
     x = log_measures(im)
     y = flags("outcome", outcome)
@@ -105,68 +125,34 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
         alike = UnanimousOutcome(bool(y[0]), y.size)
         raise InputError(
             f"outcome is {alike.outcome} in all {alike.n} runs, so there is no curve to fit. {alike.note} "
-            "Add runs at other measures, or use fit_outcomes, which goes on with such a group."
+            "Add runs at other measures, or use fit_outcomes, which accepts such a group."
         )
     scaled = Standardised(x)
-    separated = is_separated(x, y)
-    found = None if separated else _maximum_likelihood(scaled, y)
-    method: Method = "maximum likelihood" if found else "Firth"
-    b0, b1, covariance = scaled.unscaled(*(found or _firth(scaled, y)))
+    unit = np.ones((1, x.size))
+    curve = fit_curves(scaled.x, y, unit, Scoring(CONVERGED / y.size, CONVERGED, augmented=True))
+    if not np.isfinite(curve.parameters).all():
+        raise SolverError(
+            f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
+            "Look for a single run far from all others."
+        )
+    covariance = np.linalg.inv(information(scaled.x, unit, curve.parameters)[0])
+    b0, b1, covariance = scaled.unscaled(curve.parameters[0], covariance)
+    separated = bool(curve.separated[0])
+    method: Method = "Firth" if curve.penalised[0] else "maximum likelihood"
     notes: list[str] = []
     if separated:
         low, high = _gap(x, y)
         notes.append(
-            f"Separated between im = {low:.4g} and {high:.4g}: no finite slope is the likeliest, so Firth's penalty "
-            "set it. Median and slope are known no better than that gap."
+            f"Separated between im = {low:.4g} and {high:.4g}: maximum likelihood has no finite slope, so "
+            "Firth's penalty was used. Median and slope are uncertain by the width of that gap."
         )
     elif method == "Firth":
-        notes.append("Nearly separated: maximum likelihood found no slope, so Firth's penalty set it.")
+        notes.append("Nearly separated: maximum likelihood did not converge, so Firth's penalty was used.")
     if b1 <= 0.0:
         notes.append(f"The probability does not rise with im (b1 = {b1:.3g}), so there is no median or dispersion.")
     return LogisticFit(b0, b1, covariance, y.size, int(y.sum()), method, separated, " ".join(notes))
 
 
-def is_separated(x: Float, y: Bool) -> bool:
-    """Whether some value of one regressor parts the outcomes, runs at that value aside (quasi-separation)."""
-    return bool(x[~y].max() <= x[y].min() or x[y].max() <= x[~y].min())
-
-
 def _gap(x: Float, y: Bool) -> tuple[float, float]:
     below, above = (~y, y) if x[~y].max() <= x[y].min() else (y, ~y)
     return math.exp(x[below].max()), math.exp(x[above].min())
-
-
-def _maximum_likelihood(scaled: Standardised, y: Bool) -> tuple[Float, Float] | None:
-    """Parameters and covariance; None where Newton's method does not arrive."""
-    from statsmodels.api import Logit
-    from statsmodels.tools.sm_exceptions import PerfectSeparationWarning
-
-    with warnings.catch_warnings(), np.errstate(over="ignore"):
-        warnings.simplefilter("ignore", PerfectSeparationWarning)  # runs in which the outcome is all but certain
-        try:
-            result = Logit(y.astype(np.float64), scaled.design).fit(disp=0, maxiter=100, warn_convergence=False)
-        except np.linalg.LinAlgError:
-            return None
-    parameters, covariance = np.asarray(result.params), np.asarray(result.cov_params())
-    arrived = result.mle_retvals["converged"] and np.isfinite(parameters).all() and np.isfinite(covariance).all()
-    return (parameters, covariance) if arrived else None
-
-
-def _firth(scaled: Standardised, y: Bool) -> tuple[Float, Float]:
-    from firthmodels import FirthLogisticRegression
-    from scipy.special import expit
-
-    # NumPy's backend: compiling the other takes longer than any study of one regressor.
-    model = FirthLogisticRegression(backend="numpy", max_iter=1000)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # `converged_` says the same
-        model.fit(scaled.x[:, None], y)
-    if not model.converged_:
-        raise SolverError(
-            f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
-            "Look for a single run far from all others."
-        )
-    parameters = np.array([model.intercept_, model.coef_[0]])
-    p = expit(scaled.design @ parameters)
-    information = (scaled.design.T * (p * (1.0 - p))) @ scaled.design
-    return parameters, np.asarray(np.linalg.inv(information), dtype=np.float64)

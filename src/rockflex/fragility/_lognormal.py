@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._checks import finite_matrix, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.fragility._arguments import confidence, fractions, log_at
+from rockflex.fragility._arguments import checked_confidence, fractions, log_at
 
 Float = NDArray[np.float64]
 
@@ -27,14 +27,21 @@ class LognormalFragility(Value):
     covariance : ndarray, shape (2, 2), or None
         Covariance of (ln median, beta), read-only; None where it is not known.
     n : int
-        Number of runs or records behind the curve; 0 for one that was given.
+        Number of runs or records in the fit; 0 for a curve that was given.
     method : str
-        How it was found.
+        Method of the fit.
 
     Raises
     ------
     InputError
         If the median or beta is not positive and finite, or the covariance is not a finite 2 by 2 matrix.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> curve = rf.LognormalFragility(median=0.5, beta=0.4)
+    >>> print(f"{curve.probability(0.3):.3g}, {curve.quantile(0.84):.3g}")
+    0.101, 0.744
     """
 
     median: float
@@ -63,7 +70,7 @@ class LognormalFragility(Value):
 
         return self.median * np.exp(self.beta * ndtri(fractions("p", p)))
 
-    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
         """Lower and upper confidence limits of the probability: delta method on ln(IM/median)/beta, then Φ.
 
         Raises
@@ -78,9 +85,9 @@ class LognormalFragility(Value):
         z = self._score(im)
         gradient = np.stack((np.full_like(z, -1.0), -z)) / self.beta
         error = np.sqrt(np.einsum("i...,ij,j...->...", gradient, self.covariance, gradient))
-        half = ndtri(0.5 + 0.5 * confidence(level)) * error
+        half = ndtri(0.5 + 0.5 * checked_confidence(confidence)) * error
         return ndtr(z - half), ndtr(z + half)
 
     def _score(self, im: ArrayLike) -> Float:
-        with np.errstate(over="ignore"):  # a dispersion of all but zero makes a step
+        with np.errstate(over="ignore"):  # a nearly zero dispersion makes a step
             return (log_at(im) - math.log(self.median)) / self.beta

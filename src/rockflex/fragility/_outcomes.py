@@ -20,11 +20,11 @@ from rockflex.fragility._unanimous import UnanimousOutcome
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
-FEW = 10  # runs below which a note is left
+FEW = 10  # fewer runs give a note
 
 
 class Note(str):
-    """A text to know before fits are used, and its `kind`: "runs", or the fit that it is about, such as "rocking"."""
+    """A warning about the fits, and its `kind`: "runs", or the fit that it concerns, such as "rocking"."""
 
     __slots__ = ("kind",)
     kind: str
@@ -37,7 +37,18 @@ class Note(str):
 
 @dataclass(frozen=True, eq=False)
 class OutcomeProbabilities(Value, Sequence[Float]):
-    """Probabilities of the three outcomes, which sum to 1; a sequence in this order."""
+    """Probabilities of the three outcomes, which sum to 1; a sequence in this order.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
+    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> p = outcomes.probabilities(0.5)
+    >>> print(f"{p.no_rocking + p.rocking + p.overturning:.3g}")
+    1
+    """
 
     no_rocking: Float
     rocking: Float
@@ -63,22 +74,33 @@ class OutcomeFragility(Value):
     overturning : LogisticFit or UnanimousOutcome
         P(overturning | IM), of all runs.
     rocking : LogisticFit, UnanimousOutcome or None
-        P(rocking | no overturning, IM), of the runs that stand. None where these cannot be fitted: all overturned, or
-        all that stand share one measure.
+        P(rocking | no overturning, IM), of the runs that did not overturn. None if it cannot be fitted: all runs
+        overturned, or all others share one measure.
     initiation : LogisticFit or UnanimousOutcome
         P(rocking or overturning | IM) as one curve of all runs, as in Figure 5. The total probability does not use it:
-        two logistic curves of their own may cross, so that what is left for rocking would be negative.
+        two independent logistic curves may cross, which would make the probability of rocking negative.
     rotation : CloudFit or None
-        log θ_max on log IM, of the runs that rocked and stand, as in Figure 6. None where these cannot be fitted.
+        log θ_max on log IM, of the runs that rocked without overturning, as in Figure 6. None if it cannot be fitted.
     threshold : float
-        Rotation in rad up to which a run counts as one without rocking.
+        A run counts as rocking if its rotation in rad is larger.
     highest_limit : float
-        Smallest rotation in rad of an overturned run, π/2 if there is none: overturning exceeds every limit below it.
+        Smallest rotation in rad of an overturned run, π/2 if there is none; they exceed every limit below it.
     n_no_rocking, n_rocking, n_overturned : int
         Runs of each outcome.
     notes : tuple of str
-        What to know before the fits are used: parts that rest on few runs, or could not be fitted. The `kind` of each
-        is ``"runs"`` or the attribute above that it is about.
+        Warnings about the fits: few runs, or curves that could not be fitted. The `kind` of each is ``"runs"`` or the
+        attribute above that it concerns.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
+    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> print(f"{outcomes.exceedance(0.5, 0.02):.3g}")
+    0.747
+    >>> outcomes.notes[0]
+    'Only 3 of 8 runs do not rock: fits of these runs are uncertain, see bootstrap_band.'
     """
 
     overturning: LogisticFit | UnanimousOutcome
@@ -102,8 +124,8 @@ class OutcomeFragility(Value):
     def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Float:
         """Probability that the rotation exceeds `limit` (rad) at `im`; the two broadcast.
 
-        P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking), all given IM; NaN where a factor that counts
-        could not be fitted (`notes` say which).
+        P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking), all given IM; NaN if a factor that matters
+        could not be fitted (see `notes`).
 
         Raises
         ------
@@ -114,11 +136,12 @@ class OutcomeFragility(Value):
         if (limits < self.threshold * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
             raise InputError(
                 f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was given. "
-                "Below, a run counts as one without rocking; above, overturned runs need not exceed it."
+                "Below, a run counts as not rocking; above, an overturned run need not exceed it."
             )
-        _, rocks, falls = self.probabilities(im)
+        falls = self.overturning.probability(im)
+        rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
         beyond = np.full_like(limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
-        return falls + _weighted(rocks, beyond)
+        return total_probability(falls, rocks, beyond)
 
 
 def fit_outcomes(
@@ -126,8 +149,8 @@ def fit_outcomes(
 ) -> OutcomeFragility:
     """Fit the three outcomes of a cloud of runs, and the rotations of those that rocked.
 
-    A group that is empty or small does not stop a study: its part becomes a constant with a one-sided bound, or None,
-    and `notes` say so.
+    An empty or small group is not an error: its curve becomes a constant with a one-sided bound, or None, and `notes`
+    report it.
 
     Parameters
     ----------
@@ -136,15 +159,26 @@ def fit_outcomes(
     rotation : array_like, shape (n,)
         Largest rotation θ_max of every run in rad, zero or more.
     overturned : array_like, shape (n,)
-        Whether the run overturned, by the definition of the caller: the rotation reached π/2, or passed the nominal
+        Whether the run overturned, by the caller's definition: the rotation reached π/2, or passed the nominal
         0.7 atan(B/h*_1) (columns `status` and `nominal_overturning` of a study).
     threshold
-        Rotation in rad up to which a run counts as one without rocking.
+        A run counts as rocking if its rotation in rad is larger.
 
     Raises
     ------
     InputError
         If a value is out of range, all measures are the same, or a run overturned with a rotation up to `threshold`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
+    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> outcomes.n_no_rocking, outcomes.n_rocking, outcomes.n_overturned
+    (3, 3, 2)
+    >>> outcomes.overturning.method
+    'Firth'
     """
     log_measures(im)
     measures = finite_vector("im", im, "one unit")
@@ -157,8 +191,8 @@ def fit_outcomes(
     rocked = stands & moves
     counts = int((~moves).sum()), int(rocked.sum()), int(falls.sum())
     notes = [
-        Note(f"Only {count} of {falls.size} runs {what}: what rests on them is uncertain, see bootstrap_band.")
-        for count, what in zip(counts, ("do not rock", "rock and stand", "overturn"), strict=True)
+        Note(f"Only {count} of {falls.size} runs {what}: fits of these runs are uncertain, see bootstrap_band.")
+        for count, what in zip(counts, ("do not rock", "rock without overturning", "overturn"), strict=True)
         if 0 < count < FEW
     ]
     return OutcomeFragility(
@@ -192,7 +226,7 @@ def _check(rotations: Float, falls: Bool, threshold: float) -> None:
 
 def _curve(name: str, im: Float, outcome: Bool, notes: list[Note]) -> LogisticFit | UnanimousOutcome | None:
     if outcome.size == 0:
-        notes.append(Note(f"{name}: no run stands, so there is nothing to fit.", name))
+        notes.append(Note(f"{name}: all runs overturned, so there is nothing to fit.", name))
         return None
     if outcome.all() or not outcome.any():
         alike = UnanimousOutcome(bool(outcome[0]), outcome.size)
@@ -216,6 +250,11 @@ def _cloud(im: Float, rotation: Float, notes: list[Note]) -> CloudFit | None:
         return None
 
 
+def total_probability(falls: Float, rocks: Float, beyond: Float) -> Float:
+    """P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking)."""
+    return falls + _weighted(_weighted(1.0 - falls, rocks), beyond)
+
+
 def _weighted(weight: Float, values: Float) -> Float:
-    """The product, with zero where the weight is: what cannot happen needs no fit."""
+    """The product; zero where the weight is zero, even if the value could not be fitted."""
     return np.where(weight == 0.0, 0.0, weight * values)[()]

@@ -1,4 +1,4 @@
-"""The straight line a + b ln(IM) under every fit: its standard error, and the scaling that keeps solvers well set."""
+"""The line a + b ln(IM) of every fit: its standard error, and the scaling that keeps solvers well conditioned."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,16 +7,21 @@ Float = NDArray[np.float64]
 
 
 class Standardised:
-    """Logarithms shifted and scaled to mean 0 and standard deviation 1, and the way back."""
+    """Logarithms scaled to mean 0 and standard deviation 1, and back."""
 
     def __init__(self, x: Float) -> None:
         mean, spread = float(x.mean()), float(x.std())
-        self.x = (x - mean) / spread
+        self._mean, self._spread = mean, spread
+        self.x = self.of(x)
         self.design = np.column_stack((np.ones(x.size), self.x))
         self._back = np.array([[1.0, -mean / spread], [0.0, 1.0 / spread]])
 
+    def of(self, x: Float) -> Float:
+        """Other logarithms on the same scale."""
+        return (x - self._mean) / self._spread
+
     def unscaled(self, parameters: Float, covariance: Float) -> tuple[float, float, Float]:
-        """Intercept, slope and covariance for the logarithms as they were given."""
+        """Intercept, slope and covariance for the original logarithms."""
         a, b = self._back @ parameters
         return float(a), float(b), self._back @ covariance @ self._back.T
 

@@ -26,15 +26,22 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
     im_levels : array_like, shape (k,)
         Intensity measure of every stripe, in any one unit.
     n_exceeding, n_total : array_like, shape (k,)
-        Runs of the stripe that exceed the limit or overturn, and all its runs.
+        Number of runs in each stripe that exceed the limit or overturn, and of all its runs.
 
     Raises
     ------
     InputError
-        If a level is not positive, a count is no whole number or larger than its total, the counts do not determine a
-        dispersion (one level parts all runs that exceed from all others), or the curve does not rise.
+        If a level is not positive, a count is not a whole number or exceeds its total, the counts do not determine a
+        dispersion (one level separates the runs that exceed the limit from the others), or the curve does not rise.
     SolverError
         If the fit does not converge.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_stripes([0.2, 0.4, 0.8], n_exceeding=[1, 4, 9], n_total=[10, 10, 10])
+    >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
+    0.427, 0.539
     """
     x = log_measures(im_levels, "im_levels")
     total, events = _counts("n_total", n_total, 1), _counts("n_exceeding", n_exceeding, 0)
@@ -52,7 +59,7 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
 
     scaled = Standardised(x)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PerfectSeparationWarning)  # stripes that are all but certain
+        warnings.simplefilter("ignore", PerfectSeparationWarning)  # stripes with probabilities close to 0 or 1
         family = families.Binomial(link=families.links.Probit())
         result = GLM(np.column_stack((events, total - events)), scaled.design, family=family).fit()
     if not (result.converged and np.isfinite(result.params).all()):
@@ -90,7 +97,7 @@ def _check_overlap(x: Float, events: Float, total: Float) -> None:
     if low <= high:
         between = f"at {low:.4g}" if low == high else f"between {low:.4g} and {high:.4g}"
         raise InputError(
-            f"The stripes are separated {between}: no run exceeds the limit below, all do above, and the likeliest "
-            "dispersion is zero. Add stripes near that level, or give the single runs to fit_logistic, which has a "
-            "penalty for this."
+            f"The stripes are separated {between}: no run exceeds the limit below, all do above, so the maximum-"
+            "likelihood dispersion is zero. Add stripes near that level, or pass the single runs to fit_logistic, "
+            "which uses a penalty for this."
         )

@@ -1,18 +1,18 @@
-"""Runs that all ended alike, from which only a one-sided bound follows."""
+"""Runs with one common outcome, which give only a one-sided bound."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex.fragility._arguments import confidence, log_at
+from rockflex.fragility._arguments import checked_confidence, log_at
 
 Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class UnanimousOutcome:
-    """An outcome that happened in every run, or in none; it stands in for a curve that cannot be fitted.
+    """An outcome that happened in every run, or in none; it replaces a curve that cannot be fitted.
 
     Attributes
     ----------
@@ -20,6 +20,13 @@ class UnanimousOutcome:
         Whether it happened in all runs, or in none.
     n : int
         Number of runs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> never = rf.UnanimousOutcome(outcome=False, n=44)
+    >>> print(f"{never.bound(0.95):.3g}")
+    0.0658
     """
 
     outcome: bool
@@ -27,27 +34,27 @@ class UnanimousOutcome:
 
     @property
     def note(self) -> str:
-        """What can be concluded, in words."""
+        """The conclusion in words."""
         side = "above" if self.outcome else "below"
         return (
-            f"What follows is a bound only: with 95 % confidence the probability, averaged over these runs, is {side} "
+            f"This gives only a bound: with 95 % confidence the probability, averaged over these runs, is {side} "
             f"{100.0 * self.bound(0.95):.3g} %."
         )
 
-    def bound(self, level: float = 0.95) -> float:
-        """Exact one-sided bound of the probability averaged over the runs, of confidence `level`.
+    def bound(self, confidence: float = 0.95) -> float:
+        """Exact one-sided bound of the probability averaged over the runs, with the given confidence.
 
-        Above, 1 - (1 - level)^(1/n), if it never happened; below, (1 - level)^(1/n), if it always did (Clopper &
-        Pearson 1934, Biometrika 26(4), 404-413).
+        An upper bound, 1 - (1 - confidence)^(1/n), if it never happened; a lower one, (1 - confidence)^(1/n), if it
+        always did (Clopper & Pearson 1934, Biometrika 26(4), 404-413).
         """
-        root = (1.0 - confidence(level)) ** (1.0 / self.n)
+        root = (1.0 - checked_confidence(confidence)) ** (1.0 / self.n)
         return root if self.outcome else 1.0 - root
 
     def probability(self, im: ArrayLike) -> Float:
         """1 or 0 as observed, of the shape of `im`."""
         return np.full_like(log_at(im), 1.0 if self.outcome else 0.0)
 
-    def band(self, im: ArrayLike, level: float = 0.9) -> tuple[Float, Float]:
-        """Observed value and its one-sided bound of confidence `level`, the same at every `im`."""
-        seen, bound = self.probability(im), np.full_like(log_at(im), self.bound(level))
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
+        """Observed value and its one-sided bound with the given confidence, the same at every `im`."""
+        seen, bound = self.probability(im), np.full_like(log_at(im), self.bound(confidence))
         return (bound, seen) if self.outcome else (seen, bound)

@@ -1,4 +1,4 @@
-"""One map over the chunks of a plan, on the workers of a Dask cluster that the user has started."""
+"""A map over the chunks of a plan, on the workers of a Dask cluster that the user has started."""
 # pyright: reportUnknownParameterType=false
 # (pyarrow comes without types)
 
@@ -25,7 +25,7 @@ AHEAD = 2  # chunks in flight for each thread of the cluster
 
 
 class ClusterError(RuntimeError):
-    """A cluster that failed on the way; what came back before is good, and the rest can be asked for again."""
+    """A cluster failed during the map; earlier chunks are valid, and the rest can be requested again."""
 
 
 class Plan(Protocol):
@@ -44,8 +44,8 @@ def map_dask(
 ) -> Generator[tuple[int, "pa.Table"]]:
     """Yield each number and ``plan.chunk(number)``, in order of completion, computed on a Dask cluster.
 
-    The plan travels to every worker once, and to workers that join later. Chunks of a worker that dies are computed on
-    another; each number is yielded once. Nothing is asked of the cluster before the first value is.
+    The plan is sent to every worker once, including workers that join later. If a worker dies, its chunks are computed
+    on another; each number is yielded once. The cluster is not contacted before the first value is requested.
 
     Parameters
     ----------
@@ -54,9 +54,9 @@ def map_dask(
     numbers
         Numbers of the chunks.
     address
-        Of the scheduler, such as ``"tcp://10.0.0.1:8786"``.
+        Address of the scheduler, such as ``"tcp://10.0.0.1:8786"``.
     retries
-        How often a chunk that raises is tried again.
+        How often a chunk that raises an error is tried again.
     patience
         Time in s for which the cluster may be without any worker; may be infinite.
 
@@ -69,7 +69,7 @@ def map_dask(
         If the scheduler is lost, no worker is left for longer than `patience`, or a chunk kills one worker after
         another.
     Exception
-        What a chunk raised, with a note that names it.
+        The error of a chunk, with a note that names the chunk.
     """
     again, limit = whole_number("retries", retries, 0), positive("patience", patience, "s", infinite=True)
     if not isinstance(address, str) or not address:  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -126,8 +126,8 @@ def _refuse_workers(client: Any, versions: dict[str, str]) -> None:
 
 
 def _leave(client: Any, name: str) -> None:
-    """Take the plan back from the workers, if there is still somebody to ask, and disconnect."""
-    with suppress(OSError, ValueError, KeyError, CancelledError):  # the plan may not have reached everybody
+    """Remove the plan from the workers if the cluster still answers, and disconnect."""
+    with suppress(OSError, ValueError, KeyError, CancelledError):  # the plan may not have reached every worker
         if client.status == "running":
             client.unregister_worker_plugin(name)
     with suppress(OSError):
@@ -150,8 +150,8 @@ def _connected(address: str) -> Any:
         raise InputError(
             f"A Dask cluster needs the package {error.name!r}. Install it by pip install 'rockflex[cluster]'."
         ) from error
-    # A client that could not connect closes when it is collected. Collected while another one starts, it would wait for
-    # a lock that this very thread holds, for ever: so it is collected before, and none while a client starts.
+    # A client that could not connect closes when it is collected. Collected while another one starts, it would wait
+    # for ever for a lock that this thread holds. It is therefore collected before, and none while a client starts.
     gc.collect()
     collects = gc.isenabled()
     gc.disable()
@@ -168,7 +168,7 @@ def _connected(address: str) -> Any:
 
 
 def _first(client: Any, futures: list[Any]) -> list[Any]:
-    """Those of the futures that are done, once one of them is or a while has passed."""
+    """The futures that are done, once one of them is or the time is up."""
     from distributed import wait
 
     if not futures:  # as there is no worker
@@ -210,9 +210,9 @@ def _scheduler_lost(address: str, done: int, total: int) -> Generator[None]:
     except (CancelledError, ClosedClientError, OSError) as error:
         raise ClusterError(
             f"The Dask scheduler at {address} was lost ({type(error).__name__}); {_count(done, total)}. What was "
-            "stored is kept. Start the cluster anew and run it again."
+            "stored is kept. Restart the cluster and run it again."
         ) from error
 
 
 def _count(done: int, total: int) -> str:
-    return f"{done} of the {total} chunks asked for had come back"
+    return f"{done} of the {total} chunks requested had come back"

@@ -1,4 +1,4 @@
-"""One map over tasks, on threads: the kernels hold no interpreter lock."""
+"""A map over tasks on threads: the kernels release the interpreter lock."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -24,8 +24,8 @@ def map_threads(
 ) -> Iterator[Result]:
     """Yield `function(task)` of every task, in order of completion; few tasks wait at a time.
 
-    When the map is left early, by an error, an interrupt or `close`, no further task begins, and those that run, at
-    most one a thread, are waited for. A consumer that can fail itself closes it by `contextlib.closing`.
+    When the map ends early, by an error, an interrupt or `close`, no further task starts, and the map waits for those
+    that run, at most one per thread. A consumer that may fail should close it by `contextlib.closing`.
 
     Parameters
     ----------
@@ -34,9 +34,9 @@ def map_threads(
     tasks
         Read as workers become free, so it may be endless.
     workers
-        Number of threads; None for one a core, 1 for no threads at all (to debug).
+        Number of threads; None for one per core, 1 for no threads (to debug).
     leaving
-        Called when the map ends, early or not, before the tasks that still run are waited for: to ask them to stop.
+        Called when the map ends, before it waits for the tasks that still run, in order to stop them.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What runs on the workers of a Dask cluster: a plan that waits there, and its chunks."""
+"""Code that runs on the workers of a Dask cluster: it stores a plan and computes its chunks."""
 
 import pickle
 import platform
@@ -14,10 +14,10 @@ PACKAGES = ("rockflex", "numpy", "scipy", "numba", "pyarrow", "distributed")  # 
 
 
 class PlanCarrier(WorkerPlugin):
-    """A pickled plan, which Dask hands to every worker, those that join later included.
+    """A pickled plan, which Dask sends to every worker, including those that join later.
 
-    A plan that every chunk depended on would draw all chunks to the worker that holds it, and scattered data die with
-    their workers.
+    If every chunk depended on the plan as a task, all chunks would go to the worker that holds it; and scattered data
+    die with their workers.
     """
 
     def __init__(self, content: bytes) -> None:
@@ -27,12 +27,12 @@ class PlanCarrier(WorkerPlugin):
         self.lock = Lock()
 
     def load(self) -> Any:
-        """Return the plan, unpickled at the first call.
+        """Return the plan, which is unpickled at the first call.
 
         Raises
         ------
         InputError
-            If its modules cannot be imported here, or are other ones.
+            If its modules cannot be imported here, or differ.
         """
         with self.lock or Lock():
             if self.plan is None:
@@ -47,7 +47,7 @@ class PlanCarrier(WorkerPlugin):
 
 
 def compute(name: str, number: int, versions: dict[str, str]) -> Any:
-    """Return a chunk of the plan that waits under `name`, if this worker has the right versions."""
+    """Return a chunk of the plan stored under `name`, if this worker has the right versions."""
     refuse_other_versions(_here(), installed_versions(), versions)
     plugin: Any = get_worker().plugins[name]
     return plugin.load().chunk(number)

@@ -1,4 +1,4 @@
-"""MDOF-S over 2DOF-S, pair by pair."""
+"""Peaks of MDOF-S over those of 2DOF-S."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -35,11 +35,12 @@ _EDGE = "#303030"
 
 
 def plot_agreement(pairs: "pd.DataFrame") -> Figure:
-    """Plot peaks of MDOF-S over those of 2DOF-S, a symbol a pair.
+    r"""Plot peaks of MDOF-S over those of 2DOF-S, one symbol per pair.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 9. Symbols tell the aspect ratio, their size the stories,
-    reds (shear) and blues (flexure) the period. R² is of the line of equality, c1 the slope of y = c1 x by least
-    squares, as in `population_statistics`. Pairs of which a model overturned are left out, and their number is said.
+    The figure is that of Silva & Stojadinović 2024, Fig. 9. Symbols show the aspect ratio, their size the number of
+    stories, reds (shear) and blues (flexure) the period. R² is that of the line of equality, c1 the slope of y = c1 x
+    by least squares, as in `population_statistics`. Pairs with an overturned model are left out, and their number is
+    given.
 
     Parameters
     ----------
@@ -49,13 +50,21 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Three axes, then one of keys and two scales: A, u_top,max in m of pairs without uplift; B and C, u_top,max in m
-        and θ_max in rad of those that rock.
+        Three axes, and one for the legend and two scales: A, u_top,max in m of pairs without uplift; B and C,
+        u_top,max in m and θ_max in rad of pairs that rock.
 
     Raises
     ------
     InputError
         If the table lacks a column, no pair was solved, or there are more aspect ratios than symbols.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("fema-p695-far-field")[:2], pairs=8)
+    >>> figure = rf.plot_agreement(pairs)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$u_{\\mathrm{top,max}}$, 2DOF-S [m]', '$u_{\\mathrm{top,max}}$, MDOF-S [m]')
     """
     groups = groups_of(pairs, _NEEDED)
     markers = _markers(pairs)
@@ -110,7 +119,7 @@ def _size(stories: Array) -> Array:
 def _write_keys(
     figure: Figure, axes: Axes, pairs: "pd.DataFrame", markers: dict[float, str], scale: Normalize, left_out: str
 ) -> None:
-    """Keys of symbols and sizes, the two scales of period, and which pairs are left out."""
+    """Legends of symbols and sizes, the two scales of period, and the number of pairs left out."""
     axes.axis("off")
     plain: dict[str, Any] = {"linestyle": "", "color": "white", "markeredgecolor": _EDGE, "markeredgewidth": 0.6}
     symbols = [Line2D([], [], marker=marker, markersize=5.0, label=f"{r:g}", **plain) for r, marker in markers.items()]

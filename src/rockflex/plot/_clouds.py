@@ -44,7 +44,7 @@ _CROSSES = 0.038  # and of the crosses
 
 
 class _Cloud(NamedTuple):
-    """The solved runs of one structure and model, and the line through those that rocked and stand, if there is one."""
+    """The solved runs of one structure and model, and the line through those that rocked without overturning."""
 
     structure: str
     model: str
@@ -63,12 +63,13 @@ def plot_clouds(
     threshold: float = ROCKED,
     nominal: bool = False,
 ) -> Figure:
-    """Plot the response of every run that rocked and stands over an intensity measure, a panel a structure.
+    r"""Plot the response of runs that rocked without overturning over an intensity measure, one panel per structure.
 
     The figure is that of Silva & Stojadinović 2024, Figs. 6 and 7: lines log(y) = c1 + c2 log(IM), with natural
-    logarithms, by least squares, and their dispersion σ. The numbers stand in the panel, with how many runs `n` rocked
-    and how many overturned (`OV`); those are crosses at the top, a row a model, as they have no peak to be shown. Where
-    there is no fit, as under motions of one intensity alone, the points stand without a line, and the panel says so.
+    logarithms, by least squares, and their dispersion σ. The panel lists these values, and the numbers of runs that
+    rocked (`n`) and overturned (`OV`). Overturned runs have no peak; they are crosses at the top, one row per model.
+    Where there is no fit, for instance with motions of a single intensity, the panel has points without a line and a
+    note.
 
     Parameters
     ----------
@@ -80,20 +81,30 @@ def plot_clouds(
     measure
         Column of the intensity measure.
     threshold
-        Rotation in rad up to which a run counts as one without rocking.
+        A run counts as rocking if its rotation in rad is larger.
     nominal
-        Count runs as overturned that pass 0.7 atan(B/h*_1), and not only those that reach π/2.
+        Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a structure, logarithmic both ways; rad or m over the measure in its unit.
+        One axes per structure, with logarithmic scales; rad or m over the measure in its unit.
 
     Raises
     ------
     InputError
         If the quantity is unknown, the table lacks a column or holds no solved run, a measure is not positive, or there
         are too many structures or models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
+    >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> figure = rf.plot_clouds(runs, measure="pga")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
     if quantity not in _QUANTITIES:
         raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")
@@ -128,7 +139,7 @@ def plot_clouds(
 
 
 def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool) -> list[_Cloud]:
-    """The clouds of all structures and models, in the order of the table."""
+    """Clouds of all structures and models, in the order of the table."""
     fits, _ = fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
     fit_of = {(fit.structure, fit.model): fit for fit in fits}
     _check_solved(runs[runs["status"].notna()], measure)
@@ -158,7 +169,7 @@ def _check_solved(solved: "pd.DataFrame", measure: str) -> None:
 def _set_limits(
     axes: Axes, rocked: "pd.DataFrame", seen: "pd.DataFrame", quantity: str, measure: str, n_models: int
 ) -> None:
-    """Room for all points, for a row of crosses a model above them, and for the numbers below."""
+    """Leave room for all points, a row of crosses per model above them, and the numbers below."""
     im = seen[measure].to_numpy(dtype=float)
     values = rocked[quantity].to_numpy(dtype=float)
     values = values[values > 0.0]
@@ -202,7 +213,7 @@ def _numbers(cloud: _Cloud) -> str:
 
 
 def _write(axes: Axes, rows: list[tuple[str, str]]) -> None:
-    """The numbers of all models, the first on top, in the lower right corner."""
+    """Write the numbers of all models, the first on top, in the lower right corner."""
     header = f"{'':9}{'c₁':>6}{'c₂':>6}{'σ':>6}{'n':>5}{'OV':>4}"
     width = max(len(text) for text, _ in rows)  # remarks stand behind, and move no column
     for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):

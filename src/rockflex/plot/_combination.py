@@ -1,4 +1,4 @@
-"""What the second mode adds: MDOF-S over 2DOF-S combined with the second mode on a fixed base."""
+"""The contribution of the second mode: MDOF-S over 2DOF-S combined with the second mode on a fixed base."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -21,7 +21,7 @@ _SYMBOLS = {"shear": ("o", ORANGE), "flexure": ("^", GREEN)}
 
 @dataclass(frozen=True)
 class _Panel:
-    """Columns of y, its estimate x, and the estimate by 2DOF-S alone; what all are divided by; names of the axes."""
+    """Columns of y, its estimate x, and the estimate by 2DOF-S only; the unit that divides all; names of the axes."""
 
     y: str
     x: str
@@ -51,11 +51,11 @@ _PANELS = (
 
 
 def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
-    """Plot peaks of MDOF-S over what 2DOF-S and the second mode on a fixed base say of them, a symbol a rocking pair.
+    r"""Plot peaks of MDOF-S over their estimates by 2DOF-S and the second mode on a fixed base, for pairs that rock.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 13; the estimates are the square root of the sum of squares
-    (SRSS, Section 3.4). R² is of the line of equality, for the estimate and for 2DOF-S alone; the blue line is
-    y = c1 x by least squares, as in `population_statistics`. Pairs of which a model overturned are left out.
+    (SRSS, Section 3.4). R² is of the line of equality, for the estimate and for 2DOF-S only; the blue line is
+    y = c1 x by least squares, as in `population_statistics`. Pairs with an overturned model are left out.
 
     Parameters
     ----------
@@ -71,6 +71,14 @@ def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
     ------
     InputError
         If the table lacks a column, or no pair was solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("fema-p695-far-field")[:2], pairs=8)
+    >>> figure = rf.plot_modal_combination(pairs)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$S_d(ω_2)$ [m]', '$D_{2,\\mathrm{max}}$, MDOF-S [m]')
     """
     needed = {name for panel in _PANELS for name in (panel.y, panel.x, panel.alone, panel.unit) if name}
     groups = groups_of(pairs, tuple(sorted(needed)))

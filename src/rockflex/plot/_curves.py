@@ -1,4 +1,4 @@
-"""Responses made ready to be drawn: checked, named, each with its own look, and what of an overturning run counts."""
+"""Responses prepared for figures: checked, named, each with its own line style, and cut before overturning."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class Curve:
 
     @property
     def order(self) -> float:
-        """Drawing order: the fewer modes the higher, and dashes over a line, as their gaps let it show through."""
+        """Drawing order: models with fewer modes on top, and dashes over solid lines, which show through the gaps."""
         modes = 2.0 + 1.0 / (1.0 + self.history.model.properties.n_modes) if self.lifts else 1.9
         return modes - 0.01 * (self.look.dashes == "-")
 
@@ -46,19 +46,19 @@ class Curve:
     def balance_rotation(self) -> float:
         """Rotation α in rad at which the static resisting moment vanishes, on the side where it is larger.
 
-        Infinite where tendons keep it from that.
+        Infinite if tendons prevent it.
         """
         return max(pivot.balance_rotation for pivot in self.history.model.properties.pivots)
 
     @property
     def balance(self) -> Array:
-        """The same on the side to which the rotation is, at each node."""
+        """The same, on the side of the rotation at each node."""
         p = self.history.model.properties
         return np.where(self.history.rotation < 0.0, p.pivot(-1).balance_rotation, p.pivot(1).balance_rotation)
 
     @property
     def uplifts(self) -> Array:
-        """Start and end of every time off the ground in s, shape (n_phases, 2), on whichever side."""
+        """Start and end of every uplift in s, shape (n_phases, 2), on either side."""
         h = self.history
         lifted = np.concatenate(([0], h.side != 0.0, [0]))
         starts, ends = np.flatnonzero(np.diff(lifted) > 0), np.flatnonzero(np.diff(lifted) < 0) - 1
@@ -66,13 +66,13 @@ class Curve:
 
     @property
     def falls(self) -> bool:
-        """Whether it passed the rotation of balance and was still beyond it, or overturned, when the run ended."""
+        """Whether it overturned, or was beyond the rotation of balance when the run ended."""
         beyond = np.abs(self.history.rotation) > self.balance
         return bool(beyond[-1] and not beyond.all())
 
     @property
     def before_fall(self) -> slice:
-        """Nodes until θ passes the rotation of balance for the last time; all of them if it does not fall."""
+        """Nodes until θ last passes the rotation of balance; all of them if it does not fall."""
         if not self.falls:
             return slice(None)
         inside = np.flatnonzero(np.abs(self.history.rotation) <= self.balance)
@@ -80,7 +80,7 @@ class Curve:
 
     @property
     def finished_rotation(self) -> float:
-        """Largest |θ| in rad, without the phase of rocking in which the structure falls."""
+        """Largest |θ| in rad, without the last phase of a structure that falls."""
         if not self.falls:
             return self.response.max_rotation
         contact = np.flatnonzero(self.history.side == 0.0)
@@ -88,7 +88,7 @@ class Curve:
 
 
 def rotation_limit(curves: list[Curve]) -> float:
-    """Largest |θ| in rad that an axis should hold; where all that rock fall, the rotation of balance too."""
+    """Largest |θ| in rad on an axis, including the rotation of balance if all that rock fall."""
     finished = max(curve.finished_rotation for curve in curves)
     fallen = [curve.balance_rotation for curve in curves if curve.falls]
     standing = any(curve.finished_rotation > 0.0 for curve in curves if not curve.falls)
@@ -96,7 +96,7 @@ def rotation_limit(curves: list[Curve]) -> float:
 
 
 def title_of(curves: list[Curve], title: str | None) -> str:
-    """The title given, or else the name of the motion if there is only one."""
+    """The title given, or the name of the motion if there is only one."""
     if title is not None:
         return title
     motions = {curve.response.motion for curve in curves}
@@ -104,12 +104,12 @@ def title_of(curves: list[Curve], title: str | None) -> str:
 
 
 def curves_of(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> list[Curve]:
-    """Check the responses, and give each a label and a look.
+    """Check the responses, and give each a label and a line style.
 
     Raises
     ------
     InputError
-        If there are none or too many, one of them is no response or has no history, or the labels do not fit.
+        If there are none or too many, one is not a response or has no history, or the labels do not match.
     """
     everything: list[Response] = [responses] if hasattr(responses, "history") else list(responses)  # pyright: ignore
     if not everything:
@@ -143,13 +143,13 @@ def _names(responses: "list[Response]", labels: Sequence[str] | None) -> list[st
     if isinstance(labels, str) or len(labels) != len(responses):
         given = f"the string {shown(labels)}" if isinstance(labels, str) else f"{len(labels)}"
         raise InputError(
-            f"labels must be a sequence of {len(responses)} strings, one a response, but {given} was given."
+            f"labels must be a sequence of {len(responses)} strings, one per response, but {given} was given."
         )
     return list(labels)
 
 
 def _looks(histories: "list[History]") -> list[Look]:
-    """Looks of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two; others for the rest."""
+    """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others."""
     most = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
     wanted = [_own_look(history, most) for history in histories]
     spare, looks = [look for look in LOOKS if look not in wanted], list[Look]()
@@ -157,7 +157,7 @@ def _looks(histories: "list[History]") -> list[Look]:
         if own is None or own in looks:
             if not spare:
                 raise InputError(
-                    f"{len(histories)} responses are too many to be told apart in one figure. Plot fewer at a time."
+                    f"{len(histories)} responses are too many to distinguish in one figure. Plot fewer at a time."
                 )
             own = spare.pop(0)
         looks.append(own)

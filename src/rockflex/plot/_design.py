@@ -1,4 +1,4 @@
-"""Designs of a base: the probability, or the annual rate, of exceeding a limit over the half width."""
+"""Probability or annual rate of exceeding a limit over the half width of the base."""
 
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -37,7 +37,7 @@ _DECADES = 4.0  # of rates below the largest that are shown, or below the target
 
 
 class _Value(NamedTuple):
-    """The column that is drawn, its name on the axis, and whether that axis is logarithmic."""
+    """The column plotted, its name on the axis, and whether that axis is logarithmic."""
 
     column: str
     name: str
@@ -45,30 +45,42 @@ class _Value(NamedTuple):
 
 
 def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithmic: bool | None = None) -> Figure:
-    """Plot the probability, or the annual rate, of exceeding a limit over the half width, a curve a tendon.
+    r"""Plot the probability, or the annual rate, of exceeding a limit over the half width, one curve per tendon.
 
     Symbols are the designs, bands those of the table. With a target, a ring marks where each curve meets it, as
-    `smallest_width` finds it, and the half widths are written. A model has a panel; the axis on top is h*_1/B.
+    found by `smallest_width`, and the half widths are listed. Each model has a panel; the axis at the top is h*_1/B.
 
     Parameters
     ----------
     table
-        What `design_table` returned.
+        The table of `design_table`.
     target
         Largest probability, or annual rate, to be met.
     logarithmic
-        Whether the axis of the values is logarithmic, without the values that are zero. Default: for rates.
+        Whether the axis of the values is logarithmic, which leaves out zeros. Default: only for rates.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a model, over the half width in m.
+        One axes per model, over the half width in m.
 
     Raises
     ------
     InputError
-        If the table lacks a column, has no rows or more than one limit to say, the target is not positive, or there
+        If the table lacks a column, has no rows or several kinds of limit, the target is not positive, or there
         are too many models or tendons.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> table = rf.design_table(runs, 0.005, at=0.5, confidence=None)
+    >>> figure = rf.plot_design(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('half width $B$ [m]', 'P($θ_{\\mathrm{max}}>0.005\\ \\mathrm{rad}$)')
     """
     value = "rate" if "rate" in getattr(table, "columns", ()) else "probability"
     check_columns(table, (*_NEEDED, value), _SOURCE)
@@ -110,7 +122,7 @@ def _of(table: "pd.DataFrame", model: str, tendon: str | None = None) -> "pd.Dat
 
 
 def _words(table: "pd.DataFrame", value: str) -> str:
-    """What is drawn, for the axis: one limit in rad, one multiple of 0.7 atan(B/h*_1), or overturning."""
+    """Name of the values on the axis: one limit in rad, one multiple of 0.7 atan(B/h*_1), or overturning."""
     limits, nominal = table["limit"].to_numpy(float), 0.7 * np.arctan(1.0 / table["aspect_ratio"].to_numpy(float))
     known = np.isfinite(limits)
     event = "limit"
@@ -142,7 +154,7 @@ def _draw(axes: Axes, rows: "pd.DataFrame", drawn: _Value, look: Look, marker: s
 
 
 def _answer(axes: Axes, found: "pd.DataFrame", looks: dict[str, tuple[Look, str]], target: float) -> None:
-    """A ring where each curve meets the target, and the half widths in words."""
+    """Draw a ring where each curve meets the target, and list the half widths."""
     lines: list[tuple[str, str]] = []
     for row in found.to_dict("records"):
         look, _ = looks[str(row["tendon"])]
@@ -180,7 +192,7 @@ def _limits(panels: list[Axes], table: "pd.DataFrame", drawn: _Value, target: fl
 
 
 def _slenderness(axes: Axes, table: "pd.DataFrame") -> None:
-    """h*_1/B along the top."""
+    """Draw the axis of h*_1/B at the top."""
     height = float((table["half_width"] * table["aspect_ratio"]).iloc[0])
     if not height > 0.0:
         return

@@ -24,12 +24,12 @@ _LAYERS = (
 
 
 def plot_energy(response: "Response") -> Figure:
-    """Plot where the energy is and where it went, stacked, under what the ground put in.
+    """Plot the stored and dissipated energies, stacked, and the input energy.
 
     The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
-    Eqs. 15, 23 and 25). In sum they meet the line of the input, which starts from the energy at t = 0; the title
-    states how closely. A run that overturns is drawn until θ passes for the last time the rotation at which the
-    static resisting moment vanishes: from there the weight pulls it over.
+    Eqs. 15, 23 and 25). Their sum equals the input, which starts from the energy at t = 0; the title
+    gives the difference. A run that overturns is plotted until θ last passes the rotation at which the static
+    resisting moment vanishes, beyond which the weight overturns it.
 
     Parameters
     ----------
@@ -39,12 +39,22 @@ def plot_energy(response: "Response") -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        One axes; time in s, energy in the unit that suits its size. Layers that stay empty are left out.
+        One axes; time in s, energy in a unit that suits its size. Empty layers are left out.
 
     Raises
     ------
     InputError
         If the response has no history.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_energy(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('time [s]', 'energy [kJ]')
     """
     (curve,) = curves_of([response])
     history = curve.history

@@ -27,40 +27,50 @@ def plot_fragility(
     clouds: "pd.DataFrame | Sequence[CloudFits]",
     measure: str | None = None,
     *,
-    level: float | None = None,
+    confidence: float | None = None,
     overturning: bool = False,
     bins: SupportsIndex = 0,
 ) -> Figure:
-    """Plot the probability that a structure rocks over an intensity measure, a panel a structure, a curve a model.
+    r"""Plot the probability of rocking over an intensity measure, one panel per structure and one curve per model.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of θ_max > 1e-4 rad. Where all runs rock,
-    or none, the line is flat; left of the weakest motion, in the shade, curves are extrapolated. For another threshold
-    give what `fit_clouds` returned with it.
+    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of θ_max > 1e-4 rad. If all runs
+    rock, or none, the line is flat. In the shaded range, below the weakest motion, curves are extrapolated. For another
+    threshold, pass the result of `fit_clouds`.
 
     Parameters
     ----------
     clouds
-        The table of a cloud study, such as `run_cloud` returns, or what `fit_clouds` made of it.
+        The table of a cloud study, such as that of `run_cloud`, or the result of `fit_clouds`.
     measure
         Column of the intensity measure; default: ``"pgv"``, or the measure of the fits.
-    level
+    confidence
         Confidence of bands around the curves, between 0 and 1. Default: no bands.
     overturning
         Whether to draw the probability of overturning too, as thin lines.
     bins
-        Number of groups, of equally many runs of neighbouring intensities, whose fraction of rocking runs is marked;
-        needs the table. Default: none.
+        Number of groups of equally many runs, sorted by intensity, for which the fraction of rocking runs is marked;
+        requires the table. Default: none.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a structure, over the measure in its unit.
+        One axes per structure, over the measure in its unit.
 
     Raises
     ------
     InputError
-        If the table lacks a column or holds no solved run of a structure and model, the fits are of several measures or
-        of another one, bins are asked of fits, or there are too many structures or models.
+        If the table lacks a column or holds no solved run of a structure and model, the fits use several measures or
+        another one, bins are given with fits, or there are too many structures or models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
+    >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> figure = rf.plot_fragility(runs, "pga")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGA [m/s²]', '$P(θ_{\\mathrm{max}}>10^{-4}\\ \\mathrm{rad})$')
     """
     groups = whole_number("bins", bins, 0)
     fits, runs = _fits(clouds, measure, groups)
@@ -73,7 +83,7 @@ def plot_fragility(
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
                 look, marker = looks[fit.model]
-                _draw(axes, fit, look, limit, level, overturning=overturning)
+                _draw(axes, fit, look, limit, confidence, overturning=overturning)
                 if runs is not None and groups:
                     _mark(axes, _of(runs, fit), fit, marker, look.color, groups)
             if runs is not None:
@@ -98,7 +108,7 @@ def plot_fragility(
 def _fits(
     clouds: "pd.DataFrame | Sequence[CloudFits]", measure: str | None, groups: int
 ) -> "tuple[list[CloudFits], pd.DataFrame | None]":
-    """The fits, and the solved runs where they are known."""
+    """The fits, and the solved runs if they are known."""
     if hasattr(clouds, "columns"):
         runs: pd.DataFrame = clouds  # pyright: ignore[reportAssignmentType]
         found = fit_clouds(runs, measure or "pgv")
@@ -125,7 +135,7 @@ def _of(runs: "pd.DataFrame", fit: CloudFits) -> "pd.DataFrame":
 
 
 def _limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
-    """End of the axis: where the curves of rocking have arrived, or the strongest motion if all is to be shown."""
+    """End of the axis: where the curves of rocking approach 1, or the strongest motion if overturning is shown."""
     ends: list[float] = []
     for fit in fits:
         rocks, falls = fit.outcomes.initiation, fit.outcomes.overturning
@@ -139,14 +149,14 @@ def _limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -
     return strongest if whole else min(max(ends, default=strongest), strongest)
 
 
-def _draw(axes: Axes, fit: CloudFits, look: Look, limit: float, level: float | None, *, overturning: bool) -> None:
+def _draw(axes: Axes, fit: CloudFits, look: Look, limit: float, confidence: float | None, *, overturning: bool) -> None:
     im = np.linspace(limit / _POINTS, limit, _POINTS)
     curves = [(fit.outcomes.initiation, 1.2, fit.model)]
     if overturning:
         curves.append((fit.outcomes.overturning, 0.6, "_overturning"))
     for curve, width, label in curves:
-        if level is not None:
-            low, high = curve.band(im, level)
+        if confidence is not None:
+            low, high = curve.band(im, confidence)
             axes.fill_between(im, low, high, color=look.color, alpha=0.13, linewidth=0.0, label="_band")
         axes.plot(im, curve.probability(im), color=look.color, linestyle=look.dashes, linewidth=width, label=label)
 

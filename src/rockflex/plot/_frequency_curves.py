@@ -1,4 +1,4 @@
-"""The frequency equation of uplifted structures, and where it crosses zero."""
+"""The frequency equation of uplifted structures, and its zeros."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -36,33 +36,42 @@ def plot_frequency_equation(
     highest: float | None = None,
     side: int | None = None,
 ) -> Figure:
-    """Plot the frequency equation of an uplifted structure over ω, a curve a model, and mark its zeros.
+    r"""Plot the frequency equation of an uplifted structure over ω, one curve per model, and mark its zeros.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 12. The ordinate is `frequency_equation` over I_θ ω_1², which
-    moves no zero. Dotted lines stand at the frequencies ω_n of the fixed base, where the equation has poles and the
-    curves are broken. The first two zeros of each model, ω*_n/ω_1, stand beside the panel.
+    does not change the zeros. Dotted lines mark the fixed-base frequencies ω_n, where the equation has poles and the
+    curves are interrupted. The first two zeros of each model, ω*_n/ω_1, are listed beside the panel.
 
     Parameters
     ----------
     structures
-        A structure or its `RockingProperties`, or several by their names, a panel each.
+        A structure or its `RockingProperties`, or several by name, one panel each.
     n_modes
-        Modes to keep, a curve each: 1 for 2DOF-S, 2 for 3DOF-S, None for all.
+        Numbers of modes, one curve each: 1 for 2DOF-S, 2 for 3DOF-S, None for all.
     highest
         Upper end of the axis, ω/ω_1. Default: beyond the second zero of every model.
     side
         1 for motion about the right edge of the base, -1 about the left one. Default: the edge about which the base
-        lifts first; both are alike if the structure is symmetric.
+        lifts first; both are equal if the structure is symmetric.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a structure; no units.
+        One axes per structure; no units.
 
     Raises
     ------
     InputError
-        If there is no structure, one has no modes or not as many, `highest` is not positive, or `side` is neither.
+        If there is no structure, one has too few modes, `highest` is not positive, or `side` is neither.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_frequency_equation(frame)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$ω/ω_1$', 'frequency equation / $I_θ\\,ω_1^2$')
     """
     named = structures if isinstance(structures, Mapping) else {"": structures}
     if not named or not len(n_modes):

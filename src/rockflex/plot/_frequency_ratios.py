@@ -32,33 +32,43 @@ def plot_frequency_ratios(
     modes: Sequence[SupportsIndex] = (1, 2),
     mark: float | None = 10.0,
 ) -> Figure:
-    """Plot ω*_n/ω_n over the aspect ratio h*_1/B, a panel a mode.
+    """Plot ω*_n/ω_n over the aspect ratio h*_1/B, one panel per mode.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 10. Models differ by colour, structures by dashes. A blue line
-    with its value is the frequency ratio of the pinned beam, to which all modes of a structure with its mass spread
-    evenly tend as the base narrows; fewer modes go beyond it.
+    with its value is the frequency ratio of the pinned beam, which a structure of evenly distributed mass with all its
+    modes approaches as the base narrows; models with fewer modes exceed it.
 
     Parameters
     ----------
     tables
-        From `frequency_ratios`: one, or several by their names, four at most.
+        A table of `frequency_ratios`, or up to four by name.
     limits
-        From `pinned_beam`, by the same names.
+        Results of `pinned_beam`, by the same names.
     modes
-        Which modes to show, counted from 1.
+        Modes to show, counted from 1.
     mark
         Aspect ratio of a vertical gray line; None for none.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a mode, over a logarithmic axis; no units.
+        One axes per mode, over a logarithmic axis; no units.
 
     Raises
     ------
     InputError
-        If no mode is given, a table lacks a column or has no row of a mode, a limit belongs to no table or has not as
-        many modes, or there are more tables than can be told apart.
+        If no mode is given, a table lacks a column or has no row of a mode, a limit belongs to no table or has too
+        few modes, or there are too many tables to distinguish.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> table = rf.frequency_ratios(frame, [2.0, 4.0, 8.0])
+    >>> figure = rf.plot_frequency_ratios(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$h^*_1/B$', '$ω^*_{1}/ω_{1}$')
     """
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     bounds = limits if isinstance(limits, Mapping) else {} if limits is None else dict.fromkeys(named, limits)
@@ -88,7 +98,7 @@ def plot_frequency_ratios(
 
 
 def _draw(axes: Axes, table: "pd.DataFrame", mode: int, looks: dict[str, Look], dashes: Dashes) -> float:
-    """One curve a model that has the mode; return the largest ordinate."""
+    """Draw one curve per model that has the mode; return the largest ordinate."""
     top = 1.0
     for model, look in looks.items():
         rows = table[(table["model"] == model) & (table["mode"] == mode)].sort_values("aspect_ratio")

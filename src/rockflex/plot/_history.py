@@ -1,4 +1,4 @@
-"""Response histories of several models, a panel a quantity."""
+"""Response histories of several models, one panel per quantity."""
 
 from collections.abc import Iterable, Sequence
 from string import ascii_uppercase
@@ -26,40 +26,50 @@ def plot_history(
     panels: Sequence[str] | None = None,
     title: str | None = None,
 ) -> Figure:
-    """Plot rotation θ, displacements of the top, base moment M_b and base shear V_b over time, a panel each.
+    """Plot rotation θ, displacements of the top, base moment M_b and base shear V_b over time, one panel each.
 
     With ``panels=("rotation", "top_displacement", "base_moment", "base_shear")`` the figure is that of Silva &
-    Stojadinović 2024, Fig. 15; with the first two, that of Figs. 3 and 4. Their u_top is relative to the base, which
-    turns; the total one is relative to the ground, and the one to compare with a fixed base. The time in which
-    the base of the most detailed model is uplifted is shaded; where several models rock, a bar for each at the foot of
-    the first panel shows when. Circles mark the true peaks, which stand with their times beside each panel. The phase
-    in which a structure overturns does not stretch the axes: a triangle shows where its rotation leaves its panel, and
-    a dotted line when |θ| = π/2.
+    Stojadinović 2024, Fig. 15; with the first two, that of Figs. 3 and 4. Their u_top is relative to the rotating base;
+    the total displacement is relative to the ground, and comparable with a fixed base. The times during which the base
+    of the most detailed model is uplifted are shaded; if several models rock, bars at the bottom of the first panel
+    show the uplifts of each. Circles mark the true peaks, which are listed with their times beside each panel.
+    Overturning does not extend the axes: a triangle marks where the rotation leaves its panel, and a dotted line when
+    |θ| = π/2.
 
     Parameters
     ----------
     responses
         One response or several, each with its history, of one structure or of several.
     labels
-        A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
+        A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     panels
         Which of ``"rotation"``, ``"top_displacement"``, ``"total_top_displacement"``, ``"base_moment"``,
         ``"base_shear"`` and ``"horizontal_reaction"``, from the top. Default: all but the last; without the total
-        displacement where the height of the top is not known.
+        displacement if the height of the top is not known.
     title
         Default: the name of the motion, if there is only one.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a panel over one time axis in s; θ in rad, displacements in m, M_b and V_b in the unit that suits their
-        size.
+        One axes per panel over a common time axis in s; θ in rad, displacements in m, M_b and V_b in units that suit
+        their size.
 
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, there is not one label a response, or a panel is
+        If there are no responses or too many, one has no history, the number of labels differs, or a panel is
         unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_history(response, panels=["rotation", "base_moment"])
+    >>> len(figure.axes), figure.axes[1].get_xlabel()
+    (2, 'time [s]')
     """
     curves = curves_of(responses, labels)
     quantities = quantities_of(usual_panels(curves) if panels is None else panels)
@@ -88,7 +98,7 @@ def plot_history(
 
 
 def shade_uplifts(panels: list[Axes], curves: list[Curve]) -> Curve | None:
-    """Shade the uplift of the most detailed model, and return it."""
+    """Shade the uplifts of the most detailed model, and return that model."""
     rocking = [curve for curve in curves if curve.uplifts.size]
     if not rocking:
         text = "no uplift" if any(curve.lifts for curve in curves) else "fixed base"
@@ -108,7 +118,7 @@ def shade_uplifts(panels: list[Axes], curves: list[Curve]) -> Curve | None:
 
 
 def _draw_spans(axes: Axes, curve: Curve, bottom: float, height: float, color: str, order: float) -> None:
-    """Bar over every phase of rocking; bottom and height are shares of the panel."""
+    """Draw a bar over every phase of rocking; bottom and height are fractions of the panel."""
     spans = [(float(start), float(end - start)) for start, end in curve.uplifts]
     axes.broken_barh(
         spans, (bottom, height), transform=axes.get_xaxis_transform(), color=color, linewidth=0.0, zorder=order

@@ -1,4 +1,4 @@
-"""Incremental dynamic analysis: curves of all records, and the capacities that they end at."""
+"""Incremental dynamic analysis: curves of all records, and their capacities."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -29,7 +29,7 @@ _SOURCE = "what run_incremental returned"
 
 
 class _Capacities(NamedTuple):
-    """Capacities of the records of one structure and model, which of them are bounds only, and the curve through."""
+    """Capacities of the records of one structure and model, which of them are only bounds, and the fitted curve."""
 
     reached: Array
     censored: NDArray[np.bool_]
@@ -37,32 +37,44 @@ class _Capacities(NamedTuple):
     fit: LognormalFragility | None
 
 
-def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, level: float | None = 0.9) -> Figure:
-    """Plot θ_max over an intensity measure, a curve a record, with the capacities beside, a row a structure and model.
+def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | None = 0.9) -> Figure:
+    r"""Plot θ_max over an intensity measure, one curve per record, next to the capacities.
 
-    Curves are broken where a run overturns, by the limit of the study; the first such run is a red cross at the top.
-    Runs that stand at a larger scale than one that overturned ("resurrections", Vamvatsikos & Cornell 2002) are open
-    symbols. Beside, as steps, the fraction of records that have overturned (the Kaplan-Meier estimate where some never
-    did), and the lognormal curve of `fit_capacities`.
+    Each structure and model has a row of two panels.
+
+    Curves are interrupted where a run overturns, by the limit of the study; the first such run is a red cross at the
+    top. Runs that do not overturn at a larger scale than one that did ("resurrections", Vamvatsikos & Cornell 2002)
+    are open symbols. The right panel has the fraction of overturned records as steps (the Kaplan-Meier estimate if
+    some never overturned), and the lognormal curve of `fit_capacities`.
 
     Parameters
     ----------
     runs
-        The table of an incremental study, such as `run_incremental` returns.
+        The table of an incremental study, such as that of `run_incremental`.
     measure
         Column of the intensity measure.
-    level
+    confidence
         Confidence of the band around the lognormal curve, between 0 and 1; None for no band.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Two axes a structure and model, over the measure in its unit: θ_max in rad, and probability.
+        Two axes per structure and model, over the measure in its unit: θ_max in rad, and probability.
 
     Raises
     ------
     InputError
         If the table lacks a column or has no rows, the measure is unknown, or there are too many structures and models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
+    >>> runs = rf.run_incremental(structure, motions, "rigid", growth=1.5)
+    >>> figure = rf.plot_ida(runs)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
     check_columns(runs, (*_NEEDED, measure), _SOURCE)
     from rockflex.study.plans import incremental_capacities
@@ -81,7 +93,7 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, level: float | None 
             left, right = grid[row]
             found = _capacities(_of(capacities, structure, model))
             failed = _draw_curves(left, _of(runs, structure, model), measure)
-            _draw_capacities(right, found, level, failed)
+            _draw_capacities(right, found, confidence, failed)
             left.set_title(literal(f"{structure}, {model}"))
             left.set_ylabel(r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
@@ -109,14 +121,14 @@ def _capacities(rows: "pd.DataFrame") -> _Capacities:
 
 
 def _limit(runs: "pd.DataFrame", capacities: "pd.DataFrame", measure: str) -> float:
-    """End of the axis: a little beyond the last capacity and the last run that stood."""
+    """End of the axis: a little beyond the last capacity and the last run that did not overturn."""
     stood = runs[runs["overturned"].notna() & ~runs["overturned"].fillna(True).astype(bool)]
     ends = [float(values.max()) for values in (stood[measure], capacities["capacity"]) if values.notna().any()]
     return 1.05 * max(ends, default=1.0)
 
 
 def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
-    """A curve a record; return how many runs failed."""
+    """Draw one curve per record; return how many runs failed."""
     top = 0.0
     for _, ladder in runs.groupby("motion", observed=True, sort=False):
         solved = ladder[ladder["overturned"].notna()].sort_values("scale", kind="stable")
@@ -145,8 +157,8 @@ def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
     return int(runs["overturned"].isna().sum())
 
 
-def _draw_capacities(axes: Axes, found: _Capacities, level: float | None, failed: int) -> None:
-    """Steps of the observed fraction, the lognormal curve, and the numbers."""
+def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, failed: int) -> None:
+    """Draw steps of the observed fraction, the lognormal curve, and the numbers."""
     axes.set_ylim(-0.03, 1.03)
     lines = [f"{found.reached.size} records"]
     if found.censored.any():
@@ -158,8 +170,8 @@ def _draw_capacities(axes: Axes, found: _Capacities, level: float | None, failed
         end = float(found.reached.max()) * 1.3
         im = np.linspace(end / _POINTS, end, _POINTS)
         axes.plot(im, found.fit.probability(im), color=RED, linestyle="--", linewidth=1.1, label="_fit")
-        if level is not None:
-            axes.fill_between(im, *found.fit.band(im, level), color=RED, alpha=0.13, linewidth=0.0, label="_band")
+        if confidence is not None:
+            axes.fill_between(im, *found.fit.band(im, confidence), color=RED, alpha=0.13, linewidth=0.0, label="_band")
         lines.append(f"median {short(found.fit.median)}, β = {found.fit.beta:.2f}")
     lines.append(f"{found.resurrected} with resurrections")
     if failed:
@@ -171,7 +183,7 @@ def _draw_capacities(axes: Axes, found: _Capacities, level: float | None, failed
 
 
 def _observed(found: _Capacities) -> tuple[Array, Array]:
-    """Capacities and the fraction of records up to each, those that never overturned counted as long as they stood."""
+    """Capacities and the fraction of records up to each; records that never overturned are censored."""
     from scipy.stats import CensoredData, ecdf
 
     sample = CensoredData(uncensored=found.reached[~found.censored], right=found.reached[found.censored])

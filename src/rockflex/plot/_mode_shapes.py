@@ -20,28 +20,37 @@ class _HasModes(Protocol):
 
 
 def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: int | None = None) -> Figure:
-    """Plot the mode shapes Γ_n φ_n over the height, a panel each.
+    """Plot the mode shapes Γ_n φ_n over the height, one panel each.
 
-    Over each panel stand T_n, m*_n and h*_n (Silva & Stojadinović 2024, Section 2.1, after Eq. 12); m*_n as a share of
-    the mass above the base, or in kg where modes are missing and the share is not known. Γ_n φ_n is free of the
-    normalisation of φ_n, and sums to 1 at every height over all modes.
+    The title of each panel gives T_n, m*_n and h*_n (Silva & Stojadinović 2024, Section 2.1, after Eq. 12), with m*_n
+    as a fraction of the mass above the base, or in kg if modes are missing and the fraction is unknown. Γ_n φ_n does
+    not depend on the normalisation of φ_n, and sums to 1 at every height over all modes.
 
     Parameters
     ----------
     structure_or_modal
         A structure with modes, such as a `Frame`, or its `ModalProperties`.
     n_modes
-        How many modes to show, the lowest first. Default: all.
+        Number of modes to show, the lowest first. Default: all.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a mode, five a row; heights in m, Γ_n φ_n without unit.
+        One axes per mode, five per row; heights in m, Γ_n φ_n without unit.
 
     Raises
     ------
     InputError
-        If what is given has no modes, or not as many.
+        If the argument has no modes, or too few.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_mode_shapes(frame, n_modes=2)
+    >>> len(figure.axes), figure.axes[0].get_ylabel()
+    (2, 'height [m]')
     """
     modes = _modes_of(structure_or_modal)
     # With all modes, and with no fewer, a unit translation is the sum of what they take of it.

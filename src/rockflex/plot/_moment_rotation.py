@@ -28,28 +28,38 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
     """Plot the base moment M_b over the rotation θ, and the static resisting moment of the simplified models.
 
     The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
-    tendons add their prestress to M_r and their stiffness k_t to the slope, and each side has its own where the base is
-    eccentric or the tendons are not symmetric. M_b is that of the elastic forces, and departs from it by the inertia of
-    the rotation and by damping. Responses of a base that cannot lift have no rotation and are left out. The phase in
-    which a structure overturns does not stretch the axes.
+    tendons add their prestress to M_r and their stiffness k_t to the slope, and the two sides differ if the base is
+    eccentric or the tendons are not symmetric. M_b is the moment of the elastic forces; it differs from the resisting
+    moment by rotational inertia and damping. Responses on a fixed base have no rotation and are left out. Overturning
+    does not extend the axes.
 
     Parameters
     ----------
     responses
         One response or several, each with its history.
     labels
-        A name for each response. Default: the models, with the motions where a model occurs twice.
+        A name for each response. Default: the models, with the motions if a model occurs twice.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a response, three a row, with common scales; θ in rad, M_b in the unit that suits its size.
+        One axes per response, three per row, with common scales; θ in rad, M_b in a unit that suits its size.
 
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, there is not one label a response, or no base
-        can lift.
+        If there are no responses or too many, one has no history, the number of labels differs, or no base can
+        lift.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_moment_rotation(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('', '')
     """
     curves = [curve for curve in curves_of(responses, labels) if curve.lifts]
     if not curves:
@@ -84,13 +94,13 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
 
 
 def _whole_line(curve: Curve) -> float:
-    """Rotation up to which the static line is worth showing: where it ends, if it does."""
+    """Rotation up to which the static line is shown: where the moment vanishes, if it does."""
     balance = curve.balance_rotation
     return balance if math.isfinite(balance) else curve.history.model.properties.nominal_overturning_rotation
 
 
 def _largest_moment(curve: Curve) -> float:
-    """Largest of the moments that the axes must hold: the static one, and M_b but for a fall."""
+    """Largest moment on the axes: of the static moment, and of M_b without overturning."""
     moment = curve.response.max_base_moment
     if curve.falls:
         moment = float(np.max(np.abs(curve.history.base_moment[curve.before_fall])))

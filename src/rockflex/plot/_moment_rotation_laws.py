@@ -1,4 +1,4 @@
-"""Base moment over rotation as the models have it, of a pinned beam and of a rocking base."""
+"""Static base moment over rotation of a pinned beam and of a rocking base."""
 
 import math
 
@@ -21,8 +21,8 @@ def plot_moment_rotation_laws(
     """Plot the static base moment over the rotation: of a pinned beam on a spring, and of the rocking structure.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 11: M = k_r θ, and M = ±(M_r + k |θ|) with the slope
-    k = -L_0^r g, to which tendons add theirs. While the base stands, M is anything between -M_r and M_r. An eccentric
-    base, or one whose tendons are not symmetric, has its own M_r and k on either side.
+    k = -L_0^r g, to which tendons add theirs. While the base stands, M is anything between -M_r and M_r. For an
+    eccentric base, or tendons that are not symmetric, M_r and k differ between the two sides.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def plot_moment_rotation_laws(
         The rocking structure, or its `RockingProperties`.
     spring
         Stiffness k_r of the pinned beam's spring in N m/rad, positive. Default: L_0^r g, so that the slopes
-        differ in sign alone.
+        differ only in sign.
     rotation
         Largest rotation shown in rad. Default: a little beyond the one at which M vanishes, or the nominal
         overturning rotation where tendons keep it from vanishing.
@@ -44,6 +44,15 @@ def plot_moment_rotation_laws(
     ------
     InputError
         If no structure is given, or a number is not positive and finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_moment_rotation_laws(frame)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('θ [rad]', 'M [MN m]')
     """
     p = properties_of(structure)
     sides = (p.pivot(1), p.pivot(-1))
@@ -106,7 +115,7 @@ def _slope(sides: tuple[Pivot, Pivot], *, symmetric: bool) -> str:
 
 
 def _vanishing(zeros: list[float], end: float, *, symmetric: bool) -> str:
-    """What is said of the rotations at which M vanishes, as far as they are shown."""
+    """Text about the rotations at which M vanishes, if they are shown."""
     if symmetric:
         if zeros[0] <= end:
             return f"$M$ = 0 at ±{short(zeros[0])} rad"
@@ -125,7 +134,7 @@ def _with_unit(value: float, unit: str) -> str:
 
 
 def _beside(axes: Axes, text: str, moment: float, *, left: bool) -> None:
-    """Write beside the corner of the curve at θ = 0, on the side where the curve is not."""
+    """Write next to the corner of the curve at θ = 0, on the free side."""
     axes.annotate(
         text, (0.0, moment), xytext=(-4 if left else 4, 0), ha="right" if left else "left", va="center",
         textcoords="offset points", fontsize=SMALL,
@@ -139,7 +148,7 @@ def _above(axes: Axes, text: str, rotation: float) -> None:
 
 
 def _note(axes: Axes, text: str, *, low: bool, at: float | None = None) -> None:
-    """Write into the lower or the upper right corner, whichever the curve leaves free, or below a given height."""
+    """Write into the lower or the upper right corner, whichever is free, or below a given height."""
     height = at if at is not None else (0.03 if low else 0.97)
     axes.text(
         0.97, height, text, transform=axes.transAxes, ha="right", va="bottom" if low and at is None else "top",

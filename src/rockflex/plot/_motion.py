@@ -21,8 +21,8 @@ _DAMPING = 0.05
 def plot_motion(motion: "GroundMotion") -> Figure:
     """Plot ground acceleration, velocity and displacement, and the 5 % damped spectrum of pseudo-acceleration.
 
-    PGA, PGV, PGD, the Arias intensity I_a and the significant duration D_5-95 stand over the panels; the time that
-    D_5-95 spans is shaded. All are those of `GroundMotion`, exact for an acceleration linear between its samples.
+    The titles of the panels give PGA, PGV, PGD, the Arias intensity I_a and the significant duration D_5-95, which is
+    shaded. All are values of `GroundMotion`, exact for an acceleration that is linear between its samples.
 
     Parameters
     ----------
@@ -37,7 +37,14 @@ def plot_motion(motion: "GroundMotion") -> Figure:
     Raises
     ------
     InputError
-        If it is not a ground motion.
+        If the argument is not a ground motion.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> figure = rf.plot_motion(rf.ricker_pulse(4.0, 0.6))
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['$a$ [m/s²]', '$S_a$ [m/s²]', '$v$ [m/s]', '$d$ [m]']
     """
     if not hasattr(motion, "acceleration"):
         raise InputError(

@@ -1,4 +1,4 @@
-"""One panel of a history: what is drawn, its curves and peaks, and where a structure falls."""
+"""One panel of a history: its quantity, curves and peaks, and the overturning of a structure."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _HEADROOM = 1.12
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a panel shows."""
+    """The quantity of a panel."""
 
     symbol: str
     name: str
@@ -44,18 +44,18 @@ ALL = tuple(quantity.name for quantity in _QUANTITIES)
 
 
 def usual_panels(curves: list[Curve]) -> list[str]:
-    """All but ΣF_x, and the total displacement only where the height of the top is known."""
+    """All but ΣF_x; the total displacement only if the height of the top is known."""
     known = all(curve.history.model.properties.top_height is not None for curve in curves)
     return [name for name in ALL[:-1] if known or name != "total_top_displacement"]
 
 
 def quantities_of(panels: Sequence[str]) -> list[Quantity]:
-    """The quantities by their names.
+    """Quantities by name.
 
     Raises
     ------
     InputError
-        If there are none, one is unknown or stands twice.
+        If there are none, or one is unknown or repeated.
     """
     names = [panels] if isinstance(panels, str) else list(panels)
     if not names or len(set(names)) < len(names) or not set(names) <= set(ALL):
@@ -100,14 +100,14 @@ def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -
 
 
 def _largest(curve: Curve, quantity: Quantity) -> float:
-    """Largest magnitude that the axis must hold."""
+    """Largest magnitude on the axis."""
     if not curve.falls:
         return float(getattr(curve.response, f"max_{quantity.name}"))
     return float(np.max(np.abs(quantity.of(curve.history)[curve.before_fall])))
 
 
 def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> str:
-    """Circle the true peak, which may lie between two nodes of the curve; return what to write of it."""
+    """Circle the true peak, which may be between two nodes of the curve; return its text."""
     if curve.overturned and quantity.name == "rotation":
         return f"overturned, {curve.response.end_time:.2f} s"
     peak = float(getattr(curve.response, f"max_{quantity.name}")) / factor
@@ -123,7 +123,7 @@ def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> s
 
 
 def _mark_fall(axes: Axes, curve: Curve, limit: float) -> None:
-    """Triangle where the rotation leaves the panel for good."""
+    """Draw a triangle where the rotation finally leaves the panel."""
     rotation, time = curve.history.rotation, curve.history.time
     inside = np.flatnonzero(np.abs(rotation) <= limit)
     last = int(inside[-1]) if inside.size else 0

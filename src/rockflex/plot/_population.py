@@ -1,4 +1,4 @@
-"""What was drawn for a population of random structures."""
+"""Distributions in a population of random structures."""
 
 from typing import TYPE_CHECKING
 
@@ -29,7 +29,7 @@ _BINS = 20
 def plot_population(pairs: "pd.DataFrame") -> Figure:
     """Plot how the characteristics of random structures and the PGV of their records are distributed.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 8: bars of the number of pairs, flexure stacked on shear.
+    The figure is that of Silva & Stojadinović 2024, Fig. 8: histograms of pairs, flexure stacked on shear.
 
     Parameters
     ----------
@@ -46,6 +46,14 @@ def plot_population(pairs: "pd.DataFrame") -> Figure:
     ------
     InputError
         If the table lacks a column or has no rows.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("fema-p695-far-field")[:2], pairs=8)
+    >>> figure = rf.plot_population(pairs)
+    >>> len(figure.axes), figure.axes[0].get_xlabel()
+    (6, 'stories')
     """
     check_columns(pairs, ("behaviour", *_PANELS), "what run_population returned")
     with styled():
@@ -84,7 +92,7 @@ def _draw(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
 
 
 def _bars(values: Array) -> tuple[Array, Array]:
-    """Centres and edges of the bars: one a value where there are few, as many as suffice otherwise."""
+    """Centres and edges of the bars: one per value if there are few values, automatic otherwise."""
     different = np.unique(values)
     if different.size > _FEW:
         edges = np.linspace(different[0], different[-1], _BINS + 1)

@@ -19,17 +19,17 @@ _LOOKS = (Look(BLACK, "-"), Look(RED, "-."), Look(GREEN, "--"), Look(BLUE, ":"),
 
 
 def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
-    """Plot θ_max/α over 2π/p, a curve for each slenderness.
+    r"""Plot θ_max/α over 2π/p, a curve for each slenderness.
 
-    Blocks that overturn have no θ_max: the curve is broken, and crosses along the top stand for them, a row a
+    Blocks that overturn have no θ_max: the curve is interrupted, and crosses at the top mark them, one row per
     slenderness.
 
     Parameters
     ----------
     table
-        From `rocking_spectrum`.
+        The table of `rocking_spectrum`.
     title
-        Over the figure; the name of the motion, for instance.
+        Title of the figure, such as the name of the motion.
 
     Returns
     -------
@@ -39,7 +39,15 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
     Raises
     ------
     InputError
-        If the table lacks a column that it needs, has no rows, or has more slendernesses than can be told apart.
+        If the table lacks a column that it needs, has no rows, or has too many slendernesses to distinguish.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = rf.rocking_spectrum(rf.ricker_pulse(4.0, 0.6), slendernesses=[0.2], periods=[2.0, 4.0, 6.0])
+    >>> figure = rf.plot_rocking_spectrum(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$2π/p$ [s]', '$θ_{\\mathrm{max}}/α$')
     """
     _check(table, ("slenderness", "period", "relative_rotation", "overturned"), "rocking_spectrum")
     groups = list(table.groupby("slenderness"))
@@ -74,16 +82,17 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
 
 
 def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]", *, title: str = "") -> Figure:
-    """Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, a curve for each table.
+    r"""Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, one curve per table.
 
-    Where amplitudes above it stand too, the range up to the largest of them is hatched: overturning is not monotone.
+    Some larger amplitudes may not overturn, because overturning is not monotone: the range up to the largest of them
+    is hatched.
 
     Parameters
     ----------
     tables
-        From `overturning_spectrum`: one, or several by their names.
+        A table of `overturning_spectrum`, or several by name.
     title
-        Over the figure.
+        Title of the figure.
 
     Returns
     -------
@@ -93,7 +102,17 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
     Raises
     ------
     InputError
-        If a table lacks a column that it needs or has no rows, or there are more than can be told apart.
+        If a table lacks a column that it needs or has no rows, or there are too many tables to distinguish.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> pulse = lambda amplitude, frequency: rf.ricker_pulse(amplitude, 6.28 / frequency)
+    >>> table = rf.overturning_spectrum(structure, pulse, [1.0, 2.0], relative_amplitudes=[1.0, 2.0, 4.0, 8.0])
+    >>> figure = rf.plot_overturning_spectrum(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$ω_g/p$', '$a_p/(g\\,α)$')
     """
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     if not named:
@@ -140,5 +159,5 @@ def _check(table: "pd.DataFrame", columns: tuple[str, ...], source: str) -> None
 def _check_number(given: int, what: str) -> None:
     if given > len(_LOOKS):
         raise InputError(
-            f"{given} {what} are too many to be told apart in one figure; {len(_LOOKS)} can be. Plot fewer."
+            f"{given} {what} are too many to distinguish in one figure; at most {len(_LOOKS)} can be shown."
         )

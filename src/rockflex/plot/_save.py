@@ -19,14 +19,14 @@ _DPI = 200
 def save_figure(figure: Figure, path: str | Path) -> Path:
     """Write a figure as PNG (200 dots per inch), PDF or SVG, by the suffix of `path`.
 
-    Missing folders are made. The file appears whole or not at all, and equal figures give equal files.
+    Missing folders are created. The file is written completely or not at all, and equal figures give equal files.
 
     Parameters
     ----------
     figure
-        What one of the plot functions returned, or any matplotlib figure.
+        A figure of one of the plot functions, or any matplotlib figure.
     path
-        Where to; a file that is there is replaced.
+        Path of the file; an existing file is replaced.
 
     Returns
     -------
@@ -36,7 +36,16 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     Raises
     ------
     InputError
-        If the suffix is none of .png, .pdf and .svg.
+        If the suffix is not .png, .pdf or .svg.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import rockflex as rf
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> rf.save_figure(rf.plot_motion(rf.ricker_pulse(4.0, 0.6)), folder / "pulse.svg").name
+    'pulse.svg'
     """
     target = path_of("path", path)
     suffix = target.suffix.lower()

@@ -1,4 +1,4 @@
-"""What is not known of a structure, as a band around each model's response."""
+"""The effect of uncertain properties, as a band around each model's response."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -30,38 +30,49 @@ def plot_spread(
     panels: Sequence[str] = ("rotation", "top_displacement"),
     title: str | None = None,
 ) -> Figure:
-    """Plot each response with the band from the least to the largest value of its variations, instant by instant.
+    """Plot each response with the band from the smallest to the largest value of its variations at each time.
 
-    The band is no response: between its edges lie those that were run, and what others would do is not known. Once a
-    variation has ended or falls, it counts no more.
+    The band is not a response: it encloses the variations that were run, and says nothing about others. A variation is
+    excluded once it has ended or overturns.
 
     Parameters
     ----------
     responses
-        One response a row, with its history.
+        One response per row, with its history.
     varied
-        For each of them, the responses of the same model to what was varied; one at least, with histories.
+        For each of them, the varied responses of the same model: at least one, with histories.
     labels
-        A name for each response. Default: the models, with the motions where a model occurs twice.
+        A name for each response. Default: the models, with the motions if a model occurs twice.
     panels
-        Which of the panels of `plot_history`, from the left.
+        Panels of `plot_history`, from the left.
     title
         Default: the name of the motion, if there is only one.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One row of axes a response and one column a panel, over a common time axis in s.
+        One row of axes per response and one column per panel, over a common time axis in s.
 
     Raises
     ------
     InputError
-        If there is not one group of variations a response, one is empty or without history, or a panel is unknown.
+        If the number of groups of variations differs, one is empty or without history, or a panel is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> others = [rf.simulate(frame, rf.ricker_pulse(a, 0.6), "2DOF-S") for a in (3.9, 4.1)]
+    >>> figure = rf.plot_spread([response], [others], panels=["rotation"])
+    >>> len(figure.axes), figure.axes[0].get_xlabel()
+    (1, 'time [s]')
     """
     curves = curves_of(responses, labels)
     if len(varied) != len(curves) or not all(len(group) for group in varied):
         raise InputError(
-            f"varied must hold {len(curves)} groups, one a response, each of at least one response, but groups of "
+            f"varied must hold {len(curves)} groups, one per response, each of at least one response, but groups of "
             f"{[len(group) for group in varied]} were given."
         )
     groups = [[_alone(response) for response in group] for group in varied]
@@ -100,7 +111,7 @@ def _alone(response: "Response") -> Curve:
 
 
 def _band(quantity: Quantity, curves: list[Curve], times: Array) -> tuple[Array, Array]:
-    """Least and largest value at each instant, among those that have not ended."""
+    """Smallest and largest value at each time, among those that have not ended."""
     rows = np.full((len(curves), times.size), np.nan)
     for row, curve in zip(rows, curves, strict=True):
         drawn = curve.before_fall

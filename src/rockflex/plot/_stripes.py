@@ -1,4 +1,4 @@
-"""Multiple stripes: fractions observed at each level, and the lognormal curve through them."""
+"""Multiple stripes: observed fractions at each level, and the lognormal curve through them."""
 
 from typing import TYPE_CHECKING, Literal
 
@@ -25,11 +25,11 @@ def plot_stripes(
     limit: Literal["overturning", "nominal", "uplift"] | float = "overturning",
     measure: str = "level of the stripe",
     *,
-    level: float | None = 0.9,
+    confidence: float | None = 0.9,
 ) -> Figure:
-    """Plot the fraction of runs that exceed a limit in each stripe, a panel a structure, symbols and a curve a model.
+    """Plot the fraction of runs that exceed a limit in each stripe, one panel per structure, one curve per model.
 
-    The curves are those of `fit_stripes`; where the stripes determine none, there are symbols alone.
+    The curves are those of `fit_stripes`; if the stripes do not determine one, there are only symbols.
 
     Parameters
     ----------
@@ -38,20 +38,33 @@ def plot_stripes(
     limit
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
     measure
-        Name of the measure of the levels, such as ``"pgv"``, for the axis; the table does not say it.
-    level
+        Name of the measure of the levels, such as ``"pgv"``, for the axis; it is not in the table.
+    confidence
         Confidence of the bands around the curves, between 0 and 1; None for no bands.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes a structure, over the measure in its unit.
+        One axes per structure, over the measure in its unit.
 
     Raises
     ------
     InputError
         If the table lacks a column or has no solved run, the limit is unknown, or there are too many structures or
         models.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import pandas as pd
+    >>> levels, n = [0.2] * 10 + [0.4] * 10 + [0.8] * 10, [1, 5, 9]
+    >>> fell = [place % 10 < n[place // 10] for place in range(30)]
+    >>> runs = pd.DataFrame({"structure": "#1", "model": "MDOF-S", "level": levels, "nominal_overturning": fell})
+    >>> runs["status"] = ["overturned" if each else "rocking" for each in fell]
+    >>> runs["max_rotation"] = [1.571 if each else 0.01 for each in fell]
+    >>> figure = rf.plot_stripes(runs, measure="pgv")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGV [m/s]', 'P(overturning)')
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
     check_columns(runs, needed, "the table of a stripe study")
@@ -72,7 +85,7 @@ def plot_stripes(
             for model, (look, marker) in looks.items():
                 stripes = counts[(counts["structure"].astype(str) == name) & (counts["model"].astype(str) == model)]
                 if len(stripes):
-                    text = _draw(axes, stripes, model, look, marker, end, level)
+                    text = _draw(axes, stripes, model, look, marker, end, confidence)
                     notes.append((text, look.color))
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
@@ -85,9 +98,9 @@ def plot_stripes(
 
 
 def _draw(
-    axes: Axes, stripes: "pd.DataFrame", model: str, look: Look, marker: str, end: float, level: float | None
+    axes: Axes, stripes: "pd.DataFrame", model: str, look: Look, marker: str, end: float, confidence: float | None
 ) -> str:
-    """Symbols, curve and band; return what to write of them."""
+    """Draw symbols, curve and band; return their text."""
     at, events, total = (stripes[name].to_numpy(dtype=float) for name in ("level", "n_exceeding", "n_total"))
     axes.plot(
         at, events / total, marker, color=look.color, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8,
@@ -98,8 +111,8 @@ def _draw(
         return "no curve fits"
     im = np.linspace(end / _POINTS, end, _POINTS)
     axes.plot(im, fit.probability(im), color=look.color, linestyle=look.dashes, label=model)
-    if level is not None:
-        axes.fill_between(im, *fit.band(im, level), color=look.color, alpha=0.13, linewidth=0.0, label="_band")
+    if confidence is not None:
+        axes.fill_between(im, *fit.band(im, confidence), color=look.color, alpha=0.13, linewidth=0.0, label="_band")
     return f"median {fit.median:.3g}, β = {fit.beta:.2f}"
 
 

@@ -1,4 +1,4 @@
-"""What figures of studies share: the columns they need, names of axes, and a panel a structure."""
+"""Shared by figures of studies: the columns they need, names of axes, and one panel per structure."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -27,7 +27,7 @@ _MOST = 12  # panels in one figure
 
 
 def check_columns(table: object, columns: Iterable[str], source: str) -> None:
-    """Raise an InputError unless a table has rows and these columns; `source` says where to get one that has."""
+    """Raise an InputError unless a table has rows and these columns; `source` names the function that returns one."""
     lacking = [name for name in columns if name not in getattr(table, "columns", ())]
     if lacking or not len(table):  # pyright: ignore[reportArgumentType]
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
@@ -35,23 +35,23 @@ def check_columns(table: object, columns: Iterable[str], source: str) -> None:
 
 
 def measure_name(measure: str) -> str:
-    """An intensity measure with its unit, for an axis; of another column its name."""
+    """Name of an axis: an intensity measure with its unit, or the name of another column."""
     return MEASURES[measure].axis if measure in MEASURES else literal(measure)
 
 
 def names_in(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
-    """Different names in a column, in the order in which they come."""
+    """Different names in a column, in order of appearance."""
     return list(dict.fromkeys(str(name) for name in column))
 
 
 def looks_of(models: Sequence[str]) -> "dict[str, tuple[Look, str]]":
-    """Give each model a line and a symbol of its own."""
+    """Give each model its own line and symbol."""
     looks = surrogate_looks(models)
     return {model: (look, marker) for (model, look), marker in zip(looks.items(), MARKERS, strict=False)}
 
 
 def label_plainly(axis: Axis) -> None:
-    """Label a logarithmic axis of some decades at 1, 2 and 5, without exponents."""
+    """Label a logarithmic axis of a few decades at 1, 2 and 5, without exponents."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(_plain))
     axis.set_minor_formatter(NullFormatter())
@@ -62,7 +62,7 @@ def _plain(value: float, _: object) -> str:
 
 
 def keys_of(looks: "dict[str, tuple[Look, str]]", *, symbols: bool = True) -> list[Line2D]:
-    """Entries of a legend, one a model, of its line and its symbol."""
+    """Entries of a legend, one per model, with its line and its symbol."""
     return [
         Line2D(
             [], [], color=look.color, linestyle=look.dashes,  # pyright: ignore[reportArgumentType]
@@ -73,7 +73,7 @@ def keys_of(looks: "dict[str, tuple[Look, str]]", *, symbols: bool = True) -> li
 
 
 def structure_panels(names: Sequence[str], across: int, height: float, x: str, y: str) -> tuple[Figure, list[Axes]]:
-    """Figure with a panel a structure of a `height` in inches, `across` in a row, over the same axes.
+    """Figure with one panel per structure, of a `height` in inches, `across` per row, over the same axes.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How all figures look: sizes, colours and line styles, without touching the settings of the caller."""
+"""Style of all figures: sizes, colours and line styles, without changing the settings of the caller."""
 
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -60,18 +60,18 @@ LOOKS = tuple(Look(color, dashes) for dashes in _DASHES for color in (PURPLE, OR
 
 @contextmanager
 def styled() -> Generator[None, None, None]:
-    """Apply the style while a figure is made; matplotlib's settings are global, so one thread at a time."""
+    """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time."""
     with _LOCK, rc_context(_STYLE):
         yield
 
 
 def literal(text: str) -> str:
-    """Keep names from being read as mathematics."""
+    """Escape names so that they are not read as mathematics."""
     return text.replace("$", r"\$")
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Empty figure of a size in inches; no window and no global list of figures holds it."""
+    """Empty figure of a size in inches, without a window or an entry in the global list of figures."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
@@ -83,7 +83,7 @@ def letter(axes: Axes, text: str) -> None:
 
 
 def columns(names: list[str], width: int) -> int:
-    """How many columns a legend may have, where a row has room for `width` letters; it fills column by column."""
+    """Number of columns of a legend, if a row has room for `width` letters; the legend fills column by column."""
     for count in range(len(names), 1, -1):
         rows = -(-len(names) // count)
         if sum(max(map(len, names[i : i + rows])) + 7 for i in range(0, len(names), rows)) <= width:

@@ -1,4 +1,4 @@
-"""Looks of simplified models in figures, by how many modes they keep."""
+"""Colours and line styles of simplified models in figures, by their number of modes."""
 
 from collections.abc import Iterable
 
@@ -9,16 +9,16 @@ _OWN = {"2DOF-S": Look(RED, "-."), "3DOF-S": Look(GREEN, "--"), "MDOF-S": Look(B
 
 
 def surrogate_looks(models: Iterable[str]) -> dict[str, Look]:
-    """Give each model a look of its own, in the order in which they come; fewer modes are drawn over more.
+    """Give each model its own look, in order of appearance; fewer modes are drawn over more.
 
     Raises
     ------
     InputError
-        If there are more models than can be told apart.
+        If there are too many models to distinguish.
     """
     names = list(dict.fromkeys(models))
     others = [name for name in names if name not in _OWN]
     if len(others) > len(LOOKS):
-        raise InputError(f"{len(names)} models are too many to be told apart in one figure. Plot fewer at a time.")
+        raise InputError(f"{len(names)} models are too many to distinguish in one figure. Plot fewer at a time.")
     looks = _OWN | dict(zip(others, LOOKS, strict=False))
     return {name: looks[name] for name in names}

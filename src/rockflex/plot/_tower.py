@@ -20,7 +20,7 @@ _SLICE = 0.015  # height of the slice over that of the tower
 
 
 def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
-    """Plot a tower's elevation, and one of its sections with what it adds to I_θ.
+    """Plot a tower's elevation, and one of its sections with its contribution to I_θ.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 14. A slice of mass m at the height z turns about the pivot O
     with m((R² + r²)/4 + Δ²), where Δ² = z² + B² (Eq. 33).
@@ -30,17 +30,26 @@ def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
     tower
         A `TaperedTower`.
     section
-        Height z of the section in m, at most that of the tower. Default: half of it.
+        Height z of the section in m, at most the tower's height. Default: half the height.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Two axes, elevation and section, in m. Widths and heights of the elevation have scales of their own.
+        Two axes, elevation and section, in m. Widths and heights of the elevation have different scales.
 
     Raises
     ------
     InputError
         If no tower is given, or the section is outside it.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tower = rf.TaperedTower(height=200, base_radius=8, top_radius=4, wall=1, density=2400, elastic_modulus=25e9,
+    ...                         damping_ratio=0.02)
+    >>> figure = rf.plot_tower(tower)
+    >>> len(figure.axes), figure.axes[0].get_ylabel()
+    (2, 'height [m]')
     """
     if not hasattr(tower, "top_radius"):
         raise InputError(f"tower must be a TaperedTower, but {type(tower).__name__} was given.")
@@ -139,7 +148,7 @@ def _say(
     below: bool = False,
     boxed: bool = False,
 ) -> None:
-    """Write beside a point, `offset` points away."""
+    """Write next to a point, `offset` points away."""
     axes.annotate(
         text, at, xytext=offset, textcoords="offset points", color=color, fontsize=SMALL, annotation_clip=False,
         ha="right" if turned else "center" if below or boxed else "left",

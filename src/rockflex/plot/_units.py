@@ -4,7 +4,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 
 
 def readable(largest: float, unit: str) -> tuple[float, str]:
-    """Divisor and name of the largest of G, M, k and no prefix at which `largest` is not below 1."""
+    """Divisor and name of the largest prefix, G, M, k or none, for which `largest` is at least 1."""
     for factor, prefix in _PREFIXES:
         if abs(largest) >= factor:
             return factor, prefix + unit
@@ -12,5 +12,5 @@ def readable(largest: float, unit: str) -> tuple[float, str]:
 
 
 def short(value: float) -> str:
-    """Three significant digits, without an exponent up to a million and down to 1e-4."""
+    """Three significant digits, without an exponent from 1e-4 up to a million."""
     return f"{float(f'{value:.3g}'):g}".replace("-", "−")

@@ -1,4 +1,4 @@
-"""Hysteresis of the superstructure, by itself and beside the histories."""
+"""Hysteresis of the superstructure, alone and with the histories."""
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
@@ -19,29 +19,40 @@ if TYPE_CHECKING:
 def plot_hysteresis(
     responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None, *, title: str | None = None
 ) -> Figure:
-    """Plot the restoring force V_b of the superstructure over its top displacement u_top.
+    r"""Plot the restoring force V_b of the superstructure over its top displacement u_top.
 
-    For one mode V_b is Eq. 37 of Silva & Stojadinović 2024 times m*_1, and an elastic superstructure draws a line; for
-    several modes the two are not tied to each other. A fall is drawn until the weight pulls the structure over.
+    For one mode V_b is Eq. 37 of Silva & Stojadinović 2024 times m*_1, and an elastic superstructure gives a line; for
+    several modes V_b is not a function of u_top. Overturning is plotted until the weight overturns the structure.
 
     Parameters
     ----------
     responses
         One response or several, each with its history.
     labels
-        A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
+        A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     title
         Default: the name of the motion, if there is only one.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes; u_top in m, V_b in the unit that suits its size.
+        One axes; u_top in m, V_b in a unit that suits its size.
 
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, or there is not one label a response.
+        If there are no responses or too many, one has no history, or the number of labels differs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S-BW",
+    ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
+    >>> figure = rf.plot_hysteresis(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
     """
     curves = curves_of(responses, labels)
     with styled():
@@ -54,7 +65,7 @@ def plot_hysteresis(
 def plot_yielding(
     responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None, *, title: str | None = None
 ) -> Figure:
-    """Plot rotation θ and top displacement u_top over time, and the hysteresis of the superstructure.
+    r"""Plot rotation θ and top displacement u_top over time, and the hysteresis of the superstructure.
 
     The figure is that of Silva & Stojadinović 2024, Figs. 16 and 17. Peaks and uplifts are shown as in `plot_history`,
     loops as in `plot_hysteresis`.
@@ -64,7 +75,7 @@ def plot_yielding(
     responses
         One response or several, each with its history.
     labels
-        A name for each response in the legend. Default: the models, with the motions where a model occurs twice.
+        A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     title
         Default: the name of the motion, if there is only one.
 
@@ -76,7 +87,18 @@ def plot_yielding(
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, or there is not one label a response.
+        If there are no responses or too many, one has no history, or the number of labels differs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S-BW",
+    ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
+    >>> figure = rf.plot_yielding(response)
+    >>> len(figure.axes), figure.axes[-1].get_xlabel()
+    (3, '$u_{\\mathrm{top}}$, relative [m]')
     """
     curves = curves_of(responses, labels)
     with styled():

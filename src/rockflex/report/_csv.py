@@ -12,7 +12,15 @@ COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference
 
 
 def to_csv(document: "Document") -> str:
-    """Write one row a number, in UTF-8 with a head; `rockflex` has all digits, and is "inf" or "nan" where it is."""
+    """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan".
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_csv
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> to_csv(document).split(",")[:3]
+    ['target', 'place', 'name']
+    """
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS)

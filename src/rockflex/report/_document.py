@@ -1,4 +1,4 @@
-"""What a report holds."""
+"""The contents of a report."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 
 class Line(Protocol):
-    """One number of a publication beside ours; texts are plain."""
+    """One number of a publication and our value; texts are plain."""
 
     @property
     def name(self) -> str:
@@ -15,7 +15,7 @@ class Line(Protocol):
 
     @property
     def place(self) -> str:
-        """Where the publication has it."""
+        """Where it is in the publication."""
         ...
 
     @property
@@ -30,17 +30,17 @@ class Line(Protocol):
 
     @property
     def ours_as_text(self) -> str:
-        """Our value with sensible digits."""
+        """Our value, rounded."""
         ...
 
     @property
     def unit(self) -> str:
-        """Of both values; empty for a ratio."""
+        """Unit of both values; empty for a ratio."""
         ...
 
     @property
     def criterion(self) -> str:
-        """What our value had to meet."""
+        """Criterion for our value."""
         ...
 
     @property
@@ -50,12 +50,12 @@ class Line(Protocol):
 
     @property
     def difference_as_text(self) -> str:
-        """Ours less printed; empty where there is none."""
+        """Our value minus the printed one; empty if there is none."""
         ...
 
     @property
     def note(self) -> str:
-        """What to know of it."""
+        """A remark."""
         ...
 
 
@@ -69,42 +69,42 @@ class Proof(Protocol):
 
     @property
     def place(self) -> str:
-        """Where the publication has what it is held to."""
+        """Where the reference value is in the publication."""
         ...
 
     @property
     def stated(self) -> str:
-        """What the publication has there."""
+        """The value in the publication."""
         ...
 
     @property
     def ours_as_text(self) -> str:
-        """Our value with sensible digits."""
+        """Our value, rounded."""
         ...
 
     @property
     def unit(self) -> str:
-        """Of the value; empty for a ratio."""
+        """Unit of the value; empty for a ratio."""
         ...
 
     @property
     def criterion(self) -> str:
-        """What our value must meet."""
+        """Criterion for our value."""
         ...
 
     @property
     def holds(self) -> bool:
-        """Whether it does."""
+        """Whether our value meets it."""
         ...
 
     @property
     def note(self) -> str:
-        """Why it must hold."""
+        """The reason why it must hold."""
         ...
 
 
 class Side(Protocol):
-    """A remark: something computed beside the numbers."""
+    """A remark: something computed in addition to the numbers."""
 
     @property
     def kind(self) -> str:
@@ -118,7 +118,7 @@ class Side(Protocol):
 
     @property
     def text(self) -> str:
-        """What was computed, and what it says."""
+        """What was computed, and what follows."""
         ...
 
     @property
@@ -147,7 +147,7 @@ class Section(Protocol):
 
     @property
     def note(self) -> str:
-        """What to know before the figures."""
+        """A note before the figures."""
         ...
 
     @property
@@ -157,12 +157,12 @@ class Section(Protocol):
 
     @property
     def checks(self) -> Sequence[Proof]:
-        """What holds by construction, and is counted nowhere."""
+        """Checks that hold by construction; they are not counted."""
         ...
 
     @property
     def remarks(self) -> Sequence[Side]:
-        """What was computed beside the numbers, and is counted nowhere."""
+        """Additional results; they are not counted."""
         ...
 
     @property
@@ -182,13 +182,20 @@ class Document:
     records : str
         Which records were used.
     versions : mapping of str to str
-        Of everything that the numbers depend on.
+        Versions of everything that the numbers depend on.
     verdicts : mapping of str to str
         Meaning of every verdict, best first.
     remarks : mapping of str to str
         Meaning of every kind of remark.
     sections : sequence of Section
         In the publication's order.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> document.counts
+    {'met': 0}
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""A report as one page of HTML: nothing is loaded, figures are drawn within, light and dark."""
+"""A report as one page of HTML: self-contained, with inline figures, light and dark."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -22,9 +22,16 @@ def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
     Parameters
     ----------
     document
-        What to show.
+        The report.
     drawings
         Text of the SVG file of each figure, by its stem.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_html
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> "<h1>A title</h1>" in to_html(document, drawings={})
+    True
     """
     from markupsafe import Markup, escape
 

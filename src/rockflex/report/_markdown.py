@@ -1,4 +1,4 @@
-"""A report as Markdown, with its figures beside it."""
+"""A report as Markdown, with its figures in separate files."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -12,7 +12,15 @@ HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict",
 
 
 def to_markdown(document: "Document") -> str:
-    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``."""
+    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_markdown
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> to_markdown(document).splitlines()[0]
+    '# A title'
+    """
     counts = document.counts
     parts = [
         f"# {_plain(document.title)}",
@@ -67,5 +75,5 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _plain(text: str) -> str:
-    """Keep what is no markup from being read as such."""
+    """Escape characters that Markdown would read as markup."""
     return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", text)

@@ -6,8 +6,8 @@ import re
 def inline(drawing: str, stem: str, label: str) -> str:
     """Turn an SVG file into an element of a page.
 
-    What belongs to a file of its own goes: prolog, metadata, namespaces. Names within it get the stem in front, as
-    those of other figures in the page may be the same. It takes the width that it is given.
+    The prolog, metadata and namespaces of a separate file are removed. Identifiers get the stem as a prefix, because
+    other figures in the page may use the same ones. The element fills the available width.
 
     Parameters
     ----------
@@ -16,7 +16,7 @@ def inline(drawing: str, stem: str, label: str) -> str:
     stem
         A name that no other figure in the page has.
     label
-        What a reader who cannot see the figure is told, without quotes or markup.
+        Alternative text for readers who cannot see the figure, without quotes or markup.
     """
     body = drawing[drawing.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", body, flags=re.DOTALL)

@@ -17,9 +17,9 @@ def write_report(document: Document, folder: Path, progress: Callable[[str], Non
     Parameters
     ----------
     document
-        What to write.
+        The report.
     folder
-        Where to; it is made if it is not there.
+        The folder; it is created if needed.
     progress
         Called with the stem of every figure that is drawn.
 
@@ -27,6 +27,15 @@ def write_report(document: Document, folder: Path, progress: Callable[[str], Non
     -------
     list of Path
         The files, figures first.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from rockflex.report import Document, write_report
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> [path.name for path in write_report(document, Path(tempfile.mkdtemp()))]
+    ['report.html', 'report.md', 'numbers.csv']
     """
     figures: dict[str, Path] = {}
     for section in document.sections:

@@ -1,4 +1,4 @@
-"""Studies on disk: a folder of Parquet files, one a chunk, that can be left and taken up again."""
+"""Studies on disk: a folder of Parquet files, one per chunk, that can be interrupted and resumed."""
 
 from rockflex.store._folder import DamagedPart, StudyFolder
 

@@ -1,4 +1,4 @@
-"""The folder of a study: opened, filled chunk by chunk, left at any moment and taken up again."""
+"""The folder of a study: written chunk by chunk, interrupted at any moment, and resumed."""
 # pyright: reportUnknownParameterType=false
 # (pyarrow comes without types)
 
@@ -38,12 +38,26 @@ class DamagedPart:
 
 @dataclass(frozen=True)
 class StudyFolder:
-    """A study on disk, one Parquet file a chunk.
+    """A study on disk, one Parquet file per chunk.
 
-    Made by `open`, to write, or `load`, to read. Of what is written, every file is whole or absent at every moment;
-    whoever reads ``parts/*.parquet`` with another program sees finished chunks only.
+    Created by `open` for writing, or by `load` for reading. Every file is complete or absent at any moment, so other
+    programs that read ``parts/*.parquet`` see finished chunks only.
 
-    Use it as a context, or call `close`, to let another process in.
+    Use it as a context manager, or call `close`, to let another process write.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import pyarrow as pa
+    >>> import rockflex as rf
+    >>> path = tempfile.mkdtemp()
+    >>> with rf.StudyFolder.open(path, {"seed": 1}, n_chunks=2, versions={"rockflex": "1"}) as folder:
+    ...     part = folder.write(0, pa.table({"run": [0, 1]}))
+    >>> folder = rf.StudyFolder.load(path)
+    >>> folder.finished, folder.missing()
+    (False, [1])
+    >>> folder.frame(partial=True)["run"].tolist()
+    [0, 1]
     """
 
     path: Path
@@ -61,14 +75,14 @@ class StudyFolder:
         *,
         any_version: bool = False,
     ) -> Self:
-        """Make the folder of a study, or open the one that an earlier call made, to write into it.
+        """Create the folder of a study, or open an existing one, for writing.
 
         Parameters
         ----------
         path
-            The folder; absent, empty, or a study with this very specification.
+            The folder: absent, empty, or a study with the same specification.
         spec
-            The study's specification: whatever its results depend on, as plain JSON values.
+            The study's specification: everything that its results depend on, as plain JSON values.
         n_chunks
             Number of chunks, at least 1.
         versions
@@ -76,13 +90,13 @@ class StudyFolder:
         checksums
             Checksum of each record, matrix from a file and other file that the study depends on, by name.
         any_version
-            Go on with other versions than the study was begun with. Every part names its own.
+            Resume with versions other than those the study was started with. Every part records its own.
 
         Raises
         ------
         InputError
-            If the folder holds another study, other records or another program's files, was begun with other versions,
-            is in use by another process, or cannot be written.
+            If the folder holds another study, other records or another program's files, was started with other
+            versions, is in use by another process, or cannot be written.
         """
         folder = path_of("path", path)
         given = Manifest.of(spec, n_chunks, versions, checksums or {})
@@ -107,7 +121,7 @@ class StudyFolder:
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Open the folder of a study to read it, also while another process fills it.
+        """Open the folder of a study for reading, even while another process writes to it.
 
         Raises
         ------
@@ -136,11 +150,11 @@ class StudyFolder:
 
     @property
     def finished(self) -> bool:
-        """Whether every part is there and intact."""
+        """Whether every part is present and intact."""
         return not self.missing()
 
     def damaged(self) -> list[DamagedPart]:
-        """Return the parts that are there and cannot be used; running the study again replaces them."""
+        """Return the parts that are present but unusable; running the study again replaces them."""
         found: list[DamagedPart] = []
         for number in range(self.n_chunks):
             path = self._part(number)
@@ -157,7 +171,7 @@ class StudyFolder:
         return [number for number in range(self.n_chunks) if number in damaged or not self._part(number).exists()]
 
     def write(self, number: SupportsIndex, table: "pa.Table") -> Path:
-        """Write the table of one chunk; once this returns, it outlasts a loss of power.
+        """Write the table of one chunk; once this returns, the file survives a loss of power.
 
         Parameters
         ----------
@@ -169,8 +183,8 @@ class StudyFolder:
         Raises
         ------
         InputError
-            If the number or the columns do not fit, the folder was opened to read, or the disk is full. The parts
-            already written are kept, and nothing is left of this one.
+            If the number or the columns do not fit, the folder was opened for reading, or the disk is full. The parts
+            already written remain, and nothing of this one.
         """
         import pyarrow as pa
 
@@ -179,7 +193,7 @@ class StudyFolder:
             raise InputError(f"A chunk must be a pyarrow.Table, but {type(table).__name__} was given.")
         if self.lock is None:
             raise InputError(
-                f"{self.path} was opened to read. Open it by StudyFolder.open, with its specification, to write."
+                f"{self.path} was opened for reading. To write, open it by StudyFolder.open with its specification."
             )
         self.lock.check()
         content = encode(table, self.manifest.study, place, self.manifest.versions)
@@ -193,7 +207,7 @@ class StudyFolder:
         Parameters
         ----------
         partial
-            Take the parts that are there, at least one, instead of raising if some are missing.
+            Return the parts that are present, at least one, instead of raising an error if some are missing.
 
         Raises
         ------
@@ -230,8 +244,8 @@ class StudyFolder:
     def frame(self, *, partial: bool = False) -> "pd.DataFrame":
         """Return `table` as a pandas DataFrame with a plain index.
 
-        Columns that came from pandas have the types that they had; of other tables, whole numbers and booleans become
-        types of pandas that know missing values. Raises as `table` does.
+        Columns from pandas keep their types; in other tables, integers and booleans become nullable types of pandas.
+        Raises the same errors as `table`.
         """
         import pandas as pd
         import pyarrow as pa
@@ -264,11 +278,11 @@ class StudyFolder:
         strays = sorted(path.name for path in (self.path / PARTS).glob("*.parquet") if path.name not in expected)
         if strays:
             raise InputError(
-                f"In {self.path / PARTS} there are files of no part of the study:{listed(strays)}\nMove them away."
+                f"{self.path / PARTS} holds files that are not parts of the study:{listed(strays)}\nMove them away."
             )
 
     def _refuse_other_columns(self, number: int, schema: "pa.Schema") -> None:
-        """Compare with the first intact part that is not the one to be written."""
+        """Compare with the first intact part other than the one to be written."""
         for other in range(self.n_chunks):
             path = self._part(other)
             try:

@@ -19,19 +19,19 @@ UNREADABLE_FOR = 1.0  # s; a file that stays empty for longer was left by a proc
 
 @dataclass(frozen=True)
 class Lock:
-    """The right to write into a folder; given back by `release`, or when the object or the process ends in order."""
+    """The right to write into a folder; given up by `release`, or when the object or the process ends normally."""
 
     path: Path
     content: str
 
     @classmethod
     def acquire(cls, path: Path) -> Self:
-        """Make the file, and take over one whose process is dead on this host.
+        """Create the file, or take over the file of a dead process on this host.
 
         Raises
         ------
         InputError
-            If a living process, or one on another host, holds it, or something else than a file stands there.
+            If a running process, or one on another host, holds it, or the path is not a file.
         """
         me = {"pid": os.getpid(), "start": _start(os.getpid()), "host": platform.node()}
         since = datetime.now(UTC).isoformat(timespec="seconds")
@@ -54,7 +54,7 @@ class Lock:
         if _text(self.path) != self.content:
             raise InputError(
                 f"The lock {self.path} is no longer held: the folder was closed, or the file was deleted or taken "
-                "over. What was written is kept. Open the study again."
+                "over. The parts already written are kept. Open the study again."
             )
 
     def release(self) -> None:
@@ -69,7 +69,7 @@ def _release(path: Path, content: str) -> None:
 
 def _take_away_if_stale(path: Path, waited: float) -> None:
     if path.exists() and not path.is_file():
-        raise InputError(f"{path} is no file, but the study's lock belongs there. Move it away and try again.")
+        raise InputError(f"{path} is not a file, but the study's lock belongs there. Move it away and try again.")
     text = _text(path)
     holder = _parsed(text)
     if holder is None:
@@ -108,7 +108,7 @@ def _text(path: Path) -> str | None:
 
 
 def _parsed(text: str | None) -> dict[str, Any] | None:
-    """What a lock says of its process; None of one that is empty or damaged."""
+    """The process named in a lock; None if the lock is empty or damaged."""
     try:
         holder = json.loads(text or "")
         words = all(isinstance(holder[key], str) for key in ("start", "host", "since"))
@@ -126,13 +126,13 @@ def _dead(holder: dict[str, Any]) -> bool:
 
 
 def _start(pid: int) -> str | None:
-    """When a process began, in ticks since the host did; empty where that is unknown, None if it is dead."""
+    """Start of a process in ticks since the host started; empty if unknown, None if the process is dead."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text("utf-8").rpartition(")")[2].split()
         return None if fields[0] in "ZX" else fields[19]
     except OSError:
         pass
-    if os.name == "nt":  # where signal 0 is not a question
+    if os.name == "nt":  # where signal 0 interrupts the process
         return ""
     try:
         os.kill(pid, 0)

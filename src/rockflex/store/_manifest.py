@@ -1,4 +1,4 @@
-"""What a study's folder says of itself: the specification, and where its numbers come from."""
+"""The manifest of a study's folder: its specification, and the origin of its numbers."""
 
 import hashlib
 import json
@@ -26,9 +26,9 @@ class Manifest:
     Parameters
     ----------
     spec
-        The study's specification, as plain JSON; kept in a file of its own.
+        The study's specification, as plain JSON; stored in a separate file.
     study
-        Digest of the specification, the number of chunks and the checksums; every part carries it.
+        Digest of the specification, the number of chunks and the checksums; every part records it.
     n_chunks
         Number of parts of the complete study.
     versions
@@ -63,7 +63,7 @@ class Manifest:
         return cls(content, _digest(content, count, sums), count, plain("versions", versions), sums, now)
 
     def write(self, folder: Path) -> None:
-        """Write both files; that of the manifest last, as its presence makes the folder a study."""
+        """Write both files, the manifest last, because its presence marks the folder as a study."""
         origin = {"format": FORMAT, **asdict(self), "seed": self.spec.get("seed")}
         del origin["spec"]
         write_whole(folder / SPEC, _encoded(self.spec))
@@ -104,17 +104,19 @@ class Manifest:
                 "Use the version that wrote it, or run the study again in another folder; the results in "
                 f"{folder / 'parts'} can still be read as Parquet."
             )
-        raise InputError(f"{folder / SPEC} was changed after the study began. Undo the change, or give another folder.")
+        raise InputError(
+            f"{folder / SPEC} was changed after the study started. Undo the change, or give another folder."
+        )
 
     def accept(self, given: "Manifest", folder: Path, *, any_version: bool) -> None:
-        """Raise an `InputError` that says what differs if `given` is not this study."""
+        """Raise an `InputError` that lists the differences if `given` is not this study."""
         changed = differences(self.spec, given.spec)
         if self.n_chunks != given.n_chunks:
             changed.append(f"number of chunks: {self.n_chunks} in the folder, {given.n_chunks} now")
         if changed:
             raise InputError(
                 f"{folder} holds another study. What differs:{listed(changed)}\n"
-                "Give another folder for this study, or the folder's own specification to go on with it."
+                "Give another folder for this study, or the folder's own specification to resume it."
             )
         changed = differences(self.checksums, given.checksums)
         if changed:
@@ -125,7 +127,7 @@ class Manifest:
         changed = differences(self.versions, given.versions)
         if changed and not any_version:
             raise InputError(
-                f"{folder} was begun with other versions, whose numbers may differ in the last digits:"
+                f"{folder} was started with other versions, whose numbers may differ in the last digits:"
                 f"{listed(changed)}\n"
                 "Install those versions, give another folder, or pass any_version=True to mix them."
             )
@@ -135,8 +137,8 @@ def _part_count(n_chunks: SupportsIndex) -> int:
     count = whole_number("n_chunks", n_chunks, 1)
     if count > MOST_PARTS:
         raise InputError(
-            f"n_chunks must be at most {MOST_PARTS}, for each chunk is a file, but {shown(count)} was given. "
-            "Compute more runs a chunk: runs_per_chunk in a study."
+            f"n_chunks must be at most {MOST_PARTS}, because each chunk is a file, but {shown(count)} was given. "
+            "Compute more runs per chunk: runs_per_chunk in a study."
         )
     return count
 

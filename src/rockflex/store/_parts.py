@@ -1,4 +1,4 @@
-"""One chunk as a Parquet file that knows its study, its place and the checksum of all its bytes."""
+"""One chunk as a Parquet file that records its study, its number and the checksum of its bytes."""
 # pyright: reportUnknownParameterType=false
 # (pyarrow comes without types)
 
@@ -17,7 +17,7 @@ MARKER, BLANK = b"rockflex-crc32:", b"00000000"
 
 
 class PartError(Exception):
-    """Why a file is not the part that it should be."""
+    """The reason why a file is not the expected part."""
 
 
 def encode(table: "pa.Table", study: str, number: int, versions: dict[str, Any]) -> bytes:
@@ -40,7 +40,7 @@ def verify(path: Path, study: str, number: int) -> bytes:
     Raises
     ------
     PartError
-        If it is cut short, damaged, not a part, or a part of another study or place.
+        If it is truncated, damaged, not a part, or a part of another study or chunk.
     """
     kind = irregular(path)
     if kind:
@@ -63,7 +63,7 @@ def verify(path: Path, study: str, number: int) -> bytes:
 
 
 def read(path: Path, study: str, number: int) -> "pa.Table":
-    """Return the table of a part; raises as `verify` does."""
+    """Return the table of a part; raises the same errors as `verify`."""
     from pyarrow import BufferReader, parquet
 
     return parquet.ParquetFile(BufferReader(verify(path, study, number))).read()

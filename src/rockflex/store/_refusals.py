@@ -1,4 +1,4 @@
-"""What a study's folder refuses, and in which words."""
+"""Errors about a study's folder, and their messages."""
 # pyright: reportUnknownParameterType=false
 # (pyarrow comes without types)
 
@@ -20,7 +20,7 @@ FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
 def refuse_other_columns(path: Path, old: "pa.Schema", new: "pa.Schema", number: int | None = None) -> None:
-    """Refuse columns `new`, of the chunk `number` or of the file at `path`, that are not as the `old` ones."""
+    """Raise an error if the columns `new`, of the chunk `number` or of the file at `path`, differ from `old`."""
     if old.equals(new):
         return
     before, now = ({field.name: str(field.type) for field in schema} for schema in (old, new))
@@ -34,21 +34,21 @@ def refuse_other_columns(path: Path, old: "pa.Schema", new: "pa.Schema", number:
 
 
 def refuse_foreign(folder: Path, own: set[str]) -> None:
-    """Refuse a file, and a folder with anything but hidden files and what a study killed at its start left."""
+    """Raise an error for a file, or a folder with anything but hidden files and the remains of a killed study."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file. Give a folder for the study.")
     names = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
     foreign = [name for name in names if name not in own and not name.startswith(".")]
     if foreign:
         raise InputError(
-            f"{folder} is no study, and not empty ({shown(foreign[0])} is in it). Give an empty or a new folder, or "
+            f"{folder} is not a study, and not empty ({shown(foreign[0])} is in it). Give an empty or a new folder, or "
             "that of a study."
         )
 
 
 @contextmanager
 def reported(folder: Path, size: int = 0) -> Generator[None]:
-    """Turn the system's errors, met while `size` bytes were written, into messages that say what to do."""
+    """Convert system errors while writing `size` bytes into messages with a remedy."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Specifications as plain JSON, and where two of them differ."""
+"""Specifications as plain JSON, and the differences between two of them."""
 
 import json
 import math
@@ -16,12 +16,12 @@ WIDTH = 60  # characters of a value in a message
 def plain(name: str, value: object, depth: int = 0) -> Any:
     """Return `value` as dicts, lists, strings, numbers, booleans and None, as JSON would give it back.
 
-    Infinities and NaN are kept, as Python's JSON does.
+    Infinities and NaN are allowed, as in Python's JSON.
 
     Raises
     ------
     InputError
-        If there is anything else in it, or it is nested too deep; the message has the dotted path.
+        If it holds any other value, or is nested too deep; the message has the dotted path.
     """
     if depth > DEEPEST:
         raise InputError(

@@ -117,7 +117,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
             notes.append(f"{fit.model}: {error}")
         return found
     curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
-    low, high = curve.band(grid, choice.level)
+    low, high = curve.band(grid, choice.confidence)
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")
     if note:
@@ -149,7 +149,7 @@ def _band(
         np.column_stack((rotation, fallen)),
         part["group"].astype(str).to_numpy(),
         at=grid,
-        level=choice.level,
+        confidence=choice.confidence,
         n=RESAMPLES,
         curve=lambda found, at: found.exceedance(at, choice.rotation),
     )

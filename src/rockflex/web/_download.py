@@ -211,7 +211,7 @@ def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
             f"There is no curve to draw. {' '.join(f'{model}: {why}' for (_, model), why in reasons.items())}"
         )
     try:
-        figure = plot_fragility(fits, level=state.cloud.level, overturning=True)
+        figure = plot_fragility(fits, confidence=state.cloud.confidence, overturning=True)
         return "fragility.svg", "image/svg+xml", svg(figure)
     except (InputError, SolverError) as error:
         raise Refusal(str(error)) from error

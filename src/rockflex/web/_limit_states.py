@@ -17,12 +17,13 @@ class Asked(NamedTuple):
     line: float | None = None  # rad at which it is drawn, where that is not asked for
 
 
+LIMIT = f"the nominal limit {NOMINAL.label.replace('_1', '₁')}"
 ROTATION = "rotation"  # of which the page asks how large
 ASKED = (
-    Asked(ROCKING.name, "it rocks (θ > 0.1 mrad)", "", ROCKING.threshold),
+    Asked(ROCKING.name, f"it rocks (θ > {1e3 * ROCKING.threshold:g} mrad)", "", ROCKING.threshold),
     Asked(ROTATION, "the rotation exceeds …", "a rotation"),
-    Asked(NOMINAL.name, "the nominal limit 0.7 atan(B/h*₁)", "the nominal limit 0.7 atan(B/h*₁)"),
-    Asked(OVERTURNING.name, "it overturns", "overturning"),
+    Asked(NOMINAL.name, LIMIT, LIMIT),
+    Asked(OVERTURNING.name, "it overturns", OVERTURNING.label),
 )
 
 

@@ -4,7 +4,7 @@ import json
 import math
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field, StringConstraints, ValidationError
+from pydantic import AliasChoices, Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
 from rockflex.models import parse_model
@@ -62,7 +62,13 @@ class CloudChoice(Table):
     measure: MeasureName = Field("pgv", description="an intensity measure")
     limit: LimitName = Field("rocking", description="a limit state")
     rotation: float = Field(0.01, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
-    level: float = Field(0.9, ge=0.5, le=0.99, description="the confidence of the bands, from 0.5 to 0.99")
+    confidence: float = Field(
+        0.9,
+        ge=0.5,
+        le=0.99,
+        validation_alias=AliasChoices("confidence", "level"),  # the key of older links
+        description="the confidence of the bands, from 0.5 to 0.99",
+    )
 
 
 class DesignChoice(Table):

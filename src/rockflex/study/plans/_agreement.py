@@ -80,7 +80,7 @@ class _Comparison:
 
 def population_statistics(
     pairs: "pd.DataFrame",
-    level: float = 0.9,
+    confidence: float = 0.9,
     n_resamples: SupportsIndex = 1000,
     seed: SupportsIndex = 0,
     n_outliers: SupportsIndex = 10,
@@ -91,7 +91,7 @@ def population_statistics(
     ----------
     pairs
         What `run_population`, or the plan of a `PopulationStudy`, gives.
-    level
+    confidence
         Of the bootstrap intervals, between 0 and 1.
     n_resamples, seed
         Of the bootstrap.
@@ -108,7 +108,7 @@ def population_statistics(
     InputError
         If an argument is out of range, or no pair was solved.
     """
-    in_range("level", level, 1e-9, 1.0)
+    in_range("confidence", confidence, 1e-9, 1.0)
     resamples, start = whole_number("n_resamples", n_resamples, 1), whole_number("seed", seed, 0)
     shown = whole_number("n_outliers", n_outliers, 0)
     solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
@@ -121,10 +121,10 @@ def population_statistics(
     resting = solved[solved["status_mdof"] == "no_uplift"]
     rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
     agreeing = [
-        *_compare(_agreement("no_uplift", resting, ("top_displacement",)), level, resamples, start),
-        *_compare(_agreement("rocking", rocking, ("top_displacement", "rotation")), level, resamples, start),
+        *_compare(_agreement("no_uplift", resting, ("top_displacement",)), confidence, resamples, start),
+        *_compare(_agreement("rocking", rocking, ("top_displacement", "rotation")), confidence, resamples, start),
     ]
-    combining = pd.DataFrame(_compare(_combination(rocking), level, resamples, start))
+    combining = pd.DataFrame(_compare(_combination(rocking), confidence, resamples, start))
     counts = pd.crosstab(
         pd.Categorical(solved["status_mdof"], STATUSES),
         pd.Categorical(solved["status_2dof"], STATUSES),
@@ -171,7 +171,7 @@ def _combination(frame: "pd.DataFrame") -> list[_Comparison]:
     return found
 
 
-def _compare(comparisons: list[_Comparison], level: float, resamples: int, seed: int) -> list[dict[str, object]]:
+def _compare(comparisons: list[_Comparison], confidence: float, resamples: int, seed: int) -> list[dict[str, object]]:
     """Rows of a table, of comparisons over the same pairs, which are resampled together."""
     terms = np.column_stack([_terms(each) for each in comparisons])
     n = terms.shape[0]
@@ -180,7 +180,7 @@ def _compare(comparisons: list[_Comparison], level: float, resamples: int, seed:
     for resample in drawn if n else ():
         weights = np.bincount(rng.integers(n, size=n), minlength=n).astype(float)
         resample[:] = _estimates((weights @ terms).reshape(-1, SUMS))
-    tail = 0.5 * (1.0 - level)
+    tail = 0.5 * (1.0 - confidence)
     best = _estimates(terms.sum(axis=0).reshape(-1, SUMS))
     rows: list[dict[str, object]] = []
     for place, each in enumerate(comparisons):

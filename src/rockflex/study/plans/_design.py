@@ -1,4 +1,4 @@
-"""Design of a base: how wide it must be, and which tendon is to hold it down (Section 4.1)."""
+"""Design of a base: how wide it must be, and which tendon holds it down (Section 4.1)."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
@@ -47,8 +47,18 @@ class HazardTable(Table):
 class DesignStudy(StructuresSpec):
     """One structure on bases of many half widths B, with tendons of a few levels, under all records.
 
-    The table has one row a run; its columns are those of `run_design`. `limits`, `measure`, `level` or `hazard`, and
-    `target` say what is asked of it: see `design_table` and `smallest_width`.
+    The table has one row per run and the columns of `run_design`. `limits`, `measure`, `level` or `hazard`, and
+    `target` define the requirement: see `design_table` and `smallest_width`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = {"n_stories": 3, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": 1e9,
+    ...          "period": 0.6, "aspect_ratio": 6.0, "damping_ratio": 0.02}
+    >>> study = rf.DesignStudy(
+    ...     structures=[{"frame": frame}], records={"suites": ["el-centro-1940"]}, half_widths=[1.0, 1.5], level=0.5)
+    >>> study.plan().columns["structure"]
+    ['B = 1 m', 'B = 1.5 m']
     """
 
     study: Literal["design"] = Field("design", description='"design"')
@@ -70,10 +80,10 @@ class DesignStudy(StructuresSpec):
         ["overturning"], min_length=1, description='a list of limits, such as [0.02, "0.5 nominal", "overturning"]'
     )
     measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"')
-    level: float | None = Field(None, description="the level of the measure that is asked about, in SI units")
+    level: float | None = Field(None, description="the level of the measure, in SI units")
     hazard: HazardTable | None = Field(None, description="a table of the lists im and rate")
     target: float | None = Field(
-        None, description="the probability, or with a hazard the annual rate, that a design must meet"
+        None, description="the probability, or with a hazard the annual rate, that a design must not exceed"
     )
 
     @field_validator("half_widths", mode="before")
@@ -102,9 +112,7 @@ class DesignStudy(StructuresSpec):
     @model_validator(mode="after")
     def _question(self) -> "DesignStudy":
         if (self.level is None) == (self.hazard is None):
-            raise InputError(
-                "level and hazard: one of them is needed, and not both, to say how strong the ground shakes."
-            )
+            raise InputError("level and hazard: give one of them, not both, for the strength of the shaking.")
         if self.level is not None:
             positive("level", self.level, "the unit of the measure")
         if self.hazard is not None:
@@ -121,7 +129,7 @@ class DesignStudy(StructuresSpec):
         Raises
         ------
         InputError
-            If a design cannot be built, a record cannot be read, a limit is out of the reach of a design, or a model's
+            If a design cannot be built, a record cannot be read, a limit is out of range for a design, or a model's
             base cannot lift.
         """
         levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
@@ -191,30 +199,30 @@ def run_design(
 ) -> "pd.DataFrame":
     """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
 
-    The structure above the base stays as it is; I_θ changes with m_tot B² (Silva & Stojadinović 2024, Table 2).
+    The structure above the base does not change; I_θ changes with m_tot B² (Silva & Stojadinović 2024, Table 2).
 
     Parameters
     ----------
     structure
-        A structure, or its `RockingProperties`, on a base of any width. Tendons of its own keep their forces,
-        stiffnesses and places.
+        A structure, or its `RockingProperties`, on a base of any width. Its own tendons keep their forces,
+        stiffnesses and positions.
     motions
         As in `run_cloud`.
     half_widths : array_like, shape (n,)
         B in m, positive.
     tendons
-        Levels of a tendon in the axis, each with every width; `TendonLevel()` is none. Default: what the structure has.
+        Levels of a tendon on the axis, each with every width; `TendonLevel()` means none. Default: the structure's own.
     models, scales, free_vibration, bouc_wen, impact, workers, work_limit
         As in `run_cloud`.
     base_mass_per_width
-        Mass in kg/m that the base gains for each metre that 2 B grows beyond the structure's own, and loses for each
-        below. Default: 0, the base's mass stays.
+        Mass in kg/m that the base gains for each metre of width 2 B above the structure's own width, and loses for each
+        metre below it. Default: 0, a constant base mass.
 
     Returns
     -------
     pandas.DataFrame
-        One row a run, tendons outermost, then half widths from the least, motions, models and scales. The columns of
-        `run_cloud`, where `structure` names the design, and after it `half_width` (m); `aspect_ratio` = h*_1/B;
+        One row per run, in the order of tendons, increasing half widths, motions, models and scales. The columns are
+        those of `run_cloud`, where `structure` names the design, followed by `half_width` (m); `aspect_ratio` = h*_1/B;
         `tendon`, the name of the level; `prestress_ratio` = ΣF_0/(m_tot g); `stiffness_ratio` = the tendons' stiffness
         against rotation over L_0^r g, about the edge that lifts first; `resisting_moment` (M_r in N m).
 
@@ -223,6 +231,18 @@ def run_design(
     InputError
         If a half width is not positive or occurs twice, a model's base cannot lift, a design cannot be built, or as in
         `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> len(runs)
+    16
+    >>> runs["structure"].cat.categories.tolist()
+    ['B = 1 m', 'B = 1.5 m']
     """
     given: Any = scales
     if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -235,14 +255,14 @@ def run_design(
 def design_tables(
     runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
 ) -> "Iterator[tuple[float | str, pd.DataFrame]]":
-    """What a study asks of its runs: each of its limits, and its `design_table`.
+    """Yield each limit of a study with its `design_table`.
 
     Parameters
     ----------
     runs
         The table of the study.
     spec
-        The study as its `document()` says it.
+        The study as returned by its `document()`.
     confidence
         As in `design_table`.
     """

@@ -1,4 +1,4 @@
-"""One design: its fit, what that answers, and how sure the answer is."""
+"""The fit of one design, its result, and the confidence band of the result."""
 
 import math
 from collections.abc import Callable
@@ -13,15 +13,15 @@ from rockflex._errors import InputError
 from rockflex.fragility import (
     OVERTURNED,
     OVERTURNING,
-    ROCKED,
     HazardCurve,
     OutcomeFragility,
     UnanimousOutcome,
     annual_rate,
     fit_outcomes,
+    resample_weights,
+    resampled_exceedance,
 )
 from rockflex.study.plans._design_limits import rotation_of
-from rockflex.study.plans._design_resamples import exceedances, resample_weights
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,7 +35,7 @@ FEWEST = 20  # resamples
 
 @dataclass(frozen=True)
 class Band:
-    """How a band is drawn: its confidence, the number of resamples, and their seed."""
+    """Settings of a band: its confidence, the number of resamples, and their seed."""
 
     confidence: float
     n: SupportsIndex
@@ -48,9 +48,9 @@ class Band:
 
 @dataclass(frozen=True)
 class Question:
-    """How strong the ground shakes: a level of the measure, or a hazard curve.
+    """The strength of the shaking: a level of the measure, or a hazard curve.
 
-    The answer for a curve P is the sum of P at `nodes` times `weights`: for resamples by Gauss' rule in log IM.
+    The result for a curve P is the sum of P at `nodes` times `weights`, for resamples by Gauss' rule in log IM.
     """
 
     hazard: HazardCurve | None
@@ -58,7 +58,7 @@ class Question:
     weights: Float
 
     def answer(self, curve: Curve) -> tuple[float, float]:
-        """Probability at the level and zero, or annual rate and how much at most lies beyond the hazard curve."""
+        """Probability at the level and zero, or annual rate and an upper bound on the rate beyond the hazard curve."""
         if self.hazard is not None:
             found = annual_rate(self.hazard, curve)
             return found.rate, found.beyond
@@ -66,12 +66,12 @@ class Question:
 
     @classmethod
     def of(cls, at: float | None, hazard: HazardCurve | None) -> "Question":
-        """Check what was given, and choose the nodes.
+        """Check the arguments, and choose the nodes.
 
         Raises
         ------
         InputError
-            If both or none were given, or the level is not positive.
+            If both or neither were given, or the level is not positive.
         """
         if (at is None) == (hazard is None):
             raise InputError("Give either at, a level of the measure, or hazard, a HazardCurve in it.")
@@ -87,7 +87,7 @@ class Question:
 
 
 class Runs(NamedTuple):
-    """The solved runs of one design and model, and the rotation that is the limit."""
+    """The solved runs of one design and model, and the rotation of the limit."""
 
     im: Float
     rotation: Float
@@ -102,7 +102,7 @@ class Runs(NamedTuple):
         return lambda im: fit.exceedance(im, self.limit)
 
     def certain(self, fit: OutcomeFragility) -> bool:
-        """Whether all runs ended so alike that no resample can say anything else."""
+        """Whether every resample would give the same result."""
         rocks, falls = fit.initiation, fit.overturning
         if isinstance(falls, UnanimousOutcome) and (falls.outcome or self.limit == OVERTURNED):
             return True
@@ -132,7 +132,7 @@ def judged(
 
 
 def _answers(runs: Runs, question: Question, band: Band | None) -> dict[str, Any]:
-    """Value, band, that of overturning, and what to know of them."""
+    """Value, band, value for overturning, and notes."""
     name = "probability" if question.hazard is None else "rate"
     found: dict[str, Any] = dict.fromkeys((name, "low", "high", "overturning"), math.nan)
     if question.hazard is not None:
@@ -140,14 +140,14 @@ def _answers(runs: Runs, question: Question, band: Band | None) -> dict[str, Any
     if not runs.im.size:
         return found | {"note": "No run was solved: see the column error."}
     try:
-        fit = fit_outcomes(runs.im, runs.rotation, runs.fallen, threshold=ROCKED)
+        fit = fit_outcomes(runs.im, runs.rotation, runs.fallen)
         found["overturning"] = question.answer(fit.overturning.probability)[0]
         notes: list[str] = [note for note in fit.notes if note.kind != "initiation"]
         if question.hazard is None and not runs.im.min() <= question.nodes[0] <= runs.im.max():
             ends = f"{runs.im.min():.3g} to {runs.im.max():.3g}"
-            notes.append(f"The level lies outside the measures of the runs, {ends}: it is extrapolated to.")
+            notes.append(f"The level lies outside the measures of the runs, {ends}: the result is extrapolated.")
         if not np.isfinite(runs.curve(fit)(question.nodes)).all():
-            notes.append("There is no probability: a part that counts could not be fitted.")
+            notes.append("There is no probability: a curve that it needs could not be fitted.")
             return found | {"note": " ".join(notes)}
         found[name], beyond = question.answer(runs.curve(fit))
     except InputError as error:
@@ -163,15 +163,14 @@ def _answers(runs: Runs, question: Question, band: Band | None) -> dict[str, Any
 def _limits(runs: Runs, question: Question, band: Band, fit: OutcomeFragility) -> tuple[float, float, str]:
     """Lower and upper confidence limit, and a note."""
     if runs.certain(fit):
-        return math.nan, math.nan, "No band: all runs ended alike."
+        return math.nan, math.nan, "No band: all runs had the same outcome."
     import pandas as pd
 
     codes, names = pd.factorize(runs.groups)
     if len(names) < 2:
         return math.nan, math.nan, "No band: all runs belong to one recording."
     weights = resample_weights(codes, int(band.n), band.seed)
-    limit = None if runs.limit == OVERTURNED else runs.limit
-    drawn = exceedances(runs.im, runs.rotation, runs.fallen, weights, question.nodes, limit, ROCKED)
+    drawn = resampled_exceedance(runs.im, runs.rotation, runs.fallen, weights, question.nodes, runs.limit)
     values = drawn @ question.weights
     values = values[np.isfinite(values)]
     if values.size < FEWEST:
@@ -179,7 +178,8 @@ def _limits(runs: Runs, question: Question, band: Band, fit: OutcomeFragility) -
     low, high = np.quantile(values, (0.5 - 0.5 * band.confidence, 0.5 + 0.5 * band.confidence))
     notes: list[str] = []
     if values.size < int(band.n):
-        notes.append(f"{int(band.n) - values.size} of {int(band.n)} resamples could not be fitted: the band is narrow.")
+        lost = int(band.n) - values.size
+        notes.append(f"{lost} of {int(band.n)} resamples could not be fitted, so the band is too narrow.")
     if len(names) < 20:
         notes.append(f"A band from {len(names)} recordings is too narrow.")
     return float(low), float(high), " ".join(notes)

@@ -18,13 +18,13 @@ MOST = 10_000  # bases
 
 @dataclass(frozen=True)
 class TendonLevel:
-    """A tendon in the axis of the structure, in multiples that mean the same for every base.
+    """A tendon on the axis of the structure, given by ratios that mean the same for every base.
 
     With W = m_tot g and L_0^r g/B² of the design itself, M_r is (1 + prestress_ratio) W B, and the static moment while
     rocking changes by (stiffness_ratio - 1) L_0^r g a radian: with 0 it falls as without a tendon, with 1 it stays
-    constant, above 1 it rises (compare Eqs. 23 and 24 of Silva & Stojadinović 2024). So EA/L in N/m is less for a
-    wider base. Within 1 % of 1 runs take longer, since the adaptive engine carries them. On an eccentric base B is half
-    its width all the same, so that the two ratios hold between those about its edges.
+    constant, above 1 it rises (compare Eqs. 23 and 24 of Silva & Stojadinović 2024). EA/L in N/m is therefore smaller
+    for a wider base. Runs with a ratio within 1 % of 1 take longer, because the adaptive engine integrates them. On an
+    eccentric base, B is still half the width, and each ratio lies between its values about the two edges.
 
     Attributes
     ----------
@@ -41,6 +41,16 @@ class TendonLevel:
     ------
     InputError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> level = rf.TendonLevel(prestress_ratio=0.2, stiffness_ratio=0.5)
+    >>> (tendon,) = level.held(frame.rocking()).tendons
+    >>> print(f"{tendon.initial_force:.3g}, {tendon.stiffness:.3g}")
+    3.14e+05, 2.8e+06
     """
 
     prestress_ratio: float = 0.0
@@ -64,7 +74,7 @@ class TendonLevel:
                 )
 
     def held(self, properties: RockingProperties) -> RockingProperties:
-        """The structure with this tendon in place of any other; without one where both ratios are zero."""
+        """The structure with this tendon in place of any other; without a tendon if both ratios are zero."""
         if not (self.prestress_ratio or self.stiffness_ratio):
             return replace(properties, tendons=())
         weight = properties.m_tot * GRAVITY
@@ -86,13 +96,13 @@ def designs_of(
 ) -> list[Design]:
     """The structure on every base with every tendon, tendons outermost, the narrowest base first.
 
-    Without levels the structure keeps the tendons that it has, with their forces in N and stiffnesses in N/m.
+    Without levels the structure keeps its own tendons, with their forces in N and stiffnesses in N/m.
 
     Raises
     ------
     InputError
-        If a half width is not positive or occurs twice, levels share a name or are added to tendons that the structure
-        has, a tendon would stand outside a base, or a base would have no mass left.
+        If a half width is not positive or occurs twice, levels share a name or are added to the structure's own
+        tendons, a tendon would be outside a base, or a base would have no mass left.
     """
     widths = half_widths_of(half_widths)
     per_width = positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
@@ -102,8 +112,8 @@ def designs_of(
     check_different("tendons", [level.name for level in levels])
     if levels and properties.tendons:
         raise InputError(
-            "The structure has tendons of its own, and there are levels of tendons besides. Leave out the one or the "
-            "other: levels take the place of its tendons."
+            "The structure has its own tendons, and levels of tendons are given too. Leave out one or the other: "
+            "levels replace the structure's tendons."
         )
     found: list[Design] = []
     for level in levels or (None,):

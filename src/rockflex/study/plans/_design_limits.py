@@ -1,4 +1,4 @@
-"""What a design is not to exceed, and measures in which that can be asked."""
+"""Limits of a design, and the intensity measures that suit all bases."""
 
 import math
 
@@ -15,18 +15,18 @@ def check_limit(limit: float | str) -> None:
 
 
 def check_same_for_all(measure: str) -> None:
-    """Raise an InputError unless there is such a measure, and a level of it is the same motion for every base."""
+    """Raise an InputError unless the measure exists and does not depend on the base."""
     if intensity(measure).of_what == "base":
         raise InputError(f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1.")
 
 
 def rotation_of(limit: float | str, nominal: float) -> float:
-    """Rotation in rad of a limit, where `nominal` is 0.7 atan(B/h*_1) of the design; π/2 of "overturning".
+    """Rotation in rad of a limit, where `nominal` is 0.7 atan(B/h*_1) of the design; π/2 for "overturning".
 
     Raises
     ------
     InputError
-        If it is no limit, or not from 1e-4 rad to below π/2.
+        If it is not a limit, or not from 1e-4 rad to below π/2.
     """
     words = limit.split() if isinstance(limit, str) else []
     if words == [OVERTURNING.name]:

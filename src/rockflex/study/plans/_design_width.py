@@ -19,32 +19,43 @@ NEEDED = ("model", "tendon", "half_width", "prestress_ratio", "stiffness_ratio",
 
 
 def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
-    """Find the least half width from which on every base meets a target, for each tendon.
+    """Find the smallest half width at and above which every base meets a target, for each tendon.
 
-    Between the widest base that does not meet it and the next, the logarithm of the value is taken as a straight line
-    in B; where the next value is zero, the value itself is, which gives the wider base.
+    Between the widest base that does not meet it and the next, the logarithm of the value is interpolated linearly in
+    B. If the next value is zero, the value itself is interpolated, which gives the wider base.
 
     Parameters
     ----------
     table
-        What `design_table` returned.
+        The table of `design_table`.
     target
         Largest probability, or annual rate, of exceeding the limit.
 
     Returns
     -------
     pandas.DataFrame
-        One row a model and tendon: `model`, `tendon`, `prestress_ratio`, `stiffness_ratio` (missing where it differs
+        One row per model and tendon: `model`, `tendon`, `prestress_ratio`, `stiffness_ratio` (missing if it differs
         from base to base), `target`; `half_width` (m), NaN if the widest base does not meet the target;
         `half_width_upper` (m), the same for the upper limit of the band; `outcome`: ``"met"``; ``"met more than
-        once"``, where narrower bases meet it too, but not all between; ``"all meet it"`` (the half width is then the
-        least there is, and a smaller one might do); or ``"not met"``. `monotone`, whether the value nowhere rises with
-        B; `note`, on bases that were left out for want of a value, on rises, and on narrower bases.
+        once"``, narrower bases meet it too, but not all in between; ``"all meet it"`` (the half width is then the
+        smallest in the table, and a smaller one might do); or ``"not met"``. `monotone`, whether the value never rises
+        with B; `note`, about bases without a value, rises, and narrower bases that meet the target.
 
     Raises
     ------
     InputError
         If the table lacks a column, or the target is not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import pandas as pd
+    >>> facts = {"model": "MDOF-S", "tendon": "no tendon", "prestress_ratio": 0.0, "stiffness_ratio": 0.0}
+    >>> values = {"probability": [0.4, 0.1, 0.05], "high": [0.5, 0.2, 0.1]}
+    >>> table = pd.DataFrame({"half_width": [1.0, 1.5, 2.0], **values, **facts})
+    >>> found = rf.smallest_width(table, target=0.2).iloc[0]
+    >>> print(f"{found.half_width:.3g}, {found.half_width_upper:.3g}, {found.outcome}")
+    1.25, 1.5, met
     """
     import pandas as pd
 
@@ -90,7 +101,7 @@ def _common(column: "pd.Series[Any]") -> float:
 
 
 def _least(widths: Float, values: Float, target: float) -> _Least:
-    """Least width, outcome, and what to know, from values at rising widths."""
+    """Least width, outcome and notes, from values at rising widths."""
     known = np.isfinite(values)
     notes = [] if known.all() else [f"{int((~known).sum())} of {known.size} bases have no value and were left out."]
     b, y = widths[known], values[known]
@@ -103,7 +114,7 @@ def _least(widths: Float, values: Float, target: float) -> _Least:
     width, outcome = math.nan, "not met"
     if meets.all() and b.size:
         width, outcome = float(b[0]), "all meet it"
-        notes.append(f"Every base meets it; one below B = {b[0]:.4g} m might do.")
+        notes.append(f"Every base meets it; a base below B = {b[0]:.4g} m might do.")
     elif b.size and meets[-1]:
         last = int(np.flatnonzero(~meets)[-1])
         width, outcome = _between(b[last : last + 2], y[last : last + 2], target), "met"

@@ -3,6 +3,7 @@
 import { get, Refusal } from "../api.js";
 import { decode, h, latest, number, svg } from "../dom.js";
 import { trouble } from "../form.js";
+import { unitOf } from "../measures.js";
 
 const GRAVITY = 9.81;
 
@@ -12,7 +13,7 @@ export function records(app) {
 
   function thumb(suite, record) {
     const place = [record.event, record.station].filter(Boolean).join(", ");
-    const strength = [`PGA ${number(record.pga / GRAVITY, 3)} g`, h("br"), `PGV ${number(record.pgv, 3)} m/s`];
+    const strength = [`PGA ${number(record.pga / GRAVITY, 3)} g`, h("br"), `PGV ${number(record.pgv, 3)} ${unitOf(app.about, "pgv")}`];
     return h("button", {
       type: "button", "data-record": record.name, title: place,
       onclick: () => app.change({ record: { source: "suite", suite, name: record.name } }),

@@ -28,7 +28,7 @@ export default function designTab(app) {
   const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
   const target = entry("target", "Acceptable probability", { hint: "0.0001 to 0.99" });
   const measure = list("measure", "Intensity measure", measuresOf(app.about, false));
-  const at = entry("at", "Intensity", { unit: "m/s", hint: "value of this measure, above 0" });
+  const at = entry("at", "Intensity", { unit: unitOf(app.about, choice().measure), hint: "value of this measure, above 0" });
   const narrowest = entry("narrowest", "From", { unit: "× present B", hint: "0.2 to 2" });
   const widest = entry("widest", "To", { unit: "× present B", hint: "1 to 10" });
   const widths = entry("widths", "Widths", { hint: "3 to 20" });

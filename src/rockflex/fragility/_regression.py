@@ -1,0 +1,209 @@
+"""Regressions on x = log(IM) for many resamples at once.
+
+Each row of `weights`, shape (m, n), says how often each of the n runs counts in one of the m fits. A single fit is the
+row of unit weights.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+NEWTON, SCORING, HALVINGS = 100, 1000, 20  # largest numbers of iterations
+STEP = 1e-8  # of the parameters, at which Newton's method has converged
+RIDGE = 1e-10  # added to the information, for each run; where the likelihood is flat, Newton then converges too slowly
+LONGEST = 5.0  # step of Fisher scoring
+
+
+class Logistic(NamedTuple):
+    """Logistic curves through standardised x.
+
+    Attributes
+    ----------
+    parameters : ndarray, shape (m, 2)
+        Intercept and slope; NaN where no fit converged.
+    separated : ndarray, shape (m,)
+        Whether one value of x separates the outcomes, so that maximum likelihood has no finite slope.
+    penalised : ndarray, shape (m,)
+        Whether Firth's penalty was used: the outcomes are separated, or Newton's method did not converge.
+    """
+
+    parameters: Float
+    separated: Bool
+    penalised: Bool
+
+
+class Scoring(NamedTuple):
+    """Steps of the penalised fit, and when it has converged.
+
+    Every choice leads to the same maximum. Each caller has its own, so that the digits of its results stay the same.
+
+    Attributes
+    ----------
+    score : float
+        Largest component of the penalised score, over the number of runs.
+    step : float
+        Largest component of the next step.
+    augmented : bool
+        Whether a run with the leverage h counts 1 + h times in the information that sets the step.
+    """
+
+    score: float
+    step: float = np.inf
+    augmented: bool = False
+
+
+def fit_curves(x: Float, outcome: Bool, weights: Float, scoring: Scoring) -> Logistic:
+    """Fit logistic curves by maximum likelihood, or with Firth's penalty where that has no finite slope.
+
+    Firth 1993, Biometrika 80(1), 27-38; Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Logarithms of the intensity measure, with mean 0 and standard deviation 1.
+    outcome : ndarray, shape (n,)
+        Whether it happened.
+    weights : ndarray, shape (m, n)
+        How often each run counts in each fit; both outcomes must occur.
+    scoring
+        Of the penalised fits.
+    """
+    separated = are_separated(x, outcome, weights)
+    parameters = np.full((weights.shape[0], 2), np.nan)
+    parameters[~separated] = _newton(x, outcome, weights[~separated])
+    penalised = np.isnan(parameters[:, 0])
+    parameters[penalised] = _firth(x, outcome, weights[penalised], scoring)
+    return Logistic(parameters, separated, penalised)
+
+
+def are_separated(x: Float, outcome: Bool, weights: Float) -> Bool:
+    """Whether some value of x separates the outcomes of each row; runs at that value may have either."""
+    low_no, high_no = _range(x, (weights > 0.0) & ~outcome)
+    low_yes, high_yes = _range(x, (weights > 0.0) & outcome)
+    return (high_no <= low_yes) | (high_yes <= low_no)
+
+
+def information(x: Float, weights: Float, parameters: Float) -> Float:
+    """Fisher information of the parameters without the penalty, shape (m, 2, 2)."""
+    one, first, second = _Point(x, weights, parameters).moments
+    return np.moveaxis(np.array([[one, first], [first, second]]), -1, 0)
+
+
+class Lines(NamedTuple):
+    """Least-squares lines y = intercept + slope x, each field of shape (m,).
+
+    `sxx` and `syy` are the weighted sums of squares about the means, `residual` that about the line, `size` the sums
+    of the weights.
+    """
+
+    intercept: Float
+    slope: Float
+    mean: Float
+    size: Float
+    sxx: Float
+    syy: Float
+    residual: Float
+
+    @property
+    def dispersion(self) -> Float:
+        """Standard deviation of the residuals, with size - 2 degrees of freedom."""
+        return np.sqrt(self.residual / (self.size - 2.0))
+
+
+def fit_lines(x: Float, y: Float, weights: Float) -> Lines:
+    """Fit a line to each row of weights; infinite or NaN where fewer than two different x are left."""
+    size = weights.sum(axis=1)
+    with np.errstate(all="ignore"):
+        mean_x, mean_y = (weights @ x) / size, (weights @ y) / size
+        dx, dy = x - mean_x[:, None], y - mean_y[:, None]
+        sxx, sxy, syy = ((weights * one * other).sum(axis=1) for one, other in ((dx, dx), (dx, dy), (dy, dy)))
+        slope = sxy / sxx
+        residual = (weights * (dy - slope[:, None] * dx) ** 2).sum(axis=1)
+        return Lines(mean_y - slope * mean_x, slope, mean_x, size, sxx, syy, residual)
+
+
+class _Point:
+    """Logistic curves at some parameters: eta, p, and the entries of the Fisher information."""
+
+    def __init__(self, x: Float, weights: Float, parameters: Float) -> None:
+        from scipy.special import expit
+
+        self.eta = parameters[:, :1] + parameters[:, 1:] * x
+        self.p = expit(self.eta)
+        self.each = weights * self.p * (1.0 - self.p)
+        self.moments = _moments(x, self.each)
+
+
+def _moments(x: Float, each: Float) -> tuple[Float, Float, Float]:
+    return each.sum(axis=1), each @ x, each @ x**2
+
+
+def _determinant(moments: tuple[Float, Float, Float]) -> Float:
+    one, first, second = moments
+    return one * second - first**2
+
+
+def _step(x: Float, residual: Float, moments: tuple[Float, Float, Float]) -> tuple[Float, Float]:
+    """Score of the residuals, and the step of the parameters that it makes."""
+    one, first, second = moments
+    a, b = residual.sum(axis=1), residual @ x
+    step = np.column_stack((second * a - first * b, one * b - first * a))
+    return np.column_stack((a, b)), step / _determinant(moments)[:, None]
+
+
+def _newton(x: Float, outcome: Bool, weights: Float) -> Float:
+    """Maximum likelihood of each row; NaN where Newton's method does not converge."""
+    b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
+    ridge = RIDGE * weights.sum(axis=1)
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            at = _Point(x, weights, b)
+            one, first, second = at.moments
+            _, step = _step(x, weights * (outcome - at.p), (one + ridge, first, second + ridge))
+            b += step
+            converged = np.abs(step).max(axis=1) <= STEP
+            if (converged | ~np.isfinite(b).all(axis=1)).all():
+                break
+    return np.where(converged[:, None] & np.isfinite(b), b, np.nan)
+
+
+def _firth(x: Float, outcome: Bool, weights: Float, scoring: Scoring) -> Float:
+    """Maximum of the penalised likelihood of each row; NaN where Fisher scoring does not converge."""
+    b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
+    bound = scoring.score * weights.sum(axis=1)
+    with np.errstate(all="ignore"):
+        for _ in range(SCORING):
+            at = _Point(x, weights, b)
+            one, first, second = (moment[:, None] for moment in at.moments)
+            leverage = at.each * (second - 2.0 * first * x + one * x**2) / _determinant(at.moments)[:, None]
+            residual = weights * (outcome - at.p) + leverage * (0.5 - at.p)
+            moments = _moments(x, at.each + leverage * at.p * (1.0 - at.p)) if scoring.augmented else at.moments
+            score, step = _step(x, residual, moments)
+            length = np.abs(step).max(axis=1)
+            converged = (np.abs(score).max(axis=1) <= bound) & (length <= scoring.step)
+            if converged.all():
+                break
+            step *= np.minimum(1.0, LONGEST / length)[:, None]
+            likely = _penalised_likelihood(outcome, weights, at)
+            for _ in range(HALVINGS):
+                further = _penalised_likelihood(outcome, weights, _Point(x, weights, b + step))
+                worse = ~(further >= likely - 1e-12 * np.abs(likely))
+                if not worse.any():
+                    break
+                step[worse] *= 0.5
+            b += np.where(converged[:, None], 0.0, step)
+    return np.where(converged[:, None], b, np.nan)
+
+
+def _penalised_likelihood(outcome: Bool, weights: Float, at: _Point) -> Float:
+    likely = np.where(outcome, -np.logaddexp(0.0, -at.eta), -np.logaddexp(0.0, at.eta))
+    return (weights * likely).sum(axis=1) + 0.5 * np.log(_determinant(at.moments))
+
+
+def _range(x: Float, held: Bool) -> tuple[Float, Float]:
+    """Smallest and largest x of the runs in each row; infinite where there is none."""
+    return np.where(held, x, np.inf).min(axis=1), np.where(held, x, -np.inf).max(axis=1)
