@@ -6,20 +6,12 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from twins import impact_laws, newton
 from twins.complete import complete_frame, simulate_complete
 from twins.complete_model import Rope
 
-FRAME = {
-    "n_stories": 4,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.6,
-    "aspect_ratio": 6.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0)
 P = rf.Frame(**FRAME).rocking()  # B = 1.59 m
 NO_FLEXURE = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear")

@@ -12,20 +12,12 @@ import pyarrow.parquet as pq
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from rockflex import InputError
 from rockflex.structure.file import StructureEntry
 from rockflex.study.plans import ChunkedPlan
 
-FRAME = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": 0.0,
-    "period": 0.6,
-    "aspect_ratio": 8.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(n_stories=3, stiffness_ratio=0.0, period=0.6, aspect_ratio=8.0)
 RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-2-*"]}
 STUDY = rf.CloudStudy(
     structures=[{"name": "A", "frame": FRAME}],

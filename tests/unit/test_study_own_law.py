@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from own_law import Lossy
 
-FRAME = {"n_stories": 2, "story_height": 3.0, "story_mass": 4e4, "base_mass": 4e4, "stiffness_ratio": math.inf,
-         "period": 0.5, "aspect_ratio": 6.0, "damping_ratio": 0.02}  # fmt: skip
+FRAME = frame_values(n_stories=2, period=0.5, aspect_ratio=6.0)  # fmt: skip
 GIVEN = {"structures": [{"name": "A", "frame": FRAME}], "records": {"suites": ["el-centro-1940"]},
          "models": ["2DOF-S", "2DOF-C"], "runs_per_chunk": 1}  # fmt: skip
 STUDIES = {
