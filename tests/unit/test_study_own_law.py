@@ -152,21 +152,18 @@ def test_a_law_that_stands_in_no_file(tmp_path):
 
 
 @pytest.mark.slow
-def test_on_a_cluster(tmp_path):
-    from dask_cluster import Cluster
-
+def test_on_a_cluster(cluster):
     class Local(Lossy):
         pass
 
     here = rf.run_study(cloud(impact=Lossy(0.5)))
-    with Cluster(tmp_path) as running:
-        pd.testing.assert_frame_equal(rf.run_study(cloud(impact=Lossy(0.5)), dask=running.address), here)
-        with pytest.raises(rf.InputError, match=r"cannot be sent to workers: .*Local.* top of a module"):
-            rf.run_study(cloud(impact=Local(0.5)), dask=running.address)
-        unknown = type("Unknown", (Lossy,), {"__module__": "__main__"})
-        sys.modules["__main__"].Unknown = unknown
-        try:
-            with pytest.raises(rf.InputError, match=r"cannot load the plan .*Unknown.* modules can be imported"):
-                rf.run_study(cloud(impact=unknown(0.5)), dask=running.address)
-        finally:
-            del sys.modules["__main__"].Unknown
+    pd.testing.assert_frame_equal(rf.run_study(cloud(impact=Lossy(0.5)), dask=cluster.address), here)
+    with pytest.raises(rf.InputError, match=r"cannot be sent to workers: .*Local.* top of a module"):
+        rf.run_study(cloud(impact=Local(0.5)), dask=cluster.address)
+    unknown = type("Unknown", (Lossy,), {"__module__": "__main__"})
+    sys.modules["__main__"].Unknown = unknown
+    try:
+        with pytest.raises(rf.InputError, match=r"cannot load the plan .*Unknown.* modules can be imported"):
+            rf.run_study(cloud(impact=unknown(0.5)), dask=cluster.address)
+    finally:
+        del sys.modules["__main__"].Unknown
