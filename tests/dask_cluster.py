@@ -48,12 +48,13 @@ class Cluster:
 
     def _start(self, kind: str, *options: str, log: str = "") -> "subprocess.Popen[bytes]":
         command = [sys.executable, "-m", "dask", kind, "--host", "127.0.0.1", "--no-dashboard", *options]
+        path = os.pathsep.join(filter(None, (str(TESTS), os.environ.get("PYTHONPATH"))))
         with (self.folder / f"{log or kind}.log").open("wb") as file:
             process = subprocess.Popen(
                 command,
                 stdout=file,
                 stderr=subprocess.STDOUT,
-                env=os.environ | {"PYTHONPATH": str(TESTS)} | self.environment,
+                env=os.environ | {"PYTHONPATH": path} | self.environment,
                 cwd=self.folder,
             )
         self.processes.append(process)

@@ -3,13 +3,14 @@
 import numpy as np
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.plot._style import BLACK, RED
 
 SUITE = rf.load_suite("fema-p695-far-field")
 FRAMES = {
-    "#1": rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02),
-    "#5": rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 5.0, 0.02),
-    "a$b": rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 1.0, 5.0, 0.02),
+    "#1": make_frame(),
+    "#5": make_frame(aspect_ratio=5.0),
+    "a$b": make_frame(stiffness_ratio=0.0, aspect_ratio=5.0),
 }
 MODELS = ["MDOF-S", "2DOF-S"]
 COLORS = {"MDOF-S": BLACK, "2DOF-S": RED}

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from builders import make_frame
 from rockflex import BoucWen, Frame, GroundMotion, InitialState, Restitution, load_suite, quiet_motion, simulate
 
 GRAVITY = 9.81
@@ -107,16 +108,7 @@ def test_the_ledger_of_a_yielding_structure_closes(frame, damping_ratio, motion,
 
 
 def test_a_hysteretic_spring_takes_the_area_of_its_loops():
-    frame = Frame(
-        n_stories=1,
-        story_height=6.0,
-        story_mass=40e3,
-        base_mass=40e3,
-        stiffness_ratio=np.inf,
-        period=0.6,
-        aspect_ratio=4.0,
-        damping_ratio=0.02,
-    )
+    frame = make_frame(n_stories=1, story_height=6.0, period=0.6, aspect_ratio=4.0)
     spring = BoucWen(0.02, 0.05)
     motion = GroundMotion(6.0 * np.sin(0.2 * np.arange(200)), 0.02).refined(40)
     run = simulate(frame, motion, "1DOF-fixed", bouc_wen=spring)

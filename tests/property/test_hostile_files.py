@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.store import _lock
 from toy_study import ToyPlan, opened, run_study
 
@@ -64,7 +65,7 @@ def in_units(path: Path) -> Any:
 @pytest.fixture(scope="module")
 def response(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     path = tmp_path_factory.mktemp("saved") / "run.npz"
-    structure = rf.Frame(2, 3.0, 4e4, 4e4, 1.0, 0.5, 5.0, 0.02)
+    structure = make_frame(n_stories=2, stiffness_ratio=1.0, period=0.5, aspect_ratio=5.0)
     return rf.simulate(structure, rf.ricker_pulse(3.0, 0.5, dt=0.02), "2DOF-S").save(path).read_bytes()
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import (
     BoucWen,
     Frame,
@@ -21,16 +22,9 @@ from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete
 
 GRAVITY = 9.81
-GIVEN = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.5,
-    "aspect_ratio": 6.0,
-    "damping_ratio": 0.03,
-}
+GIVEN = frame_values(
+    n_stories=3, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=6.0, damping_ratio=0.03
+)
 FRAME = Frame(**GIVEN)
 TIME = 0.02 * np.arange(201)
 MOTION = GroundMotion(4.5 * np.sin(0.8 * TIME) * (np.sin(9.0 * TIME + 0.4) + 0.6 * np.sin(27.0 * TIME)), 0.02)

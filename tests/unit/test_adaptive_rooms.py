@@ -5,23 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from rockflex import Frame, GroundMotion, InitialState, Restitution, SolverError, load_suite, quiet_motion, simulate
+from builders import make_frame
+from rockflex import GroundMotion, InitialState, Restitution, SolverError, load_suite, quiet_motion, simulate
 from rockflex.models import parse_model
 from rockflex.response import asked_of
 from rockflex.solve import Engine
 from rockflex.solve import engine as module
 from rockflex.solve.history import MARGIN
 
-FRAME = Frame(
-    n_stories=2,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=np.inf,
-    period=0.5,
-    aspect_ratio=6.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=6.0, damping_ratio=0.03)
 RECORD = load_suite("el-centro-1940")[0].acceleration[60:160] * 2.5
 
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as published
 
+from builders import frame_values
 from rockflex import BoucWen, Frame
 from rockflex.models import EXTRA, Model, Quantities
 from rockflex.solve import Engine
@@ -16,16 +17,9 @@ from rockflex.solve.layout import Span, progress_at_start
 from twins import complete_model as twin
 from twins.complete import complete_frame
 
-FRAME = {
-    "n_stories": 2,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.6,
-    "aspect_ratio": 5.0,
-    "damping_ratio": 0.04,
-}
+FRAME = frame_values(
+    n_stories=2, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=5.0, damping_ratio=0.04
+)
 START = np.array([0.02, 0.01, -0.2, 0.3, 0.05, 0.4])  # [D, D', θ, θ']
 A, SLOPE = 1.5, -20.0
 ENDLESS = np.array([np.inf, 0.0, 0.0, 0.0, 0.0])  # work

@@ -3,21 +3,13 @@
 import numpy as np
 import pytest
 
-from rockflex import BoucWen, Frame, load_suite
+from builders import make_frame
+from rockflex import BoucWen, load_suite
 from rockflex.models import parse_model
 from rockflex.response import asked_of
 from rockflex.solve import Engine
 
-FRAME = Frame(
-    n_stories=5,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=np.inf,
-    period=1.0,
-    aspect_ratio=10.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame()
 
 
 @pytest.mark.parametrize(

@@ -4,22 +4,14 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete
 from twins.complete_model import BoucWen
 
 SIMPLE, COMPLETE = impact_laws.SimplifiedVVEL(), impact_laws.CompleteVVEL()
 NO_FLEXURE = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
-FRAME = {
-    "n_stories": 5,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.7,
-    "aspect_ratio": 7.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(stiffness_ratio=0.125, period=0.7, aspect_ratio=7.0)
 SPRING = (0.04, 0.02, 0.5, 0.5, 8.0)
 CASES = {
     # label: modes of the twin, what else the twin is told, what else the model is

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from test_solve_without_jit import uncompiled
 
-from rockflex import BoucWen, Frame, GroundMotion, InitialState, Restitution, load_suite, simulate
+from builders import make_frame
+from rockflex import BoucWen, GroundMotion, InitialState, Restitution, load_suite, simulate
 
 SCRIPT = """
 import json, sys
@@ -27,16 +28,7 @@ class Halves:
 def runs():
     """Complete, with all modes and with one; passing; yielding on a free and on a fixed base; overturned; own law."""
     record = load_suite("el-centro-1940")[0].acceleration[68:108]
-    frame = Frame(
-        n_stories=2,
-        story_height=3.0,
-        story_mass=40e3,
-        base_mass=40e3,
-        stiffness_ratio=np.inf,
-        period=0.5,
-        aspect_ratio=9.0,
-        damping_ratio=0.05,
-    )
+    frame = make_frame(n_stories=2, period=0.5, aspect_ratio=9.0, damping_ratio=0.05)
     motion = GroundMotion(2.5 * record, 0.02, name="El Centro")
     yield simulate(frame, motion, "MDOF-C")
     yield simulate(frame, motion, "2DOF-C", free_vibration="settle", output="peaks")

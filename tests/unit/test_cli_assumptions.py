@@ -3,15 +3,15 @@
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.cli import _simulations, app
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
+FRAME = make_frame()
 RECORD = "fema-p695-far-field/FF-2-a"
 MOTION = rf.load_suite("fema-p695-far-field")["FF-2-a"]
 YIELDING = ("--yield-displacement", 0.05)

@@ -9,11 +9,12 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.cli import _simulations, app
 from rockflex.study import Case
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
+FRAME = make_frame()
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 NAMES = ["required_friction", "required_friction_excluding_impacts", "sliding_time"]
 

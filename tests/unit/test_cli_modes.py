@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.cli import app
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
@@ -237,7 +238,7 @@ def test_folder(tmp_path):
     with (tmp_path / "out" / "modes.csv").open(newline="") as file:
         table = csv.DictReader(file)
         rows = [{name: float(value) for name, value in row.items()} for row in table]
-    frame = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
+    frame = make_frame()
     lifted = rf.uplifted_modes(frame.rocking(3))
     columns = {
         "mode": [1.0, 2.0, 3.0],

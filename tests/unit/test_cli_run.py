@@ -12,6 +12,7 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.cli import _run_output, _simulations, app
 from rockflex.cli._console import Styled, grid
 from rockflex.response import PEAKS
@@ -19,7 +20,7 @@ from rockflex.study import Case
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
+FRAME = make_frame()
 FLAGS = [
     *("--stories", "5", "--story-height", "3", "--story-mass", "40e3", "--base-mass", "40e3"),
     *("--stiffness-ratio", "inf", "--period", "1", "--aspect-ratio", "10", "--damping-ratio", "0.02"),
@@ -211,7 +212,7 @@ SLENDER = [*FLAGS[:-8], "--stiffness-ratio", "0", "--period", "0.5", "--aspect-r
 
 
 def test_a_base_that_is_pulled_down_is_told_in_words():
-    frame = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 0.5, 10.0, 0.02)
+    frame = make_frame(stiffness_ratio=0.0, period=0.5)
     response = rf.simulate(frame, FF["FF-1-a"].scaled(2.0), "MDOF-S", output="peaks")
     assert response.min_vertical_reaction < 0.0
     arguments = (*SLENDER, "fema-p695-far-field/FF-1-a", "--scale", 2, "--model", "MDOF-S,fixed")

@@ -3,19 +3,11 @@
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import Eccentric, Frame, InputError, LumpedStructure, RockingProperties
 from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
-FRAME = {
-    "n_stories": 5,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": float("inf"),
-    "period": 1.0,
-    "aspect_ratio": 10.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values()
 NO_FLAGS = dict.fromkeys(FRAME)
 
 

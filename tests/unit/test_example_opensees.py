@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-import rockflex as rf
+from builders import make_frame
 
 PATH = Path(__file__).parents[2] / "examples" / "opensees_modes.py"
 SCALARS = {"base_mass": 40e3, "half_width": 1.5, "damping_ratio": 0.02}
@@ -145,10 +145,14 @@ def test_the_frame_of_inextensible_members_is_the_library_s(example):
     ops = OpenSees(axial=1e6)
     found = structure_from(example, ops).rocking(5)
     ratio = (example.BEAM[1] / example.BAY) / (2.0 * example.COLUMN[1] / example.STORY_HEIGHT)
-    frame = rf.Frame(
-        example.N_STORIES, example.STORY_HEIGHT, example.FLOOR_MASS, 40e3, ratio, 2.0 * np.pi / found.omega[0],
-        found.effective_height[0] / 1.5, 0.02,
-    )  # fmt: skip
+    frame = make_frame(
+        n_stories=example.N_STORIES,
+        story_height=example.STORY_HEIGHT,
+        story_mass=example.FLOOR_MASS,
+        stiffness_ratio=ratio,
+        period=2.0 * np.pi / found.omega[0],
+        aspect_ratio=found.effective_height[0] / 1.5,
+    )
     expected = frame.rocking()
     for name in ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot"):
         np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=2e-5)

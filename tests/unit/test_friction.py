@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from builders import make_frame
 from rockflex import (
-    Frame,
     GroundMotion,
     InitialState,
     InputError,
@@ -23,7 +23,7 @@ from rockflex import (
 
 GRAVITY = 9.81
 EL_CENTRO = load_suite("el-centro-1940")[0]
-FRAME = Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02)
+FRAME = make_frame()
 MASS, HEIGHTS = 40e3, 3.0 * np.arange(1, 6)
 TOTAL, ARM = 6 * MASS, MASS * HEIGHTS.sum()
 

@@ -9,22 +9,14 @@ from time import monotonic
 import numpy as np
 import pytest
 
-from rockflex import Frame, GroundMotion, simulate, simulate_many
+from builders import make_frame
+from rockflex import GroundMotion, simulate, simulate_many
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.study._runs import map_runs
 from rockflex.web._app import Server
 from rockflex.web._refusal import Refusal
 
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=np.inf,
-    period=0.8,
-    aspect_ratio=6.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame(n_stories=3, period=0.8, aspect_ratio=6.0)
 LONG = GroundMotion(1.2 * np.random.default_rng(0).standard_normal(12_000_000), 0.005, name="long")  # minutes of work
 ASKED, SOON = 0.3, 20.0  # s: when a run is asked to stop, and when it has, on the slowest machine
 

@@ -8,6 +8,7 @@ import pytest
 from scipy.linalg import eigh
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.modal._uplifted import lowest_uplifted
 
 SHEAR, FLEXURE = math.inf, 0.0
@@ -20,7 +21,7 @@ LEFT_OUT = (
 
 
 def frame(n_stories, stiffness_ratio, aspect_ratio, period=1.0):
-    return rf.Frame(n_stories, 3.0, 40e3, 40e3, stiffness_ratio, period, aspect_ratio, 0.02)
+    return make_frame(n_stories=n_stories, stiffness_ratio=stiffness_ratio, period=period, aspect_ratio=aspect_ratio)
 
 
 def tower(n_modes=5, method="ritz"):

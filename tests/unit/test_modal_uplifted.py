@@ -9,20 +9,12 @@ import scipy.linalg
 import scipy.optimize
 
 import rockflex as rf
+from builders import make_frame
 from rockflex import InputError
 
 
 def frame(stiffness_ratio=math.inf, aspect_ratio=10.0, n=15, period=1.0):
-    return rf.Frame(
-        n_stories=n,
-        story_height=3.0,
-        story_mass=40e3,
-        base_mass=40e3,
-        stiffness_ratio=stiffness_ratio,
-        period=period,
-        aspect_ratio=aspect_ratio,
-        damping_ratio=0.02,
-    ).rocking()
+    return make_frame(n_stories=n, stiffness_ratio=stiffness_ratio, period=period, aspect_ratio=aspect_ratio).rocking()
 
 
 def test_one_mode_in_closed_form():

@@ -8,20 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rockflex import BoucWen, Frame, GroundMotion, InitialState, InputError, quiet_motion, simulate
+from builders import make_frame
+from rockflex import BoucWen, GroundMotion, InitialState, InputError, quiet_motion, simulate
 from rockflex.models import EXTRA, Model, field_rates
 from twins.complete_model import BoucWen as Twin
 
-FRAME = Frame(
-    n_stories=1,
-    story_height=6.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=np.inf,
-    period=0.6,
-    aspect_ratio=5.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame(n_stories=1, story_height=6.0, period=0.6, aspect_ratio=5.0)
 RANGE = "gamma must be positive and -gamma < beta <= gamma, but gamma={!r} and beta={!r} were given"
 
 

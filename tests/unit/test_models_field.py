@@ -3,22 +3,16 @@
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import BoucWen
 from rockflex.modal import RockingProperties
 from rockflex.models import EXTRA, Model, field_rates, inertia_left
 from twins import complete_model as twin
 from twins.complete import complete_frame
 
-FRAME = {
-    "n_stories": 4,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.6,
-    "aspect_ratio": 6.0,
-    "damping_ratio": 0.04,
-}
+FRAME = frame_values(
+    n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0, damping_ratio=0.04
+)
 NO_MODES = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 SPRING = (0.03, 0.05, 0.7, 0.3, 2.5)
 

@@ -6,19 +6,11 @@ import re
 import numpy as np
 import pytest
 
-from rockflex import Frame, ImpactLaw, InputError, Restitution, VVELComplete, VVELSimplified
+from builders import make_frame
+from rockflex import ImpactLaw, InputError, Restitution, VVELComplete, VVELSimplified
 from rockflex.models import ForgottenLaw, SidedRestitution, impact_of, kinetic_energy, stick, strike
 
-FRAME = Frame(
-    n_stories=4,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=0.125,
-    period=0.6,
-    aspect_ratio=6.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0)
 ALL = FRAME.rocking()
 HEIGHTS, MASSES = 3.0 * np.arange(1.0, 5.0), np.full(4, 40e3)
 

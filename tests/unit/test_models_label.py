@@ -7,19 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rockflex import Frame, InputError
+from builders import make_frame
+from rockflex import InputError
 from rockflex.models import Model, parse_model
 
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=np.inf,
-    period=0.5,
-    aspect_ratio=8.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame(n_stories=3, period=0.5, aspect_ratio=8.0)
 
 
 @pytest.mark.parametrize(

@@ -3,22 +3,15 @@
 import numpy as np
 import pytest
 
-from rockflex import Frame
+from builders import make_frame
 from rockflex.models import LinearModel, Model
 
 GRAVITY = 9.81
 
 
 def model(n_modes, *, lifts=True):
-    frame = Frame(
-        n_stories=4,
-        story_height=3.0,
-        story_mass=40e3,
-        base_mass=60e3,
-        stiffness_ratio=0.125,
-        period=0.6,
-        aspect_ratio=9.0,
-        damping_ratio=0.03,
+    frame = make_frame(
+        n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=9.0, damping_ratio=0.03
     )
     return Model(n_modes, lifts).of(frame.rocking())
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.models import parse_model
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
-FRAME = rf.Frame(
+FRAME = make_frame(
     n_stories=2,
     story_height=4.0,
     story_mass=30e3,

@@ -5,21 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from rockflex import BoucWen, Frame, Tendon
+from builders import make_frame
+from rockflex import BoucWen, Tendon
 from rockflex.models import LANDS, LIFTS, OVERTURNS, LinearModel, Model
 from rockflex.models._elements import ElasticTendon, border_of
 
 GRAVITY = 9.81
-FRAME = Frame(
-    n_stories=4,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=0.125,
-    period=0.6,
-    aspect_ratio=9.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=9.0, damping_ratio=0.03)
 TENDONS = (Tendon(stiffness=3e6, initial_force=2e5), Tendon(stiffness=1e6, initial_force=9e4, position=0.3))
 PLAIN = FRAME.rocking()
 CASES = {

@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from builders import make_frame
 from rockflex import (
     BoucWen,
-    Frame,
     InputError,
     Restitution,
     RockingProperties,
@@ -18,16 +18,7 @@ from rockflex import (
 from rockflex.models import LinearModel, Model, NonlinearModel, SidedRestitution, housner, parse_model
 from rockflex.motion import quiet_motion
 
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=0.125,
-    period=0.5,
-    aspect_ratio=8.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame(n_stories=3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0)
 PROPERTIES = FRAME.rocking()
 BLOCK = PROPERTIES.truncated(0)
 SPRING = BoucWen(0.05)

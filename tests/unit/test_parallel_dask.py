@@ -4,7 +4,6 @@ import builtins
 import functools
 import socket
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import distributed
@@ -18,12 +17,6 @@ from rockflex.store import StudyFolder
 from toy_study import DeadlyPlan, FailingPlan, FlakyPlan, ToyPlan, run_study
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    with Cluster(tmp_path_factory.mktemp("dask")) as running:
-        yield running
 
 
 def parts(folder: Path) -> dict[str, bytes]:

@@ -9,20 +9,12 @@ import pyarrow as pa
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from rockflex.study.plans import CloudPlan, CloudStudy, record_group, run_cloud, run_plan
 from rockflex.study.plans._bench import bench_of
 from rockflex.study.plans._records import checksums
 
-FRAME = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": math.inf,
-    "period": 0.6,
-    "aspect_ratio": 8.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)
 STRUCTURES = [{"name": "stiff", "frame": FRAME}, {"frame": {**FRAME, "period": 1.0, "stiffness_ratio": 0.0}}]
 RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-3-a"]}
 SUITE = rf.load_suite("fema-p695-far-field")

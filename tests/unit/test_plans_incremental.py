@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from rockflex.study.plans import (
     IncrementalStudy,
     StripePlan,
@@ -22,16 +23,7 @@ from rockflex.study.plans._ladder import Ladder, rungs, steps_between, steps_fro
 
 BLOCK = rf.rigid_block(0.2, 1.5)
 PULSE = rf.one_sine_pulse(2.0, 1.0, dt=0.01)
-FRAME = {
-    "n_stories": 2,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": math.inf,
-    "period": 0.5,
-    "aspect_ratio": 8.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(n_stories=2, period=0.5, aspect_ratio=8.0)
 STRUCTURES = [{"name": "one", "frame": FRAME}]
 RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-3-a"]}
 

@@ -4,6 +4,7 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.study.plans import PivotLifts, pivot_lifts
 
 RUNS = pd.DataFrame(
@@ -40,7 +41,7 @@ def test_flexural_frames_would_lift_often_and_shear_frames_do_not() -> None:
     suite = rf.load_suite("fema-p695-far-field")
     share = {}
     for name, stiffness_ratio in (("flexure", 0.0), ("shear", float("inf"))):
-        frame = rf.Frame(5, 3.0, 40e3, 40e3, stiffness_ratio, 0.5, 10.0, 0.02)
+        frame = make_frame(stiffness_ratio=stiffness_ratio, period=0.5)
         runs = rf.run_cloud(frame, list(suite)[::4], ["MDOF-S"], (2.0,))
         (found,) = pivot_lifts(runs)
         standing = runs[runs["status"] == "rocking"]
@@ -51,7 +52,7 @@ def test_flexural_frames_would_lift_often_and_shear_frames_do_not() -> None:
 
 @pytest.mark.parametrize("column", ["max_total_top_displacement", "max_horizontal_reaction", "min_vertical_reaction"])
 def test_every_kind_of_table_has_the_columns(column: str) -> None:
-    frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, 0.5, 8.0, 0.02)
+    frame = make_frame(n_stories=2, stiffness_ratio=1.0, period=0.5, aspect_ratio=8.0)
     motion = rf.load_suite("el-centro-1940")[0]
     response = rf.simulate(frame, motion, "2DOF-S", output="peaks")
     many = rf.simulate_many(frame, motion, "2DOF-S")

@@ -5,19 +5,11 @@ import pytest
 from matplotlib.colors import to_hex
 
 import rockflex as rf
+from builders import make_frame
 from drawing import drawn
 from rockflex.plot import plot_energy, plot_mode_shapes, plot_moment_rotation
 
-FRAME = rf.Frame(
-    n_stories=5,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=math.inf,
-    period=1.0,
-    aspect_ratio=10.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame()
 RECORD = rf.load_suite("el-centro-1940")[0]
 HALF_WIDTH = FRAME.modal().effective_height[0] / 10.0
 RESISTANCE = 6 * 40e3 * 9.81 * HALF_WIDTH
@@ -144,7 +136,7 @@ def test_mode_shapes_of_some_modes_alone_give_masses_in_kg():
 
 
 def test_mode_shapes_fold_into_rows_and_thin_out_their_marks():
-    high = rf.Frame(50, 3.0, 40e3, 40e3, 0.0, 2.0, 10.0, 0.02)
+    high = make_frame(n_stories=50, stiffness_ratio=0.0, period=2.0)
     figure = drawn(plot_mode_shapes(high, 7))
     assert [axes.axison for axes in figure.axes] == [True] * 7 + [False] * 3
     assert figure.axes[0].get_lines()[1].get_marker() in ("", "None")

@@ -11,20 +11,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 
 import rockflex as rf
+from builders import make_frame
 from drawing import notes, spans, uplift_intervals
 from rockflex.plot import plot_history
 from rockflex.plot._curves import curves_of
 
-FRAME = rf.Frame(
-    n_stories=5,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=math.inf,
-    period=1.0,
-    aspect_ratio=10.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame()
 MODELS = ("2DOF-S", "3DOF-S", "MDOF-S", "fixed")
 RECORD = rf.load_suite("el-centro-1940")[0]
 

@@ -8,10 +8,11 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from drawing import drawn, notes
 
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
-OTHER = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 1.0, 10.0, 0.02)
+FRAME = make_frame()
+OTHER = make_frame(stiffness_ratio=0.0)
 TOWER = rf.TaperedTower(200.0, 8.0, 4.0, 1.0, 2400.0, 25e9, 0.02)
 RATIOS = (0.2, 2.0, 20.0, 200.0)
 
@@ -276,7 +277,7 @@ def test_what_cannot_be_drawn_is_named(call, message):
 
 
 def test_too_many_models_are_named():
-    frame = rf.Frame(15, 3.0, 40e3, 40e3, 0.1, 1.0, 10.0, 0.02)
+    frame = make_frame(n_stories=15, stiffness_ratio=0.1)
     table = rf.frequency_ratios(frame, [1.0], (*range(1, 16), None))
     with pytest.raises(rf.InputError, match=r"16 models are too many to distinguish in one figure\. Plot fewer"):
         rf.plot_frequency_ratios(table)

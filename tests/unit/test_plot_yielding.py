@@ -1,22 +1,12 @@
-import math
-
 import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from drawing import drawn, notes, spans, uplift_intervals
 from rockflex.plot import plot_hysteresis, plot_yielding
 
-FRAME = rf.Frame(
-    n_stories=5,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=math.inf,
-    period=1.0,
-    aspect_ratio=10.0,
-    damping_ratio=0.02,
-)
+FRAME = make_frame()
 RECORD = rf.load_suite("el-centro-1940")[0]
 LAW = rf.BoucWen(0.035)
 

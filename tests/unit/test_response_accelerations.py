@@ -3,18 +3,12 @@
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import BoucWen, Frame, GroundMotion, InitialState, Restitution, load_suite, quiet_motion, simulate
 
-GIVEN = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.5,
-    "aspect_ratio": 7.0,
-    "damping_ratio": 0.03,
-}
+GIVEN = frame_values(
+    n_stories=3, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=7.0, damping_ratio=0.03
+)
 FRAME = Frame(**GIVEN)
 HEIGHTS = 3.0 * np.arange(1.0, 4.0)
 SHORT = GroundMotion(load_suite("el-centro-1940")[0].acceleration[60:160] * 2.5, 0.02)

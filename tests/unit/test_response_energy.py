@@ -6,22 +6,16 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
+from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, InputError, load_suite, quiet_motion, simulate
 
 GRAVITY = 9.81
 
 
 def frame(**changes):
-    given = {
-        "n_stories": 3,
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 60e3,
-        "stiffness_ratio": 1.0,
-        "period": 0.5,
-        "aspect_ratio": 8.0,
-        "damping_ratio": 0.03,
-    }
+    given = frame_values(
+        n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.03
+    )
     return Frame(**{**given, **changes})
 
 

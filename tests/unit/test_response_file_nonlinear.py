@@ -7,9 +7,9 @@ import pickle
 import numpy as np
 import pytest
 
+from builders import make_frame
 from rockflex import (
     BoucWen,
-    Frame,
     GroundMotion,
     InputError,
     Response,
@@ -22,16 +22,7 @@ from rockflex import (
 from rockflex.models import ForgottenLaw, NonlinearModel
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[60:210] * 2.5, 0.02, name="El Centro")
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=1.0,
-    period=0.5,
-    aspect_ratio=7.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=7.0, damping_ratio=0.03)
 SPRING = BoucWen(0.03, 0.02, 0.6, 0.4, 2.5)
 RUNS = {
     "2DOF-C": {},

@@ -4,18 +4,12 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from twins.newton import Complete, Simplified, integrate, masses_of
 
-FRAME = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.6,
-    "aspect_ratio": 6.0,
-    "damping_ratio": 0.03,
-}
+FRAME = frame_values(
+    n_stories=3, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0, damping_ratio=0.03
+)
 RECORDS = {"el-centro-1940": (0, slice(60, 210), 2.0), "fema-p695-far-field": (1, slice(500, 1000), 2.0)}
 
 

@@ -6,8 +6,8 @@ import pickle
 import numpy as np
 import pytest
 
+from builders import make_frame
 from rockflex import (
-    Frame,
     GroundMotion,
     History,
     InitialState,
@@ -20,16 +20,7 @@ from rockflex import (
 )
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
-FRAME = Frame(
-    n_stories=4,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=0.125,
-    period=0.5,
-    aspect_ratio=8.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 FULL_MASS = LumpedStructure(
     [[3e4, 4e3, 0.0], [4e3, 2.5e4, 3e3], [0.0, 3e3, 2e4]],
     [[9e7, -4e7, 0.0], [-4e7, 7e7, -3e7], [0.0, -3e7, 3e7]],

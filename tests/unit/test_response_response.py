@@ -14,10 +14,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from builders import make_frame
 from rockflex import (
     EnergyLedger,
     FloorPeaks,
-    Frame,
     GroundMotion,
     History,
     InitialState,
@@ -32,16 +32,7 @@ from rockflex.response import respond
 from rockflex.solve import Solution
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
-FRAME = Frame(
-    n_stories=4,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=0.125,
-    period=0.5,
-    aspect_ratio=8.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 QUANTITIES = (
     "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",

@@ -1,13 +1,12 @@
 """What the README and the theory say of the base moment of a structure that rocks."""
 
-import math
-
 import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
+FRAME = make_frame()
 SUITE = rf.load_suite("fema-p695-far-field")
 
 

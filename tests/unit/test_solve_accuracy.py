@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import Frame, GroundMotion, load_suite, simulate
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
@@ -11,16 +12,7 @@ PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_sh
 
 
 def errors(motion, **changes):
-    frame = {
-        "n_stories": 3,
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 40e3,
-        "stiffness_ratio": 1.0,
-        "period": 0.3,
-        "aspect_ratio": 6.0,
-        "damping_ratio": 0.05,
-    }
+    frame = frame_values(n_stories=3, stiffness_ratio=1.0, period=0.3, aspect_ratio=6.0, damping_ratio=0.05)
     given = {**frame, **changes}
     mine = simulate(Frame(**given), motion, output="peaks")
     parameters = frame_properties(**given).kwargs()

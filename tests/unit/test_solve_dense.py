@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from builders import frame_values
 from rockflex import Frame, GroundMotion, load_suite, simulate
 from rockflex.models import parse_model
 from rockflex.response import asked_of
@@ -18,16 +19,7 @@ PEAKS = ("rotation", "top_displacement", "base_moment", "base_shear")
 
 
 def frame(**changes):
-    given = {
-        "n_stories": 3,
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 40e3,
-        "stiffness_ratio": 0.125,
-        "period": 0.5,
-        "aspect_ratio": 9.0,
-        "damping_ratio": 0.02,
-    }
+    given = frame_values(n_stories=3, stiffness_ratio=0.125, period=0.5, aspect_ratio=9.0)
     return {**given, **changes}
 
 

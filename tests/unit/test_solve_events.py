@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, RockingProperties, quiet_motion, simulate
 from rockflex.models import Model
 from twins.fine_step import simulate_fine
@@ -16,16 +17,7 @@ PEAKS = ("rotation", "top_displacement", "base_moment", "base_shear")
 
 
 def frame(**changes):
-    given = {
-        "n_stories": 4,
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 60e3,
-        "stiffness_ratio": np.inf,
-        "period": 0.6,
-        "aspect_ratio": 9.0,
-        "damping_ratio": 0.02,
-    }
+    given = frame_values(n_stories=4, base_mass=60e3, period=0.6, aspect_ratio=9.0)
     return {**given, **changes}
 
 

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import polynomial
 from scipy.linalg import expm
 
+from builders import frame_values
 from rockflex import Frame
 from rockflex.models import Model
 from rockflex.response import asked_of
@@ -18,16 +19,9 @@ from twins.exact import Exact
 from twins.frame import frame_properties
 
 DT = 0.01
-GIVEN = {
-    "n_stories": 4,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.6,
-    "aspect_ratio": 9.0,
-    "damping_ratio": 0.03,
-}
+GIVEN = frame_values(
+    n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=9.0, damping_ratio=0.03
+)
 
 
 def prepared(n):

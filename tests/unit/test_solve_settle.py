@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import (
     Frame,
     GroundMotion,
@@ -25,16 +26,7 @@ EL_CENTRO = load_suite("el-centro-1940")[0]
 
 
 def frame(**changes):
-    given = {
-        "n_stories": 3,
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 40e3,
-        "stiffness_ratio": np.inf,
-        "period": 0.8,
-        "aspect_ratio": 9.0,
-        "damping_ratio": 0.02,
-    }
+    given = frame_values(n_stories=3, period=0.8, aspect_ratio=9.0)
     return {**given, **changes}
 
 

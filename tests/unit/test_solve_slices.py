@@ -5,22 +5,14 @@ from itertools import count
 import numpy as np
 import pytest
 
-from rockflex import BoucWen, Frame, Restitution, load_suite
+from builders import make_frame
+from rockflex import BoucWen, Restitution, load_suite
 from rockflex.models import parse_model
 from rockflex.response import asked_of
 from rockflex.solve import Engine, RunStoppedError, stopping_when
 from rockflex.solve.layout import FOLLOWS
 
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=40e3,
-    stiffness_ratio=np.inf,
-    period=0.5,
-    aspect_ratio=8.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=3, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 RECORD = 2.5 * load_suite("el-centro-1940")[0].acceleration[60:220]
 COARSE = RECORD[::5].copy()
 CASES = {

@@ -7,6 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 import rockflex as rf
+from builders import make_frame
 from rockflex import Frame, GroundMotion, InputError, simulate
 from rockflex.models import Model
 from rockflex.response import asked_of
@@ -256,7 +257,7 @@ def test_phases_that_differ_by_constant_forces_alone_share_their_tables(name):
 
 
 def test_a_step_in_which_rotations_overflow_is_refused():
-    frame = Frame(1, 3.0, 40e3, 40e3, np.inf, 0.5, 9.0, 0.05)
+    frame = make_frame(n_stories=1, period=0.5, aspect_ratio=9.0, damping_ratio=0.05)
     motion = GroundMotion([0.0, 5.0, 0.0], 1000.0)
     fall = float(np.sqrt(frame.rocking().l0r * 9.81 / frame.rocking().i_theta))
     with pytest.raises(InputError) as caught:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, load_suite, simulate
 
 SCRIPT = """
@@ -23,16 +24,7 @@ json.dump([run.peaks() for run in runs()], sys.stdout)
 def runs():
     """Uplifts, impacts and a settled end; overturning; a fixed base; a dense start with jumps at both ends."""
     record = load_suite("el-centro-1940")[0].acceleration[60:200]
-    frame = {
-        "n_stories": 3,
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 40e3,
-        "stiffness_ratio": np.inf,
-        "period": 0.5,
-        "aspect_ratio": 9.0,
-        "damping_ratio": 0.05,
-    }
+    frame = frame_values(n_stories=3, period=0.5, aspect_ratio=9.0, damping_ratio=0.05)
     motion = GroundMotion(2.0 * record, 0.02, name="El Centro")
     yield simulate(Frame(**frame), motion, free_vibration="settle")
     yield simulate(Frame(**frame), motion, "2DOF-S", initial=InitialState(0.8))

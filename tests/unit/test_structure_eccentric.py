@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 
-FRAME = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=60e3, stiffness_ratio=0.125, period=0.4,
-                 aspect_ratio=6.0, damping_ratio=0.02)  # fmt: skip
+FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)  # fmt: skip
 B = FRAME.rocking().half_width
 TENDONS = [rf.Tendon(2e5, 3e6, -0.9), rf.Tendon(1e5, 2e6, 0.4)]
 

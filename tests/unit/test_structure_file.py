@@ -8,6 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 import rockflex as rf
+from builders import frame_values
 from rockflex.structure.file import KINDS, StructureEntry, Table, beside, checked, expected
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
@@ -26,16 +27,7 @@ PROPERTIES = {
     "zeta": 0.02,
 }
 TENDON = {"initial_force": 5e5, "stiffness": 2e7}
-FRAME = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": math.inf,
-    "period": 0.6,
-    "aspect_ratio": 8.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)
 BEAM = {"height": 30.0, "half_width": 2.0, "damping_ratio": 0.02, "base_mass": 1e4, "n_elements": 40, "n_modes": 3}
 Z = [0.0, 10.0, 10.0, 30.0]
 FISH_BONE = {"story_heights": [4.0, 3.0], "masses": 40e3, "column_stiffness": [9e7, 8e7], "beam_stiffness": math.inf}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from rockflex import InputError
 
 GOOD = {
@@ -25,7 +26,7 @@ def fish_bone(**changes):
 
 @pytest.mark.parametrize("ratio", [0.0, 0.125, 2.0, math.inf])
 def test_equal_stories_are_a_frame(ratio):
-    frame = rf.Frame(5, 3.0, 40e3, 20e3, ratio, 0.8, 6.0, 0.05)
+    frame = make_frame(base_mass=20e3, stiffness_ratio=ratio, period=0.8, aspect_ratio=6.0, damping_ratio=0.05)
 
     def equal(stiffness):
         beams = math.inf if math.isinf(ratio) else 12.0 * ratio * stiffness / 3.0

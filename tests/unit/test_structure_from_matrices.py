@@ -9,10 +9,11 @@ import scipy.linalg
 import scipy.sparse
 
 import rockflex as rf
+from builders import make_frame
 from rockflex import InputError
 
 SCALARS = {"base_mass": 40e3, "half_width": 1.5, "damping_ratio": 0.02}
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, 0.5, 0.6, 7.0, 0.02)
+FRAME = make_frame(stiffness_ratio=0.5, period=0.6, aspect_ratio=7.0)
 HEIGHTS = FRAME.lumped.heights
 MASSES, STIFFNESS = FRAME.lumped.masses, FRAME.lumped.stiffness
 NUMBERS = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "zeta")

@@ -36,7 +36,7 @@ def test_frequencies_solve_the_differential_equation(alpha):
         state = scipy.linalg.expm(rates)[:, 2:]
         return np.linalg.det([state[2], state[3] - alpha**2 * state[1]])
 
-    squares = np.linspace(1.0, 900.0, 6000) ** 2 / 20.0
+    squares = np.linspace(1.0, 900.0, 600) ** 2 / 20.0
     signs = np.sign([free_top(s) for s in squares])
     at = np.flatnonzero(signs[1:] != signs[:-1])[:4]
     found = np.sqrt([scipy.optimize.brentq(free_top, squares[i], squares[i + 1], rtol=1e-13) for i in at])

@@ -1,7 +1,6 @@
 """A study from its specification to its table, in memory, in a folder, resumed, and estimated."""
 
 import json
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -12,20 +11,12 @@ import pyarrow.parquet as pq
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from rockflex import InputError
 from rockflex.structure.file import StructureEntry
 from rockflex.study.plans import ChunkedPlan
 
-FRAME = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": 0.0,
-    "period": 0.6,
-    "aspect_ratio": 8.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(n_stories=3, stiffness_ratio=0.0, period=0.6, aspect_ratio=8.0)
 RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-2-*"]}
 STUDY = rf.CloudStudy(
     structures=[{"name": "A", "frame": FRAME}],
@@ -110,9 +101,7 @@ def test_an_interrupted_study_goes_on(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_cluster_gives_the_same_bits(tmp_path):
-    from dask_cluster import Cluster
-
+def test_a_cluster_gives_the_same_bits(tmp_path, cluster):
     here, there, spec = tmp_path / "here", tmp_path / "there", tmp_path / "study.toml"
     spec.write_text(
         'study = "cloud"\nmodels = ["2DOF-S", "2DOF-C", "MDOF-S"]\nscales = [0.5, 1.5]\nruns_per_chunk = 5\n'
@@ -121,13 +110,10 @@ def test_a_cluster_gives_the_same_bits(tmp_path):
     )
     # In a process of its own, which takes the kernels from the cache as the workers do: two processes that compile at
     # the same time may differ in how they fuse multiplications.
+    rf.run_study(spec)  # compiles what is not there yet
     command = [sys.executable, "-m", "rockflex", "cloud", str(spec), "--out", str(here)]
-    for _ in range(2):  # the first compiles what is not there yet
-        shutil.rmtree(here, ignore_errors=True)
-        subprocess.run(command, check=True, capture_output=True)
-    (tmp_path / "logs").mkdir()
-    with Cluster(tmp_path / "logs") as cluster:
-        rf.run_study(spec, there, dask=cluster.address)
+    subprocess.run(command, check=True, capture_output=True)
+    rf.run_study(spec, there, dask=cluster.address)
     parts = [{path.name: path.read_bytes() for path in (folder / "parts").iterdir()} for folder in (here, there)]
     assert len(parts[0]) == 5
     assert parts[0] == parts[1]

@@ -5,8 +5,9 @@ import pytest
 import scipy.linalg
 
 import rockflex as rf
+from builders import make_frame
 
-FRAME = rf.Frame(5, 3.0, 40e3, 30e3, 0.5, 0.8, 7.0, 0.02)
+FRAME = make_frame(base_mass=30e3, stiffness_ratio=0.5, period=0.8, aspect_ratio=7.0)
 TOWER = rf.TaperedTower(200.0, 8.0, 4.0, 1.0, 2400.0, 25e9, 0.02)
 
 
@@ -15,7 +16,7 @@ def test_every_width_is_the_frame_built_with_it():
     assert list(table["model"].unique()) == ["2DOF-S", "3DOF-S", "MDOF-S"]
     assert len(table) == 3 * (1 + 2 + 5)
     for (count, aspect_ratio), rows in table.groupby(["n_modes", "aspect_ratio"]):
-        frame = rf.Frame(5, 3.0, 40e3, 30e3, 0.5, 0.8, aspect_ratio, 0.02)
+        frame = make_frame(base_mass=30e3, stiffness_ratio=0.5, period=0.8, aspect_ratio=aspect_ratio)
         modes = rf.uplifted_modes(frame.rocking(), count)
         assert list(rows["mode"]) == list(range(1, count + 1))
         np.testing.assert_allclose(rows["half_width"], frame.half_width, rtol=1e-12)

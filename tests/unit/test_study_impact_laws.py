@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
+from builders import make_frame
 from rockflex import (
-    Frame,
     GroundMotion,
     InitialState,
     InputError,
@@ -19,16 +19,7 @@ from rockflex import (
     simulate_many,
 )
 
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=0.125,
-    period=0.5,
-    aspect_ratio=6.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=6.0, damping_ratio=0.03)
 TIME = 0.02 * np.arange(251)
 MOTION = GroundMotion(4.5 * np.sin(0.6 * TIME) * (np.sin(9.0 * TIME + 0.4) + 0.6 * np.sin(27.0 * TIME)), 0.02)
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear")

@@ -6,19 +6,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from rockflex import Frame, InitialState, InputError, quiet_motion, simulate
+from builders import make_frame
+from rockflex import InitialState, InputError, quiet_motion, simulate
 from rockflex.models import Model
 
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=1.0,
-    period=0.5,
-    aspect_ratio=8.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 THREE, TWO = Model().of(FRAME.rocking()), Model(2).of(FRAME.rocking())
 FIXED = Model(lifts=False).of(FRAME.rocking())
 

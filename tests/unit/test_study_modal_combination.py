@@ -5,8 +5,9 @@ import math
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 1.0, 10.0, 0.02)
+FRAME = make_frame(stiffness_ratio=0.0)
 MOTION = rf.load_suite("fema-p695-far-field")["FF-1-a"]
 
 

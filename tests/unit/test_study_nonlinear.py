@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from builders import frame_values
 from rockflex import (
     BoucWen,
     Frame,
@@ -22,16 +23,7 @@ from rockflex.models import Model
 
 RECORD = load_suite("el-centro-1940")[0].acceleration
 MOTIONS = [GroundMotion(RECORD[60:160] * f, 0.02, name=f"El Centro x {f:g}") for f in (0.5, 2.5)]
-GIVEN = {
-    "n_stories": 3,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 1.0,
-    "period": 0.5,
-    "aspect_ratio": 7.0,
-    "damping_ratio": 0.03,
-}
+GIVEN = frame_values(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=7.0, damping_ratio=0.03)
 FRAMES = [Frame(**GIVEN), Frame(**{**GIVEN, "period": 0.9, "aspect_ratio": 9.0})]
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear", "n_impacts", "n_uplifts")
 LABELS = ["2DOF-C", "2DOF-C-SI", "3DOF-C-E", "MDOF-C", "rigid", "rigid-C", "MDOF-S", "fixed"]

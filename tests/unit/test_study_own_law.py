@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from own_law import Lossy
 
-FRAME = {"n_stories": 2, "story_height": 3.0, "story_mass": 4e4, "base_mass": 4e4, "stiffness_ratio": math.inf,
-         "period": 0.5, "aspect_ratio": 6.0, "damping_ratio": 0.02}  # fmt: skip
+FRAME = frame_values(n_stories=2, period=0.5, aspect_ratio=6.0)  # fmt: skip
 GIVEN = {"structures": [{"name": "A", "frame": FRAME}], "records": {"suites": ["el-centro-1940"]},
          "models": ["2DOF-S", "2DOF-C"], "runs_per_chunk": 1}  # fmt: skip
 STUDIES = {
@@ -152,21 +152,18 @@ def test_a_law_that_stands_in_no_file(tmp_path):
 
 
 @pytest.mark.slow
-def test_on_a_cluster(tmp_path):
-    from dask_cluster import Cluster
-
+def test_on_a_cluster(cluster):
     class Local(Lossy):
         pass
 
     here = rf.run_study(cloud(impact=Lossy(0.5)))
-    with Cluster(tmp_path) as running:
-        pd.testing.assert_frame_equal(rf.run_study(cloud(impact=Lossy(0.5)), dask=running.address), here)
-        with pytest.raises(rf.InputError, match=r"cannot be sent to workers: .*Local.* top of a module"):
-            rf.run_study(cloud(impact=Local(0.5)), dask=running.address)
-        unknown = type("Unknown", (Lossy,), {"__module__": "__main__"})
-        sys.modules["__main__"].Unknown = unknown
-        try:
-            with pytest.raises(rf.InputError, match=r"cannot load the plan .*Unknown.* modules can be imported"):
-                rf.run_study(cloud(impact=unknown(0.5)), dask=running.address)
-        finally:
-            del sys.modules["__main__"].Unknown
+    pd.testing.assert_frame_equal(rf.run_study(cloud(impact=Lossy(0.5)), dask=cluster.address), here)
+    with pytest.raises(rf.InputError, match=r"cannot be sent to workers: .*Local.* top of a module"):
+        rf.run_study(cloud(impact=Local(0.5)), dask=cluster.address)
+    unknown = type("Unknown", (Lossy,), {"__module__": "__main__"})
+    sys.modules["__main__"].Unknown = unknown
+    try:
+        with pytest.raises(rf.InputError, match=r"cannot load the plan .*Unknown.* modules can be imported"):
+            rf.run_study(cloud(impact=unknown(0.5)), dask=cluster.address)
+    finally:
+        del sys.modules["__main__"].Unknown

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from builders import make_frame
 from rockflex import (
     Frame,
     GroundMotion,
@@ -16,16 +17,7 @@ from rockflex import (
 from rockflex._shown import shown
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:300] * 2.0, 0.02, name="El Centro")
-FRAME = Frame(
-    n_stories=3,
-    story_height=3.0,
-    story_mass=40e3,
-    base_mass=60e3,
-    stiffness_ratio=1.0,
-    period=0.5,
-    aspect_ratio=8.0,
-    damping_ratio=0.03,
-)
+FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 
 
 def test_structures_and_their_properties_are_alike():

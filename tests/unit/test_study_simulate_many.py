@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from builders import frame_values
 from rockflex import (
     BoucWen,
     Frame,
@@ -27,16 +28,7 @@ RECORD = load_suite("el-centro-1940")[0].acceleration
 
 
 def frame(**changes):
-    given = {
-        "n_stories": 3,
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 60e3,
-        "stiffness_ratio": np.inf,
-        "period": 0.5,
-        "aspect_ratio": 8.0,
-        "damping_ratio": 0.03,
-    }
+    given = frame_values(n_stories=3, base_mass=60e3, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
     return Frame(**{**given, **changes})
 
 

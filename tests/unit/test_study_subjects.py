@@ -2,16 +2,16 @@
 
 import re
 
-import numpy as np
 import pandas as pd
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 
 RECORD = rf.load_suite("el-centro-1940")[0].acceleration[100:400]
 FRAMES = {
-    "slender": rf.Frame(2, 3.0, 4e4, 4e4, np.inf, 0.5, 9.0, 0.02),
-    "stocky": rf.Frame(2, 3.0, 4e4, 4e4, 0.0, 0.4, 6.0, 0.02),
+    "slender": make_frame(n_stories=2, period=0.5, aspect_ratio=9.0),
+    "stocky": make_frame(n_stories=2, stiffness_ratio=0.0, period=0.4, aspect_ratio=6.0),
 }
 MOTIONS = {"weak": rf.GroundMotion(1.2 * RECORD, 0.02, "a"), "strong": rf.GroundMotion(2.0 * RECORD, 0.02, "b")}
 SUITE = rf.Suite(MOTIONS.values())

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 
 BASE = {
     "omega": [6.0, 25.0],
@@ -43,8 +44,7 @@ def test_properties_of_a_held_base():
 
 
 def test_a_restrained_structure_is_the_structure_with_tendons():
-    frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=0.0, period=0.6,
-                     aspect_ratio=8.0, damping_ratio=0.02)  # fmt: skip
+    frame = make_frame(n_stories=3, stiffness_ratio=0.0, period=0.6, aspect_ratio=8.0)  # fmt: skip
     restrained = rf.Restrained(frame, CENTRAL)
     assert restrained.tendons == (CENTRAL,)
     assert restrained.rocking(2).tendons == (CENTRAL,)

@@ -12,6 +12,7 @@ import pytest
 from pydantic import BaseModel
 
 import rockflex as rf
+from builders import frame_values, make_frame
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.models import ForgottenLaw, LinearModel, NonlinearModel
@@ -21,14 +22,13 @@ RECORD = 2.5 * np.sin(np.arange(300) * 0.1)
 ROTATION = np.where(np.arange(40) % 5, np.linspace(2e-4, 0.05, 40), 0.0)
 RUNS = (np.linspace(0.1, 2.0, 40), ROTATION, (np.arange(40) > 33) & (ROTATION > 0.0))
 STUDY = {
-    "structures": [{"name": "one", "frame": {"n_stories": 2, "story_height": 3.0, "story_mass": 4e4, "base_mass": 4e4,
-                    "stiffness_ratio": math.inf, "period": 0.5, "aspect_ratio": 6.0, "damping_ratio": 0.02}}],
+    "structures": [{"name": "one", "frame": frame_values(n_stories=2, period=0.5, aspect_ratio=6.0)}],
     "records": {"suites": ["el-centro-1940"]},
 }  # fmt: skip
 
 
 def frame() -> rf.Frame:
-    return rf.Frame(2, 3.0, 4e4, 4e4, math.inf, 0.5, 8.0, 0.02)
+    return make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 
 
 def tendons() -> list[rf.Tendon]:

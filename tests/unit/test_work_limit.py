@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from rockflex import InputError, SolverError
 from rockflex.models import parse_model
 from rockflex.solve import Pace, Task, WorkLimitError, pace_of
@@ -17,16 +18,7 @@ EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
 
 
-FRAME = {
-    "n_stories": 5,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 40e3,
-    "stiffness_ratio": math.inf,
-    "period": 1.0,
-    "aspect_ratio": 10.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values()
 
 
 def frame(**given):

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import frame_values, make_frame
 from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete
 from twins.complete_model import BoucWen, CompleteModel, Structure
@@ -25,16 +26,7 @@ CASES = [
 ]
 LAWS = {"2DOF-C": impact_laws.CompleteVVEL(), "2DOF-C-SI": impact_laws.SimplifiedVVEL()}
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear")
-FRAME = {
-    "n_stories": 4,
-    "story_height": 3.0,
-    "story_mass": 40e3,
-    "base_mass": 60e3,
-    "stiffness_ratio": 0.125,
-    "period": 0.6,
-    "aspect_ratio": 6.0,
-    "damping_ratio": 0.02,
-}
+FRAME = frame_values(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0)
 NO_FLEXURE = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 
 
@@ -229,16 +221,7 @@ def test_with_all_modes_both_impact_laws_are_one():
 
 @pytest.mark.parametrize(("model", "rotation", "top"), [("2DOF-S-BW", 1.123e-2, 0.0546), ("1DOF-fixed", 0.0, 0.1354)])
 def test_section_4_2(model, rotation, top):
-    frame = rf.Frame(
-        n_stories=5,
-        story_height=3.0,
-        story_mass=40e3,
-        base_mass=40e3,
-        stiffness_ratio=np.inf,
-        period=1.0,
-        aspect_ratio=10.0,
-        damping_ratio=0.02,
-    )
+    frame = make_frame()
     motion = rf.load_suite("el-centro-1940")[0]
     response = rf.simulate(frame, motion, model, output="peaks", bouc_wen=rf.BoucWen(yield_displacement=0.075))
     assert response.max_rotation == pytest.approx(rotation, abs=5e-6)

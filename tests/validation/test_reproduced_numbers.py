@@ -13,11 +13,12 @@ import pytest
 
 import rockflex as rf
 from drawing import drawn
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, reproduce
+from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _population, reproduce
 from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, places
 from rockflex.papers.silva_stojadinovic_2024._number import Interval
 from rockflex.papers.silva_stojadinovic_2024._population import intervals, pool
 
+PAIRS = 300  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records
 MISSES = {
     "figure-3": {"friction that 2DOF-C needs, Eq. 22 as printed"},
@@ -46,7 +47,9 @@ OWN = {"figure-8": 10, "figure-11": 1, "table-2": 8, "figure-3": 4, "figure-4": 
 
 @pytest.fixture(scope="module")
 def records():
-    return Records(seeds=10)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_population, "PAIRS", PAIRS)
+        yield Records(seeds=10)
 
 
 @pytest.fixture(scope="module")
@@ -218,21 +221,19 @@ def test_fig_6_is_judged_where_the_difference_is_largest_in_rad(results):
     assert second.ours == pytest.approx(12.0, abs=0.2)
 
 
-def test_draws_of_a_thousand_spread_as_thousands_do(records):
+def test_draws_of_a_population_spread_as_populations_do(records):
     pairs = pool(records)
-    assert len(pairs) == 10_000
-    resting = (pairs["status_mdof"] == "no_uplift").to_numpy().reshape(10, 1000)
+    assert len(pairs) == 10 * PAIRS
+    resting = (pairs["status_mdof"] == "no_uplift").to_numpy().reshape(10, PAIRS)
     share, found = resting.mean(), intervals(records)["no uplift"]
-    # Thousands drawn from ten thousands without replacement: hypergeometric, its 5 and 95 % quantiles.
-    spread = 1.645 * np.sqrt(1000 * share * (1 - share) * 0.9)
-    assert found.estimate == pytest.approx(1000 * share, abs=3)
+    # A tenth drawn from ten populations without replacement: hypergeometric, its 5 and 95 % quantiles.
+    spread = 1.645 * np.sqrt(PAIRS * share * (1 - share) * 0.9)
+    assert found.estimate == pytest.approx(PAIRS * share, abs=0.003 * PAIRS)
     assert (found.high - found.low) / 2 == pytest.approx(spread, rel=0.2)
     assert found.low <= np.median(resting.sum(axis=1)) <= found.high
 
 
 def test_a_measure_that_few_draws_have_is_none(records, monkeypatch):
-    from rockflex.papers.silva_stojadinovic_2024 import _population
-
     calls = iter(range(10**6))
     monkeypatch.setattr(_population, "DRAWS", 20)
     monkeypatch.setattr(

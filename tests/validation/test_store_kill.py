@@ -1,10 +1,13 @@
 """A study killed at twenty random moments is resumed, and its table is that of the undisturbed one."""
 
+import multiprocessing
 import os
 import random
-import subprocess
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 import pandas as pd
@@ -15,13 +18,23 @@ from rockflex.store import StudyFolder
 from toy_study import ToyPlan, run_study
 
 pytestmark = pytest.mark.slow
-HELPER = Path(__file__).parents[1] / "toy_study.py"
-PLAN = ToyPlan(n_chunks=40, delay=0.02)
+PLAN = ToyPlan(n_chunks=20, delay=0.04)
+Start = Callable[..., BaseProcess]
 
 
-def start(folder: Path) -> "subprocess.Popen[bytes]":
-    command = [sys.executable, str(HELPER), str(folder), str(PLAN.n_chunks), str(PLAN.delay)]
-    return subprocess.Popen(command, env=os.environ | {"PYTHONPATH": str(HELPER.parent)})
+@pytest.fixture
+def start(monkeypatch: pytest.MonkeyPatch) -> Start:
+    """Call a function in a new process: a copy of one that has imported what studies need, and run nothing."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path for path in sys.path if path))
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([run_study.__module__, rf.run_study.__module__])
+
+    def started(function: Callable[..., object], *arguments: object) -> BaseProcess:
+        process = context.Process(target=function, args=arguments)
+        process.start()
+        return process
+
+    return started
 
 
 def await_file(path: Path) -> None:
@@ -29,14 +42,19 @@ def await_file(path: Path) -> None:
         time.sleep(0.001)
 
 
-def test_killed_at_twenty_random_moments_and_resumed(tmp_path: Path) -> None:
+def kill(process: BaseProcess) -> None:
+    process.kill()
+    process.join()
+
+
+def test_killed_at_twenty_random_moments_and_resumed(tmp_path: Path, start: Start) -> None:
     names, cut_short = [f"part-{number:05d}.parquet" for number in range(PLAN.n_chunks)], 0
     for attempt in range(20):
         study = tmp_path / f"study-{attempt}"
-        with start(study) as process:
-            await_file(study)  # the imports take longer than the study
-            time.sleep(random.Random(attempt).uniform(0.0, 0.5))
-            process.kill()
+        process = start(run_study, str(study), PLAN)
+        await_file(study)
+        time.sleep(random.Random(attempt).uniform(0.0, 0.5))
+        kill(process)
         before = {path.name: path.read_bytes() for path in study.glob("parts/*.parquet")}
         cut_short += len(before) < PLAN.n_chunks
         computed = run_study(str(study), ToyPlan(PLAN.n_chunks))
@@ -48,40 +66,41 @@ def test_killed_at_twenty_random_moments_and_resumed(tmp_path: Path) -> None:
     assert cut_short > 10  # a few may have been faster than this process
 
 
-def test_killed_again_and_again_it_ends(tmp_path: Path) -> None:
+def test_killed_again_and_again_it_ends(tmp_path: Path, start: Start) -> None:
     study, draw = tmp_path / "study", random.Random(99)
     for _ in range(4):
-        with start(study) as process:
-            await_file(study / "lock")
-            time.sleep(draw.uniform(0.0, 0.3))
-            process.kill()
+        process = start(run_study, str(study), PLAN)
+        await_file(study / "lock")
+        time.sleep(draw.uniform(0.0, 0.3))
+        kill(process)
     run_study(str(study), ToyPlan(PLAN.n_chunks))
     pd.testing.assert_frame_equal(StudyFolder.load(study).frame(), PLAN.whole())
 
 
-def test_a_real_study_killed_at_random_moments_ends_alike(tmp_path: Path) -> None:
+def test_a_real_study_killed_at_random_moments_ends_alike(tmp_path: Path, start: Start) -> None:
     """Killed as often as it takes: each process goes on where the one before was stopped."""
     spec, folder, draw = tmp_path / "study.toml", tmp_path / "killed", random.Random(7)
     spec.write_text(
-        'study = "population"\npairs = 240\nruns_per_chunk = 12\n[records]\nsuites = ["fema-p695-far-field"]\n'
+        'study = "population"\npairs = 120\nruns_per_chunk = 12\n[records]\nsuites = ["fema-p695-far-field"]\n'
     )
-    command = [sys.executable, "-m", "rockflex", "population", str(spec), "--out", str(folder), "--workers", "1"]
     kills, kept = 0, 0
     while True:
-        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            while process.poll() is None and len(list(folder.glob("parts/*.parquet"))) <= kept:
-                time.sleep(0.001)
-            time.sleep(draw.uniform(0.0, 0.05))
-            if process.poll() is None and kills < 8:
-                process.kill()
-                kills += 1
-            process.wait()
+        process = start(partial(rf.run_study, spec, folder, workers=1))
+        while process.is_alive() and len(list(folder.glob("parts/*.parquet"))) <= kept:
+            time.sleep(0.001)
+        time.sleep(draw.uniform(0.0, 0.05))
+        if process.is_alive() and kills < 4:
+            process.kill()
+            kills += 1
+        process.join()
         kept = len(list(folder.glob("parts/*.parquet")))
-        if process.returncode == 0:
+        if process.exitcode == 0:
             break
     assert kills > 0
     whole = tmp_path / "whole"  # by a process of its own, which has the same kernels from the cache
-    subprocess.run([str(whole) if each == str(folder) else each for each in command], check=True, capture_output=True)
+    process = start(partial(rf.run_study, spec, whole, workers=1))
+    process.join()
+    assert process.exitcode == 0
     pd.testing.assert_frame_equal(rf.run_study(spec, folder), rf.run_study(spec, whole))
     for path in (whole / "parts").iterdir():
         assert (folder / "parts" / path.name).read_bytes() == path.read_bytes()

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from builders import make_frame
 from rockflex.structure import Frame
 
 SHEAR_MASSES, SHEAR_HEIGHTS = "0.88 0.09 0.02 0.008 0.002", "0.70 -0.24 0.15 -0.12 0.10"
@@ -23,16 +24,7 @@ class Row:
 
     @property
     def frame(self) -> Frame:
-        return Frame(
-            n_stories=5,
-            story_height=3.0,
-            story_mass=40e3,
-            base_mass=40e3,
-            stiffness_ratio=self.stiffness_ratio,
-            period=self.period,
-            aspect_ratio=self.aspect_ratio,
-            damping_ratio=0.02,
-        )
+        return make_frame(stiffness_ratio=self.stiffness_ratio, period=self.period, aspect_ratio=self.aspect_ratio)
 
 
 TABLE_1 = {

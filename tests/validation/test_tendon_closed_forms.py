@@ -11,11 +11,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.models import Field, LinearModel, NonlinearModel, Quantities, field_rates, parse_model
 from rockflex.solve import Engine
 
-FRAME = rf.Frame(n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=np.inf, period=1.0,
-                 aspect_ratio=10.0, damping_ratio=0.02)  # fmt: skip
+FRAME = make_frame()  # fmt: skip
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "2DOF-C-SI", "3DOF-C-E", "MDOF-C", "rigid", "rigid-C"]
 BLOCK = rf.RockingProperties([], [], [], [], i_theta=24e6, l0r=1.8e6, m_tot=240e3, half_width=1.2, zeta=0.02)

@@ -8,6 +8,7 @@ import pytest
 import scipy.optimize
 
 import rockflex as rf
+from builders import make_frame
 from drawing import drawn
 
 BEHAVIOURS = {"shear": math.inf, "flexure": 0.0}
@@ -23,9 +24,13 @@ KNOWN = {
 
 
 def building(behaviour, n_stories=15, period=1.0):
-    return rf.Frame(
-        n_stories, 45.0 / n_stories, 600e3 / n_stories, 40e3, BEHAVIOURS[behaviour], period, 10.0, 0.02
-    )  # fmt: skip
+    return make_frame(
+        n_stories=n_stories,
+        story_height=45.0 / n_stories,
+        story_mass=600e3 / n_stories,
+        stiffness_ratio=BEHAVIOURS[behaviour],
+        period=period,
+    )
 
 
 @pytest.mark.parametrize("behaviour", BEHAVIOURS)

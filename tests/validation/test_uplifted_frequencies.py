@@ -6,21 +6,13 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 
 SHEAR, FLEXURE = math.inf, 0.0
 
 
 def ratios(stiffness_ratio: float, aspect_ratio: float, n_modes: int | None) -> np.ndarray:
-    frame = rf.Frame(
-        n_stories=15,
-        story_height=3.0,
-        story_mass=40e3,
-        base_mass=40e3,
-        stiffness_ratio=stiffness_ratio,
-        period=1.0,
-        aspect_ratio=aspect_ratio,
-        damping_ratio=0.02,
-    )
+    frame = make_frame(n_stories=15, stiffness_ratio=stiffness_ratio, aspect_ratio=aspect_ratio)
     return rf.uplifted_modes(frame.rocking(), n_modes).ratio
 
 

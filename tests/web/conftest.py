@@ -14,6 +14,8 @@ from typing import Any
 
 import pytest
 
+from builders import make_frame
+
 pytest.importorskip("starlette", reason="the web page needs the packages of rockflex[web]")
 pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
 
@@ -205,9 +207,8 @@ def link() -> Any:
 @pytest.fixture(scope="session")
 def frame() -> Any:
     """The structure that the page begins with."""
-    import rockflex as rf
 
-    return rf.Frame(5, 3.0, 40e3, 40e3, float("inf"), 1.0, 10.0, 0.02)
+    return make_frame()
 
 
 @pytest.fixture(scope="session")

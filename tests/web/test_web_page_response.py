@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.web._presets import PRESETS
 
 pytestmark = pytest.mark.web
@@ -86,7 +87,7 @@ def test_a_base_that_is_pulled_down_is_told(visit, link) -> None:
     visitor = visit(link(chosen(3, scale=2.0, record=record, models=["MDOF-S", "2DOF-S", "2DOF-S-R"])))
     visitor.tab("response")
     visitor.shown(2, ["MDOF-S", "2DOF-S", "2DOF-S-R"])
-    frame = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, 0.5, 10.0, 0.02)
+    frame = make_frame(stiffness_ratio=0.0, period=0.5)
     motion = rf.load_suite("fema-p695-far-field")["FF-1-a"].scaled(2.0)
     response = rf.simulate(frame, motion, "MDOF-S", free_vibration=5.0)
     (warning,) = response.warnings
@@ -101,7 +102,7 @@ def test_a_base_that_is_pulled_down_is_told(visit, link) -> None:
 
 
 def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) -> None:
-    p = rf.Frame(5, 3.0, 40e3, 40e3, np.inf, 1.0, 10.0, 0.02).rocking()
+    p = make_frame().rocking()
     names = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width")
     table = {name: np.asarray(getattr(p, name)).tolist() for name in names} | {"zeta": 0.02}
     state = client.state(structure={"name": "Bare", "properties": table}, models=["2DOF-S", "fixed"])

@@ -1,11 +1,10 @@
 """The Structure tab in a real Chromium, used as a person would."""
 
-import math
-
 import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.web._presets import PRESETS
 
 pytestmark = pytest.mark.web
@@ -22,7 +21,7 @@ def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
     assert page.locator(".modes svg").count() == 5
     visitor.fill("structure.frame.n_stories", "3")
     page.wait_for_function("() => document.querySelectorAll('.modes svg').length === 3")
-    three = rf.Frame(3, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
+    three = make_frame(n_stories=3)
     assert visitor.value("#modes tbody tr:nth-child(2) td") == three.modal().period[1]
     visitor.fill("structure.frame.n_stories", "1000000")
     assert visitor.error("structure.frame.n_stories") == "It must be from 1 to 200, but 1e+06 was given."
@@ -64,7 +63,7 @@ def test_an_eccentric_base_has_two_edges(visitor) -> None:
     page.wait_for_function(
         "() => [...document.querySelectorAll('#modes th')].some((e) => /left edge/.test(e.textContent))"
     )
-    p = rf.Eccentric(rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02), 0.25).rocking()
+    p = rf.Eccentric(make_frame(), 0.25).rocking()
     shown = page.locator("dd[data-value]").evaluate_all("all => all.map((e) => Number(e.dataset.value))")
     for side in (1, -1):
         assert p.pivot(side).resisting_moment in shown

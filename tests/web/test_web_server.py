@@ -13,6 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
+from builders import make_frame
 from rockflex._errors import InputError
 from rockflex.cli import app
 from rockflex.web import make_app, serve
@@ -20,7 +21,7 @@ from rockflex.web._presets import PRESETS
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
+FRAME = make_frame()
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 YIELDING = {"yield_displacement": 0.075}
 CSV = b"time (s),acc (m/s2)\n" + b"".join(b"%.2f,%.4f\n" % (0.02 * i, 3.0 * math.sin(0.1 * i)) for i in range(400))
@@ -200,7 +201,7 @@ def test_many_stories_are_judged_in_time(client) -> None:
     assert time.perf_counter() - begun < HANG
     assert (
         view["adequacy"]["reason"]
-        == rf.adequacy(rf.Frame(200, 3.0, 40e3, 40e3, math.inf, 4.0, 10.0, 0.02).rocking(), base_mass=40e3).reason
+        == rf.adequacy(make_frame(n_stories=200, period=4.0).rocking(), base_mass=40e3).reason
     )
 
 

@@ -1,7 +1,6 @@
 """Studies that the page runs: their numbers, their end, and their privacy."""
 
 import io
-import math
 import time
 
 import numpy as np
@@ -9,6 +8,7 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
+from builders import make_frame
 from rockflex.study.plans import TendonLevel, smallest_width
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._presets import PRESETS
@@ -16,7 +16,7 @@ from rockflex.web._refusal import Refusal
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 
-FRAME = rf.Frame(5, 3.0, 40e3, 40e3, math.inf, 1.0, 10.0, 0.02)
+FRAME = make_frame()
 CLOUD = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0], "models": ["2DOF-S"]}
 DESIGN = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0], "widths": 3, "tendons": [0.0, 0.2], "at": 0.8}
 

@@ -1,0 +1,28 @@
+"""What most tests begin with: the paper's structure #1 and changes of it, and records."""
+
+import math
+from typing import Any
+
+import rockflex as rf
+
+# Structure #1 of Table 1 of Silva & Stojadinović (2024): five stories that shear, T_1 = 1 s, h*_1/B = 10.
+STRUCTURE_1: dict[str, Any] = {
+    "n_stories": 5,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 40e3,
+    "stiffness_ratio": math.inf,
+    "period": 1.0,
+    "aspect_ratio": 10.0,
+    "damping_ratio": 0.02,
+}
+
+
+def frame_values(**changes: Any) -> dict[str, Any]:
+    """Arguments of structure #1, changed."""
+    return STRUCTURE_1 | changes
+
+
+def make_frame(**changes: Any) -> rf.Frame:
+    """Structure #1, changed."""
+    return rf.Frame(**frame_values(**changes))
