@@ -9,13 +9,8 @@ import { axisOf, measuresOf, suitesOf } from "../measures.js";
 import { models } from "../models.js";
 import { assumed, Study } from "../study.js";
 
-<<<<<<< HEAD
-const LEVELS = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
-const FOOT = 1.2e-5; // rad, where runs without rotation are drawn
-=======
 const CONFIDENCES = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
-const FOOT = 1.2e-5; // rad, where runs without rotation stand
->>>>>>> w-design
+const FOOT = 1.2e-5; // rad, where runs without rotation are drawn
 
 export default function fragilityTab(app) {
   const choice = () => app.state.cloud;
@@ -33,17 +28,10 @@ export default function fragilityTab(app) {
     (value) => put({ limit: value }));
   const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
     { unit: "rad", hint: "0.0001 to 1.5" });
-<<<<<<< HEAD
-  const offered = LEVELS.some(([value]) => value === choice().level) ? LEVELS
-    : [...LEVELS, [choice().level, `${number(100 * choice().level)} %`]];
-  const level = select("cloud.level", "Confidence level of the bands", offered, choice().level,
-    (value) => put({ level: Number(value) }));
-=======
   const offered = CONFIDENCES.some(([value]) => value === choice().confidence) ? CONFIDENCES
     : [...CONFIDENCES, [choice().confidence, `${number(100 * choice().confidence)} %`]];
-  const confidence = select("cloud.confidence", "Confidence of the bands", offered, choice().confidence,
+  const confidence = select("cloud.confidence", "Confidence level of the bands", offered, choice().confidence,
     (value) => put({ confidence: Number(value) }));
->>>>>>> w-design
 
   const curves = new Chart({ label: "Probability over intensity", yLabel: "probability", height: 320, xName: "IM", xLog: true });
   const cloud = new Chart({
@@ -71,11 +59,7 @@ export default function fragilityTab(app) {
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Cloud of runs"), suites, scales, labels, study.element),
-<<<<<<< HEAD
-      h("fieldset", {}, h("legend", {}, "Fragility curves"), limit, rotation, measure, level)),
-=======
-      h("fieldset", {}, h("legend", {}, "Reading"), limit, rotation, measure, confidence)),
->>>>>>> w-design
+      h("fieldset", {}, h("legend", {}, "Fragility curves"), limit, rotation, measure, confidence)),
     results);
   results.append(study.downloads(element,
     [["figure", "Rocking and overturning (SVG)"], ["table", "Runs (CSV)"]],
