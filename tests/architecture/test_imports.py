@@ -33,10 +33,12 @@ FOUNDATION = {
     "_constants",
     "_errors",
     "_files",
+    "_json",
     "_kernel",
     "_matrices",
     "_numba",
     "_numba_pipeline",
+    "_schema",
     "_shown",
     "_values",
 }  # every layer may import these; they only each other

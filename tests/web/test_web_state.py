@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from pydantic import Field
 
 import rockflex as rf
+from rockflex._json import plain
 from rockflex.structure.file import KINDS, Table
 from rockflex.web._forms import _fields, forms
-from rockflex.web._packing import envelope, plain
+from rockflex.web._packing import envelope
 from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state

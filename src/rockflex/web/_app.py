@@ -19,6 +19,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
+from rockflex._json import plain
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web._cloud import cloud_plan, cloud_view
 from rockflex.web._design import design_plan, design_view
@@ -30,7 +31,6 @@ from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limit_states import limit_states
 from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
 from rockflex.web._measures import measures
-from rockflex.web._packing import plain
 from rockflex.web._presets import PRESETS
 from rockflex.web._records import PULSES, record_view, suite_view, suites
 from rockflex.web._refusal import Refusal

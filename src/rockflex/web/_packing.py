@@ -1,9 +1,7 @@
 """Numbers on their way to the browser."""
 
 import base64
-import math
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,21 +11,6 @@ def pack(values: ArrayLike) -> str:
     """Write an array as base64 of little-endian single precision: enough for a picture, and half of the size."""
     with np.errstate(over="ignore"):
         return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
-
-
-def plain(value: Any) -> Any:
-    """Make what JSON can write: numbers that are not finite become null, or "inf"."""
-    if isinstance(value, dict):
-        return {str(key): plain(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(each) for each in value]
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return "inf" if value > 0.0 else None
-    return value
 
 
 def envelope(curves: list[NDArray[np.float64]], most: int) -> NDArray[np.intp]:

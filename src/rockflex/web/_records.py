@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._json import plain
 from rockflex.motion import (
     MEASURES,
     GroundMotion,
@@ -22,7 +23,7 @@ from rockflex.motion import (
     ricker_pulse,
     suite_names,
 )
-from rockflex.web._packing import envelope, pack, plain
+from rockflex.web._packing import envelope, pack
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import PulseChoice, RecordChoice, State
 from rockflex.web._structures import Built

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
+from rockflex._json import plain
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -15,7 +16,7 @@ from rockflex.response import History, Response
 from rockflex.solve import pace_of
 from rockflex.study import Case
 from rockflex.web._limits import STOP, check_together
-from rockflex.web._packing import envelope, pack, plain
+from rockflex.web._packing import envelope, pack
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State

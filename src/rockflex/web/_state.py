@@ -2,14 +2,14 @@
 
 import json
 import math
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
 from rockflex.models import parse_model
-from rockflex.structure.file import StructureEntry, Table, expected
-from rockflex.study.assumed import Assumed
+from rockflex.structure.file import StructureEntry, Table, expected, inner_table
+from rockflex.study.assumed import Assumed, BoucWenTable
 from rockflex.web._limit_states import DesignLimit, LimitName
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._measures import MeasureName, SameForAll
@@ -139,7 +139,7 @@ def parse_state(content: Any) -> State:
         state = State.model_validate(_infinite(content))
     except ValidationError as error:
         structure = _infinite(content.get("structure"))
-        ranges = errors_of_numbers("structure", structure) if isinstance(structure, dict) else {}
+        ranges = errors_of_numbers("structure", structure, StructureEntry) if isinstance(structure, dict) else {}
         raise Refusal(dict([*(ranges | _messages(error, content)).items()][:TOLD])) from error
     except RecursionError as error:
         raise Refusal("The link is nested too deep.") from error
@@ -147,7 +147,7 @@ def parse_state(content: Any) -> State:
         state.structure.name.encode()
     except UnicodeEncodeError as error:
         raise Refusal({"structure.name": "it holds a character that cannot be written."}) from error
-    check_numbers("structure", state.structure.model_dump(exclude={"name"}))
+    check_numbers("structure", state.structure.model_dump(), StructureEntry)
     _check_models(state)
     _check_assumed(state)
     return state
@@ -177,7 +177,7 @@ def _check_assumed(state: State) -> None:
         raise Refusal({"restitution": str(error)}) from error
     if state.bouc_wen is None:
         return
-    check_numbers("bouc_wen", state.bouc_wen.model_dump())
+    check_numbers("bouc_wen", state.bouc_wen.model_dump(), BoucWenTable)
     try:
         state.hysteresis()
     except InputError as error:
@@ -237,14 +237,8 @@ def _place(location: tuple[int | str, ...], content: Any) -> tuple[str, str, Any
         if field is None:
             break
         description = expected(field) or "something else"
-        table = _table_in(field.annotation)
+        table = inner_table(field.annotation)
     return ".".join(path), description, given
-
-
-def _table_in(annotation: Any) -> type[Table] | None:
-    if isinstance(annotation, type) and not get_args(annotation) and issubclass(annotation, Table):
-        return annotation
-    return next((found for part in get_args(annotation) if (found := _table_in(part)) is not None), None)
 
 
 def _short(value: Any) -> str:

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex._json import plain
 from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure.file import Structure, StructureEntry
-from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 
 DRAWN = 40  # heights of a structure, at most

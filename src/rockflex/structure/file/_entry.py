@@ -2,17 +2,18 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
+from rockflex._schema import NUMBER, Eccentricity, Key
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._matrix_files import checksum
 from rockflex.structure.file._beam_table import BeamTable
 from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
-from rockflex.structure.file._table import Table, number
+from rockflex.structure.file._table import Table
 from rockflex.structure.file._tables import (
     BlockTable,
     Built,
@@ -25,8 +26,6 @@ from rockflex.structure.file._tables import (
     TaperedTowerTable,
     WallFrameTable,
 )
-
-_A_TABLE = "a table"
 
 KINDS: dict[str, type[StructureTable]] = {
     "frame": FrameTable,
@@ -44,19 +43,16 @@ KINDS: dict[str, type[StructureTable]] = {
 """The table of each kind of structure by its name in a file."""
 
 
+_KIND = Key("a table")
+
+
 class TendonTable(Table):
     """The arguments of `Tendon`."""
 
-    position: float = Field(
-        0.0, description="the distance to the right of the axis of the masses", json_schema_extra=number("m")
-    )
-    initial_force: float = Field(
-        description="the force while the base stands on the ground", json_schema_extra=number("N")
-    )
-    stiffness: float = Field(description="EA/L over the unbonded length", json_schema_extra=number("N/m"))
-    yield_force: float | None = Field(
-        None, description="the force at which the tendon yields", json_schema_extra=number("N")
-    )
+    position: Annotated[float, Key("the distance to the right of the axis of the masses", "m", NUMBER)] = 0.0
+    initial_force: Annotated[float, Key("the force while the base rests on the ground", "N", NUMBER)]
+    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m", NUMBER)]
+    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N", NUMBER)] = None
 
 
 class StructureEntry(Table):
@@ -74,25 +70,21 @@ class StructureEntry(Table):
         Perhaps none.
     """
 
-    name: str = Field("", description="a name, in quotes")
-    frame: FrameTable | None = Field(None, description=_A_TABLE)
-    fish_bone: FishBoneTable | None = Field(None, description=_A_TABLE)
-    wall_frame: WallFrameTable | None = Field(None, description=_A_TABLE)
-    tapered_tower: TaperedTowerTable | None = Field(None, description=_A_TABLE)
-    cantilever: CantileverTable | None = Field(None, description=_A_TABLE)
-    beam: BeamTable | None = Field(None, description=_A_TABLE)
-    lumped: LumpedTable | None = Field(None, description=_A_TABLE)
-    matrices: MatricesTable | None = Field(None, description=_A_TABLE)
-    modes: ModesTable | None = Field(None, description=_A_TABLE)
-    properties: PropertiesTable | None = Field(None, description=_A_TABLE)
-    block: BlockTable | None = Field(None, description=_A_TABLE)
-    eccentricity: float | None = Field(
-        None,
-        description="how far the masses stand to the right of the middle of the base",
-        json_schema_extra=number("m"),
-    )
-    tendons: list[TendonTable] = Field(
-        default_factory=list[TendonTable], description="a list of tables, each under a heading [[tendons]]"
+    name: Annotated[str, Key("a name, in quotes")] = ""
+    frame: Annotated[FrameTable | None, _KIND] = None
+    fish_bone: Annotated[FishBoneTable | None, _KIND] = None
+    wall_frame: Annotated[WallFrameTable | None, _KIND] = None
+    tapered_tower: Annotated[TaperedTowerTable | None, _KIND] = None
+    cantilever: Annotated[CantileverTable | None, _KIND] = None
+    beam: Annotated[BeamTable | None, _KIND] = None
+    lumped: Annotated[LumpedTable | None, _KIND] = None
+    matrices: Annotated[MatricesTable | None, _KIND] = None
+    modes: Annotated[ModesTable | None, _KIND] = None
+    properties: Annotated[PropertiesTable | None, _KIND] = None
+    block: Annotated[BlockTable | None, _KIND] = None
+    eccentricity: Eccentricity = None
+    tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]")] = Field(
+        default_factory=list[TendonTable]
     )
 
     @model_validator(mode="after")
