@@ -41,6 +41,7 @@ FOUNDATION = {
     "_schema",
     "_shown",
     "_values",
+    "_versions",
 }  # every layer may import these; they only each other
 FACES = {"cli", "web", "papers", "__main__"}  # may import anything, and nothing below them or the front
 

@@ -11,7 +11,7 @@ IMPACT = Key(
     "the impact law",
     form=f"{', '.join(_QUOTED[:-1])} or {_QUOTED[-1]}",
     metavar="LAW",
-    hint="simplified (Eq. 25), complete (Eq. 29) or restitution. Default: each model's own law.",
+    hint="One of simplified (Eq. 25), complete (Eq. 29) and restitution. Default: each model's own law.",
 )
 
 
@@ -58,16 +58,26 @@ class BoucWenKeys:
     ] = 0.01
     gamma: Annotated[
         float,
-        Key("γ of the hysteresis", form=NUMBER, label="γ", low=1e-3, high=10.0, flag="bw_gamma", metavar="GAMMA"),
+        Key(
+            "γ of the hysteresis (Eq. 38)",
+            form=NUMBER,
+            label="γ",
+            low=1e-3,
+            high=10.0,
+            flag="bw_gamma",
+            metavar="GAMMA",
+        ),
     ] = 0.5
     beta: Annotated[
         float,
-        Key("β of the hysteresis", form=NUMBER, label="β", low=-10.0, high=10.0, flag="bw_beta", metavar="BETA"),
+        Key(
+            "β of the hysteresis (Eq. 38)", form=NUMBER, label="β", low=-10.0, high=10.0, flag="bw_beta", metavar="BETA"
+        ),
     ] = 0.5
     exponent: Annotated[
         float,
         Key(
-            "n of the hysteresis",
+            "n of the hysteresis (Eq. 38)",
             form="{}, a number of at least 1",
             label="Exponent n",
             low=1.0,

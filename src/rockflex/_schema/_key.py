@@ -60,7 +60,6 @@ def keys_of(table: type) -> Iterator[tuple[str, Any, Key]]:
         yield name, kind, key
 
 
-def flag_of(table: type, name: str) -> str:
-    """Return the option that gives a field on the command line, such as ``--story-height``."""
-    key = next(key for field, _, key in keys_of(table) if field == name)
+def flag_of(name: str, key: Key) -> str:
+    """Return the option that gives a key on the command line, such as ``--story-height``."""
     return "--" + (key.flag or name).replace("_", "-")

@@ -10,6 +10,7 @@ from rockflex import __version__
 from rockflex._errors import InputError, SolverError
 from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study
 from rockflex.cli._console import complain, note, remarks
+from rockflex.cli._flags import FrameCommand, RunCommand
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -58,8 +59,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("run", epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
-app.command("modes", epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
+app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
+app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
 for command in (_study.cloud, _study.ida, _study.stripes, _study.population, _study.design):
     app.command(command.__name__, epilog=_study.epilog(command.__name__), no_args_is_help=True)(command)

@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
+from rockflex._schema import FrameFlags
 from rockflex.cli import _options as options
+from rockflex.cli._flags import given
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,6 +51,7 @@ SIDES = {1: "right", -1: "left"}
 
 
 def modes(
+    context: typer.Context,
     file: Annotated[
         str | None, typer.Argument(metavar="STRUCTURE.toml", help="The structure's file.", show_default=False)
     ] = None,
@@ -61,15 +64,6 @@ def modes(
     json: options.Json = False,
     out: options.Out = None,
     force: options.Force = False,
-    stories: options.Stories = None,
-    story_height: options.StoryHeight = None,
-    story_mass: options.StoryMass = None,
-    base_mass: options.BaseMass = None,
-    stiffness_ratio: options.Stiffness = None,
-    period: options.Period = None,
-    aspect_ratio: options.AspectRatio = None,
-    damping_ratio: options.DampingRatio = None,
-    eccentricity: options.Eccentricity = None,
 ) -> None:
     """Print the modes of a structure on a fixed base, and what it takes to rock."""
     from rockflex._checks import whole_number
@@ -78,11 +72,10 @@ def modes(
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
     check_folder(out, force=force)
-    frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
     path, rest = split_arguments(structure, [] if file is None else [file])
     if rest:
         raise InputError(f"{file} is no structure file: a name that ends in .toml is expected.")
-    loaded = load_structure(path, options.frame_arguments((*frame, eccentricity)))
+    loaded = load_structure(path, given(context, FrameFlags))
     properties = loaded.properties
     if n_modes is not None:
         properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))

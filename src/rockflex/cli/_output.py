@@ -1,38 +1,30 @@
 """Results as files: whole or not at all."""
 
 import json
-import math
-import platform
 import re
 import tempfile
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
-from dataclasses import asdict, is_dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from rockflex import __version__
 from rockflex._errors import InputError
 from rockflex._files import check_regular
+from rockflex._json import plain
+from rockflex._versions import versions_of
 
 SUMMARY = "summary.json"
 
 
 def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
     """Return strictly valid JSON: what is not a number becomes null, and an infinity the string "inf" or "-inf"."""
-    return json.dumps(_plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
+    return json.dumps(plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
 
 def versions() -> dict[str, str]:
     """Return the versions of everything that the numbers depend on."""
-    return {
-        "rockflex": __version__,
-        "python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy", "numba")},
-    }
+    return {"rockflex": __version__, **versions_of(("numpy", "scipy", "numba"))}
 
 
 def check_folder(folder: Path | None, *, force: bool) -> None:
@@ -115,18 +107,3 @@ def _earlier(folder: Path) -> list[str]:
     except (OSError, ValueError, LookupError, TypeError):
         return []
     return [name for name in names if isinstance(name, str) and name == Path(name).name and (folder / name).is_file()]
-
-
-def _plain(value: Any) -> Any:
-    """Replace everything that JSON does not know."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None if math.isnan(value) else f"{value:g}"
-    return str(value) if isinstance(value, Path) else value

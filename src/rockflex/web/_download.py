@@ -11,7 +11,6 @@ import tomli_w
 
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import NOMINAL, fit_each_cloud
-from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, design_table_of
@@ -163,7 +162,7 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
         "scales": [state.scale],
         "free_vibration": state.free_vibration,
     }
-    content |= state.assumed(yields=any(parse_model(label).yields for label in state.models))
+    content |= state.assumed(state.models)
     structure = state.structure.model_dump(exclude_none=True)
     return "study.toml", head + tomli_w.dumps(content | {"records": records, "structures": [structure]})
 

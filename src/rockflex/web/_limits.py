@@ -14,6 +14,7 @@ from rockflex.motion import GroundMotion
 from rockflex.solve import Task
 from rockflex.structure.file import Table, inner_table, key_of, parts
 from rockflex.study import Case
+from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._refusal import Refusal
 
 if TYPE_CHECKING:
@@ -124,8 +125,9 @@ def _checked_work(task: Task, path: str) -> float:
 def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
     """Refuse a model that the structure cannot have, as one with modes of a rigid block."""
     assumptions, model = plan.bench.assumptions, parse_model(label)
+    (bouc_wen,) = labelled_hysteresis([model], assumptions.bouc_wen)
     try:
-        model.of(properties, assumptions.impact, assumptions.bouc_wen if model.yields else None)
+        model.of(properties, assumptions.impact, bouc_wen)
     except InputError as error:
         raise Refusal({path: str(error)}) from error
 

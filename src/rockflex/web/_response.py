@@ -15,6 +15,7 @@ from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
 from rockflex.solve import pace_of
 from rockflex.study import Case
+from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._limits import STOP, check_together
 from rockflex.web._packing import envelope, pack
 from rockflex.web._records import motion_of
@@ -41,10 +42,11 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     built = build(state.structure)
     motion = motion_of(state.record, uploads).scaled(state.scale)
     law, cases, found = state.law(), dict[str, Case](), list[Response]()
-    for label in state.models:
+    models = [parse_model(label) for label in state.models]
+    given = labelled_hysteresis(models, state.hysteresis())
+    for label, model, bouc_wen in zip(state.models, models, given, strict=True):
         with _refusing(label):
-            model = parse_model(label)
-            tied = model.of(built.properties, law, state.hysteresis() if model.yields else None)
+            tied = model.of(built.properties, law, bouc_wen)
             cases[label] = Case(tied, state.free_vibration, work_limit=STOP, history=True, floors=True)
     check_together(list(cases.values()), motion)
     for label, case in cases.items():

@@ -1,16 +1,15 @@
 """The Python lines that repeat what the page shows."""
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import Tendon
-from rockflex.models import parse_model
 from rockflex.structure import LumpedMasses
 from rockflex.structure.file import StructureEntry
+from rockflex.study._yielding import yielding
 from rockflex.study.assumed import Assumed
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, limit_of
@@ -22,7 +21,7 @@ from rockflex.web._state import PulseChoice, State
 def response_script(state: State, upload_name: str = "record") -> str:
     """Return a program that simulates what the Response tab shows, in `responses` by model."""
     extra = f", free_vibration={state.free_vibration!r}{_law(state)}"
-    if yields := _yields(state.models):
+    if yields := yielding(state.models):
         extra += ', bouc_wen=yielding if "-BW" in model else None'
     return "\n".join(
         [
@@ -114,10 +113,6 @@ def record_file(upload_name: str) -> str:
 def _law(state: State) -> str:
     """The argument that names an impact law; none where the model has its own."""
     return "" if state.impact is None else f", impact=rf.{state.law()!r}"
-
-
-def _yields(labels: Sequence[str]) -> bool:
-    return any(parse_model(label).yields for label in labels)
 
 
 def _hysteresis(state: State) -> str:

@@ -2,13 +2,14 @@
 
 import json
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
-from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, expected, inner_table
+from rockflex.study._yielding import yielding
 from rockflex.study.assumed import Assumed, BoucWenTable
 from rockflex.web._limit_states import DesignLimit, LimitName
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
@@ -103,9 +104,9 @@ class State(Assumed):
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
 
-    def assumed(self, *, yields: bool) -> dict[str, Any]:
-        """Impact law and hysteresis as keys of a study, the hysteresis only where something yields."""
-        names = {"impact", "restitution", *(["bouc_wen"] if yields else [])}
+    def assumed(self, labels: Sequence[str]) -> dict[str, Any]:
+        """Return the impact law and the hysteresis as keys of a study; the hysteresis only if one of its models yields."""
+        names = {"impact", "restitution", *(["bouc_wen"] if yielding(labels) else [])}
         return self.model_dump(include=names, exclude_none=True)
 
 
@@ -160,7 +161,7 @@ def _check_models(state: State) -> None:
         ("design.model", [state.design.model]),
     ):
         try:
-            yields = [label for label in labels if parse_model(label).yields]
+            yields = yielding(labels)
         except ValueError as error:
             raise Refusal({path: str(error)}) from error
         if len(set(labels)) < len(labels):

@@ -78,11 +78,11 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
         If the file is too large, cannot be read, or holds too long a record or a vertical component.
     """
     shown = clean_name(name)
-    text = _decoded(shown, content)
+    _check_size(shown, content, "record.upload")
     try:
         with TemporaryDirectory() as folder:
             file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
-            file.write_text(text, "utf-8", newline="")
+            file.write_bytes(content)
             try:
                 motion = read_motion(file, units=units, dt=dt)
             except InputError as error:
@@ -106,21 +106,10 @@ def clean_name(name: str) -> str:
     return re.sub(r"[^\w.()+ -]", "_", last)[:80].strip() or "record"
 
 
-def _decoded(name: str, content: bytes) -> str:
+def _check_size(name: str, content: bytes, field: str) -> None:
     if len(content) > FILE:
         message = f"{name} has {len(content) / 1e6:.1f} MB, but the page takes {FILE / 1e6:g} MB at most."
-        raise Refusal({"record.upload": message}, 413)
-    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
-    for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
-        try:
-            text = content.decode(encoding)
-            break
-        except UnicodeDecodeError:
-            continue
-    else:
-        message = f"{name} is no text file. A record is expected as AT2, CSV or columns of numbers."
-        raise Refusal({"record.upload": message})
-    return text
+        raise Refusal({field: message}, 413)
 
 
 def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
@@ -132,9 +121,7 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
         If the file is too large or cannot be read, or an array is.
     """
     shown = clean_name(name)
-    if len(content) > FILE:
-        message = f"{shown} has {len(content) / 1e6:.1f} MB, but the page takes {FILE / 1e6:g} MB at most."
-        raise Refusal({"structure": message}, 413)
+    _check_size(shown, content, "structure")
     try:
         if shown.lower().endswith(".npz"):
             return _from_npz(shown, content)
