@@ -144,7 +144,6 @@ def test_an_eccentric_base_is_described(write):
     assert moved.built == flags.built == Eccentric(Frame(**FRAME), -0.2)
     assert moved.describe() == {"name": "structure", "kind": "frame", **FRAME, "eccentricity": -0.2}
     assert {**moved.describe(), "name": ""} == {**flags.describe(), "name": ""}
-    assert load_structure(None, {**FRAME, "eccentricity": None}).built == Frame(**FRAME)
     assert moved.title == "structure: 5 modes, T_1 = 1 s, h*_1/B = 10, ζ_1 = 0.02, e = -0.2 m"
     held = load_structure(write(text + TENDON), NO_FLAGS)
     assert held.base_mass == moved.base_mass == 40e3

@@ -254,7 +254,7 @@ def test_a_wrong_eccentricity(failing):
     )
     assert failing("eccentricity = nan\n" + frame) == ", eccentricity must be a finite number in m, but nan was given."
     assert failing('eccentricity = "left"\n' + frame) == (
-        ": eccentricity must be how far the masses stand to the right of the middle of the base, a number in m, but "
+        ": eccentricity must be the distance of the masses to the right of the middle of the base, a number in m, but "
         "'left' was given."
     )
     assert failing(frame + "eccentricity = 0.2\n").startswith(
@@ -385,7 +385,8 @@ def test_every_key_is_described(model):
         key = key_of(field)
         assert key.description, name
         assert not key.description.endswith(".")
-        assert "{" not in key.expected
+        assert "{}" not in key.expected
+        assert "{unit}" not in key.expected
         assert (key.low is None) is (key.high is None)
         assert key.low is None or key.low < key.high
 

@@ -147,8 +147,8 @@ def test_a_bad_upload_is_refused(client) -> None:
         ({"models": ["9DOF-S"]}, "models", "needs 8 modes, but the structure has 5"),
         ({"models": ["2DOF-S-BW"]}, "models", "2DOF-S-BW yields, but nothing says at what displacement."),
         ({"models": ["MDOF-S-BW"], "bouc_wen": YIELDING}, "models", "bouc_wen goes with models of one mode"),
-        ({"impact": "restitution"}, "restitution", "go together. Give both or neither."),
-        ({"impact": "simplified", "restitution": 0.5}, "restitution", "go together. Give both or neither."),
+        ({"impact": "restitution"}, "restitution", "needs its coefficient. Give restitution, a number from 0 to 1."),
+        ({"impact": "simplified", "restitution": 0.5}, "restitution", "but the impact law is 'simplified'. Choose"),
         ({"impact": "restitution", "restitution": 1.5}, "restitution", "1.5"),
         (
             {"impact": "model"},

@@ -62,8 +62,10 @@ class Assumed(ImpactKeys, Table):
         if self.impact is None:
             return None
         if isinstance(self.impact, str):
+            if self.impact not in _LAWS:  # a copy with another law was not checked
+                raise InputError(f"impact must be {IMPACT.expected}, but {shown(self.impact)} was given.")
             return _LAWS[self.impact](*[] if self.restitution is None else [self.restitution])
-        check_options(None, self.impact)  # a copy with another law was not checked
+        check_options(None, self.impact)
         return self.impact
 
     def hysteresis(self) -> BoucWen | None:

@@ -105,7 +105,7 @@ class State(Assumed):
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
 
     def assumed(self, labels: Sequence[str]) -> dict[str, Any]:
-        """Return the impact law and the hysteresis as keys of a study; the hysteresis only if one of its models yields."""
+        """Return the impact law, and the hysteresis if one of the models yields, as keys of a study."""
         names = {"impact", "restitution", *(["bouc_wen"] if yielding(labels) else [])}
         return self.model_dump(include=names, exclude_none=True)
 

@@ -67,7 +67,7 @@ class BeamTable(StructureTable):
         lists = [name for name in _PROFILES if isinstance(given.get(name), list)]
         if z is None and lists:
             raise InputError(
-                f"{lists[0]} is a list, but its heights are not given. Add z, a list of as many heights in m.",
+                f"{lists[0]} is a list, but its heights are not known. Add z, a list of as many heights in m.",
                 field=lists[0],
             )
         if z is not None and not lists:

@@ -50,7 +50,7 @@ class TendonTable(Table):
     """The arguments of `Tendon`."""
 
     position: Annotated[float, Key("the distance to the right of the axis of the masses", "m", NUMBER)] = 0.0
-    initial_force: Annotated[float, Key("the force while the base rests on the ground", "N", NUMBER)]
+    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N", NUMBER)]
     stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m", NUMBER)]
     yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N", NUMBER)] = None
 

@@ -21,7 +21,7 @@ class _FromFiles(StructureTable):
     heights: Annotated[
         Vector | dict[Index, float] | str,
         Key(
-            "a list of the heights of all degrees of freedom in m, or a table { index = height } of those that move "
+            "a list of the heights of all freedoms in m, or a table { index = height } of those that move "
             "sideways, counted from 0",
             "m",
             _OR_FILE,
