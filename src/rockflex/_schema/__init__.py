@@ -2,12 +2,13 @@
 
 from rockflex._schema._assumed import IMPACT, LAWS, BoucWenKeys, ImpactKeys, InitialKeys, LawName
 from rockflex._schema._frame import AspectRatio, BaseMass, Eccentricity, FrameFlags, FrameKeys, Period
-from rockflex._schema._key import NUMBER, WHOLE, Key, each, flag_of, keys_of
+from rockflex._schema._key import NUMBER, PLAIN, WHOLE, Key, each, flag_of, keys_of
 
 __all__ = [
     "IMPACT",
     "LAWS",
     "NUMBER",
+    "PLAIN",
     "WHOLE",
     "AspectRatio",
     "BaseMass",

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, get_args
 
-from rockflex._schema._key import NUMBER, Key
+from rockflex._schema._key import Key
 
 LawName = Literal["simplified", "complete", "restitution"]
 LAWS: tuple[str, ...] = get_args(LawName)
@@ -38,7 +38,6 @@ class BoucWenKeys:
         Key(
             "D_y of the first mode",
             "m",
-            NUMBER,
             low=1e-6,
             high=100.0,
             metavar="DY",
@@ -49,39 +48,28 @@ class BoucWenKeys:
         float,
         Key(
             "stiffness after yielding over that before",
-            form=NUMBER,
-            label="Post-yield stiffness ratio α",
             low=0.0,
             high=0.99,
+            label="Post-yield stiffness ratio α",
             metavar="ALPHA",
         ),
     ] = 0.01
     gamma: Annotated[
         float,
-        Key(
-            "γ of the hysteresis (Eq. 38)",
-            form=NUMBER,
-            label="γ",
-            low=1e-3,
-            high=10.0,
-            flag="bw_gamma",
-            metavar="GAMMA",
-        ),
+        Key("γ of the hysteresis (Eq. 38)", low=1e-3, high=10.0, label="γ", flag="bw_gamma", metavar="GAMMA"),
     ] = 0.5
     beta: Annotated[
         float,
-        Key(
-            "β of the hysteresis (Eq. 38)", form=NUMBER, label="β", low=-10.0, high=10.0, flag="bw_beta", metavar="BETA"
-        ),
+        Key("β of the hysteresis (Eq. 38)", low=-10.0, high=10.0, label="β", flag="bw_beta", metavar="BETA"),
     ] = 0.5
     exponent: Annotated[
         float,
         Key(
             "n of the hysteresis (Eq. 38)",
             form="{}, a number of at least 1",
-            label="Exponent n",
             low=1.0,
             high=50.0,
+            label="Exponent n",
             flag="bw_exponent",
             metavar="N",
             hint="At least 1.",
@@ -97,7 +85,6 @@ class InitialKeys:
         Key(
             "the rotation at t = 0",
             "rad",
-            NUMBER,
             hint="The structure starts at rest there; without a motion it vibrates freely for --free-vibration.",
         ),
     ] = None

@@ -3,18 +3,17 @@
 import math
 from typing import Annotated
 
-from rockflex._schema._key import NUMBER, WHOLE, Key
+from rockflex._schema._key import WHOLE, Key
 
-BaseMass = Annotated[float, Key("the mass of the base", "kg", NUMBER, low=0.0, high=1e12)]
-Period = Annotated[float, Key("the first period on a fixed base", "s", NUMBER, low=0.01, high=60.0)]
+BaseMass = Annotated[float, Key("the mass of the base", "kg", low=0.0, high=1e12)]
+Period = Annotated[float, Key("the first period on a fixed base", "s", low=0.01, high=60.0)]
 AspectRatio = Annotated[
     float,
     Key(
         "the effective height over the half width, h*_1/B",
-        form=NUMBER,
-        label="Slenderness h*₁/B",
         low=0.1,
         high=100.0,
+        label="Slenderness h*₁/B",
         metavar="RATIO",
     ),
 ]
@@ -23,10 +22,9 @@ Eccentricity = Annotated[
     Key(
         "the distance of the masses to the right of the middle of the base",
         "m",
-        NUMBER,
-        label="Eccentricity e of the base",
         low=-1000.0,
         high=1000.0,
+        label="Eccentricity e of the base",
         hint="In addition to the eight. Default: 0.",
     ),
 ]
@@ -36,11 +34,10 @@ class FrameKeys:
     """The arguments of `Frame`."""
 
     n_stories: Annotated[
-        int,
-        Key("the number of stories", form=WHOLE, label="Stories", low=1, high=200, flag="stories", metavar="N"),
+        int, Key("the number of stories", form=WHOLE, low=1, high=200, label="Stories", flag="stories", metavar="N")
     ]
-    story_height: Annotated[float, Key("the height of a story", "m", NUMBER, low=0.1, high=100.0)]
-    story_mass: Annotated[float, Key("the mass of each floor", "kg", NUMBER, low=1e-3, high=1e12)]
+    story_height: Annotated[float, Key("the height of a story", "m", low=0.1, high=100.0)]
+    story_mass: Annotated[float, Key("the mass of each floor", "kg", low=1e-3, high=1e12)]
     base_mass: BaseMass
     stiffness_ratio: Annotated[
         float,
@@ -49,7 +46,6 @@ class FrameKeys:
             form="{}, a number from 0 to inf",
             low=0.0,
             high=math.inf,
-            infinite=True,
             metavar="RHO",
             hint="0: cantilevers; inf: shear building.",
         ),

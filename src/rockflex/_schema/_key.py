@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, get_args, get_type_hints
 
-NUMBER, WHOLE = "{}, a number{unit}", "{}, a whole number"
+NUMBER, WHOLE, PLAIN = "{}, a number{unit}", "{}, a whole number", "{}"
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,6 @@ class Key:
         The name in a form, where it is not the key itself.
     low, high
         The smallest and the largest number that the page accepts; None for any of a reasonable size.
-    infinite
-        Whether the page accepts an infinite value.
     flag, metavar
         The option and its placeholder on the command line, where they are not the key and its unit.
     hint
@@ -33,11 +31,10 @@ class Key:
 
     description: str
     unit: str = ""
-    form: str = "{}"
+    form: str = NUMBER
     label: str = ""
     low: float | None = None
     high: float | None = None
-    infinite: bool = False
     flag: str = ""
     metavar: str = ""
     hint: str = ""

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import InstanceOf, field_validator
 
 from rockflex._errors import InputError
-from rockflex._schema import IMPACT, BoucWenKeys, ImpactKeys, Key, LawName
+from rockflex._schema import IMPACT, PLAIN, BoucWenKeys, ImpactKeys, Key, LawName
 from rockflex._shown import shown
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified
 from rockflex.structure.file import Table
@@ -30,7 +30,7 @@ class Assumed(ImpactKeys, Table):
     """
 
     impact: Annotated[LawName | InstanceOf[ImpactLaw] | None, IMPACT] = None  # pyright: ignore[reportIncompatibleVariableOverride]
-    bouc_wen: Annotated[BoucWenTable | None, Key("a table")] = None
+    bouc_wen: Annotated[BoucWenTable | None, Key("a table", form=PLAIN)] = None
 
     @field_validator("impact", mode="before")
     @classmethod

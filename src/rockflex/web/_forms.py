@@ -1,5 +1,6 @@
 """The forms of structures, generated from the tables of structure files."""
 
+import math
 import re
 from typing import Any, Literal, get_args, get_origin
 
@@ -42,7 +43,7 @@ def _field(name: str, field: FieldInfo) -> dict[str, Any]:
         "default": None if hasattr(default, "model_fields") else default,
         "low": key.low,
         "high": key.high,
-        "infinite": key.infinite,
+        "infinite": key.high == math.inf,
         "fields": None if inner is None else _fields(inner),
     }
 

@@ -1,6 +1,5 @@
 """The limits of what one visitor may request: the same for forms, links and files."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, get_origin
 
@@ -57,8 +56,6 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
         elif isinstance(each, int | float) and not isinstance(each, bool):
             key = Key("") if field is None else key_of(field)
             low, high = (-LARGEST if key.low is None else key.low), (LARGEST if key.high is None else key.high)
-            if math.isinf(each) and each > 0.0 and key.infinite:
-                continue
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
     return errors

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from rockflex._errors import InputError
-from rockflex._schema import NUMBER, WHOLE, BaseMass, Key, each
+from rockflex._schema import PLAIN, WHOLE, BaseMass, Key, each
 from rockflex.structure import Beam, LumpedMasses
 from rockflex.structure.file._table import Table
 from rockflex.structure.file._tables import Damping, HalfWidth, Modes, StructureTable, Vector
@@ -16,10 +16,11 @@ _ALONG = each("height in z")
 class LumpedMassesTable(Table):
     """The arguments of `LumpedMasses`."""
 
-    heights: Annotated[Vector, Key("a list of the heights of the bodies above the base in m", "m")]
-    masses: Annotated[Vector, Key("a list of the masses of the bodies in kg", "kg")]
+    heights: Annotated[Vector, Key("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
+    masses: Annotated[Vector, Key("a list of the masses of the bodies in kg", "kg", form=PLAIN)]
     rotary: Annotated[
-        Vector | None, Key("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²")
+        Vector | None,
+        Key("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²", form=PLAIN),
     ] = None
 
 
@@ -29,21 +30,22 @@ class BeamTable(StructureTable):
     makes = Beam
     title = "Beam, perhaps tapered"
 
-    height: Annotated[float, Key("the height of the beam above the base", "m", NUMBER, low=0.01, high=2000.0)]
+    height: Annotated[float, Key("the height of the beam above the base", "m", low=0.01, high=2000.0)]
     z: Annotated[
         Vector | None,
         Key(
             "a list of heights in m from 0 to the top, for the lists of values (the same twice: a jump)",
             "m",
+            form=PLAIN,
             label="Heights z",
         ),
     ] = None
-    mass: Annotated[float | Vector, Key("the mass per metre in kg/m", "kg/m", _ALONG)]
-    bending_stiffness: Annotated[float | Vector, Key("EI in N m²", "N m²", _ALONG)]
+    mass: Annotated[float | Vector, Key("the mass per metre in kg/m", "kg/m", form=_ALONG)]
+    bending_stiffness: Annotated[float | Vector, Key("EI in N m²", "N m²", form=_ALONG)]
     shear_stiffness: Annotated[
-        float | Vector | None, Key("GA_s in N (default: no deformation in shear)", "N", _ALONG)
+        float | Vector | None, Key("GA_s in N (default: no deformation in shear)", "N", form=_ALONG)
     ] = None
-    rotary_inertia: Annotated[float | Vector | None, Key("ρI in kg m (default: none)", "kg m", _ALONG)] = None
+    rotary_inertia: Annotated[float | Vector | None, Key("ρI in kg m (default: none)", "kg m", form=_ALONG)] = None
     lumped_masses: Annotated[LumpedMassesTable | None, Key("bodies", form="a table of {}")] = None
     half_width: HalfWidth
     damping_ratio: Damping
@@ -51,13 +53,13 @@ class BeamTable(StructureTable):
     rotary_in_modes: Annotated[
         bool, Key("whether the rotary inertia takes part in the modes, or in I_θ only", form="true or false: {}")
     ] = True
-    method: Annotated[Literal["fe", "ritz"], Key('"fe" (finite elements) or "ritz" (shapes over the whole height)')] = (
-        "fe"
-    )
+    method: Annotated[
+        Literal["fe", "ritz"], Key('"fe" (finite elements) or "ritz" (shapes over the whole height)', form=PLAIN)
+    ] = "fe"
     n_modes: Modes = 5
     n_elements: Annotated[
         int | None,
-        Key("how many finite elements to take (default: 1000)", form=WHOLE, label="Elements", low=2, high=2000),
+        Key("how many finite elements to take (default: 1000)", form=WHOLE, low=2, high=2000, label="Elements"),
     ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:

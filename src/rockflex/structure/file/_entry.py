@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
-from rockflex._schema import NUMBER, Eccentricity, Key
+from rockflex._schema import PLAIN, Eccentricity, Key
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._matrix_files import checksum
@@ -43,16 +43,16 @@ KINDS: dict[str, type[StructureTable]] = {
 """The table of each kind of structure by its name in a file."""
 
 
-_KIND = Key("a table")
+_KIND = Key("a table", form=PLAIN)
 
 
 class TendonTable(Table):
     """The arguments of `Tendon`."""
 
-    position: Annotated[float, Key("the distance to the right of the axis of the masses", "m", NUMBER)] = 0.0
-    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N", NUMBER)]
-    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m", NUMBER)]
-    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N", NUMBER)] = None
+    position: Annotated[float, Key("the distance to the right of the axis of the masses", "m")] = 0.0
+    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N")]
+    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m")]
+    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N")] = None
 
 
 class StructureEntry(Table):
@@ -70,7 +70,7 @@ class StructureEntry(Table):
         Perhaps none.
     """
 
-    name: Annotated[str, Key("a name, in quotes")] = ""
+    name: Annotated[str, Key("a name, in quotes", form=PLAIN)] = ""
     frame: Annotated[FrameTable | None, _KIND] = None
     fish_bone: Annotated[FishBoneTable | None, _KIND] = None
     wall_frame: Annotated[WallFrameTable | None, _KIND] = None
@@ -83,8 +83,8 @@ class StructureEntry(Table):
     properties: Annotated[PropertiesTable | None, _KIND] = None
     block: Annotated[BlockTable | None, _KIND] = None
     eccentricity: Eccentricity = None
-    tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]")] = Field(
-        default_factory=list[TendonTable]
+    tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]", form=PLAIN)] = (
+        Field(default_factory=list[TendonTable])
     )
 
     @model_validator(mode="after")

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, StringConstraints
 
-from rockflex._schema import WHOLE, BaseMass, Key
+from rockflex._schema import PLAIN, WHOLE, BaseMass, Key
 from rockflex.structure import from_matrices, from_modes
 from rockflex.structure.file._tables import Damping, HalfWidth, Matrix, StructureTable, Vector
 
@@ -17,24 +17,24 @@ _OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
 class _FromFiles(StructureTable):
     """The keys that both kinds share: degrees of freedom above a base."""
 
-    mass: Annotated[Vector | Matrix | str, Key("a list of masses in kg, or the mass matrix", "kg", _OR_FILE)]
+    mass: Annotated[Vector | Matrix | str, Key("a list of masses in kg, or the mass matrix", "kg", form=_OR_FILE)]
     heights: Annotated[
         Vector | dict[Index, float] | str,
         Key(
             "a list of the heights of all freedoms in m, or a table { index = height } of those that move "
             "sideways, counted from 0",
             "m",
-            _OR_FILE,
+            form=_OR_FILE,
         ),
     ]
-    rotations: Annotated[list[int], Key("a list of the indices of rotations in the plane, counted from 0")] = Field(
-        default_factory=list[int]
-    )
+    rotations: Annotated[
+        list[int], Key("a list of the indices of rotations in the plane, counted from 0", form=PLAIN)
+    ] = Field(default_factory=list[int])
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
     n_modes: Annotated[
-        int | None, Key("how many modes to take (default: all)", form=WHOLE, label="Modes", low=1, high=100)
+        int | None, Key("how many modes to take (default: all)", form=WHOLE, low=1, high=100, label="Modes")
     ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
@@ -55,7 +55,7 @@ class MatricesTable(_FromFiles):
     makes = from_matrices
     title = "Mass and stiffness matrices"
 
-    stiffness: Annotated[Matrix | str, Key("the stiffness matrix in N/m, a list of rows", "N/m", _OR_FILE)]
+    stiffness: Annotated[Matrix | str, Key("the stiffness matrix in N/m, a list of rows", "N/m", form=_OR_FILE)]
 
 
 class ModesTable(_FromFiles):
@@ -66,9 +66,10 @@ class ModesTable(_FromFiles):
 
     omega: Annotated[
         Vector | str,
-        Key("a list of circular frequencies in rad/s, one a mode", "rad/s", _OR_FILE, label="ω", low=1e-3, high=1e6),
+        Key(
+            "a list of circular frequencies in rad/s, one a mode", "rad/s", form=_OR_FILE, low=1e-3, high=1e6, label="ω"
+        ),
     ]
     shapes: Annotated[
-        Matrix | str,
-        Key("the mode shapes, a list of rows, one a freedom with a column for each mode", form=_OR_FILE),
+        Matrix | str, Key("the mode shapes, a list of rows, one a freedom with a column for each mode", form=_OR_FILE)
     ]

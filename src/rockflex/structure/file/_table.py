@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from rockflex._errors import InputError
-from rockflex._schema import Key
+from rockflex._schema import PLAIN, Key
 
 AnyTable = TypeVar("AnyTable", bound="Table")
 
@@ -27,7 +27,7 @@ class Table(BaseModel):
 
 def key_of(field: FieldInfo) -> Key:
     """Return the key of a field; one without it has its description alone."""
-    return next((part for part in field.metadata if isinstance(part, Key)), Key(field.description or ""))
+    return next((part for part in field.metadata if isinstance(part, Key)), Key(field.description or "", form=PLAIN))
 
 
 def expected(field: FieldInfo) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Protocol, SupportsIndex, TypeAlias
 
-from rockflex._schema import NUMBER, WHOLE, AspectRatio, BaseMass, FrameKeys, Key, Period, each
+from rockflex._schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameKeys, Key, Period, each
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.structure import (
     CantileverWithTipMass,
@@ -20,10 +20,10 @@ from rockflex.structure.file._table import Table
 
 Vector = list[float]
 Matrix = list[list[float]]
-HalfWidth = Annotated[float, Key("half the width of the base", "m", NUMBER, low=1e-3, high=1000.0)]
+HalfWidth = Annotated[float, Key("half the width of the base", "m", low=1e-3, high=1000.0)]
 Damping = Annotated[float | Vector, Key("the fraction of critical damping", form=each("mode"), low=0.0, high=0.99)]
-Height = Annotated[float, Key("the height above the base", "m", NUMBER, low=0.01, high=2000.0)]
-Modes = Annotated[int, Key("how many modes to take", form=WHOLE, label="Modes", low=1, high=100)]
+Height = Annotated[float, Key("the height above the base", "m", low=0.01, high=2000.0)]
+Modes = Annotated[int, Key("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")]
 
 
 class Structure(Protocol):
@@ -84,9 +84,13 @@ class LumpedTable(StructureTable):
     makes = LumpedStructure
     title = "Lumped masses"
 
-    masses: Annotated[Vector | Matrix, Key("a list of masses in kg, from the lowest up, or the mass matrix", "kg")]
-    stiffness: Annotated[Matrix, Key("the stiffness matrix in N/m, a list of rows", "N/m")]
-    heights: Annotated[Vector, Key("a list of the heights of the masses above the base in m, from the lowest up", "m")]
+    masses: Annotated[
+        Vector | Matrix, Key("a list of masses in kg, from the lowest up, or the mass matrix", "kg", form=PLAIN)
+    ]
+    stiffness: Annotated[Matrix, Key("the stiffness matrix in N/m, a list of rows", "N/m", form=PLAIN)]
+    heights: Annotated[
+        Vector, Key("a list of the heights of the masses above the base in m, from the lowest up", "m", form=PLAIN)
+    ]
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
@@ -99,26 +103,27 @@ class PropertiesTable(StructureTable):
     title = "Rocking parameters"
 
     omega: Annotated[
-        Vector, Key("a list of circular frequencies in rad/s, one a mode", "rad/s", label="ω", low=1e-3, high=1e6)
+        Vector,
+        Key("a list of circular frequencies in rad/s, one a mode", "rad/s", form=PLAIN, low=1e-3, high=1e6, label="ω"),
     ]
-    effective_mass: Annotated[Vector, Key("a list of effective masses m*_n in kg", "kg")]
-    effective_height: Annotated[Vector, Key("a list of effective heights h*_n in m", "m")]
-    top_ordinate: Annotated[Vector, Key("a list of the top's displacement for a unit of each mode")]
-    i_theta: Annotated[float, Key("the moment of inertia about a pivot", "kg m²", NUMBER, label="I_θ")]
-    l0r: Annotated[float, Key("the sum of m_i h_i", "kg m", NUMBER, label="L₀ʳ")]
-    m_tot: Annotated[float, Key("the total mass with the base", "kg", NUMBER, label="Total mass")]
+    effective_mass: Annotated[Vector, Key("a list of effective masses m*_n in kg", "kg", form=PLAIN)]
+    effective_height: Annotated[Vector, Key("a list of effective heights h*_n in m", "m", form=PLAIN)]
+    top_ordinate: Annotated[Vector, Key("a list of the top's displacement for a unit of each mode", form=PLAIN)]
+    i_theta: Annotated[float, Key("the moment of inertia about a pivot", "kg m²", label="I_θ")]
+    l0r: Annotated[float, Key("the sum of m_i h_i", "kg m", label="L₀ʳ")]
+    m_tot: Annotated[float, Key("the total mass with the base", "kg", label="Total mass")]
     half_width: HalfWidth
     zeta: Annotated[
         float | Vector,
-        Key("the fraction of critical damping", form=each("mode"), label="Damping ratio", low=0.0, high=0.99),
+        Key("the fraction of critical damping", form=each("mode"), low=0.0, high=0.99, label="Damping ratio"),
     ]
     translational_inertia: Annotated[
-        float | None, Key("the sum of m_i h_i² (default: i_theta - m_tot half_width²)", "kg m²", NUMBER)
+        float | None, Key("the sum of m_i h_i² (default: i_theta - m_tot half_width²)", "kg m²")
     ] = None
-    top_height: Annotated[float | None, Key("the height of the top, for its total displacement, in m", "m")] = None
-    base_mass: Annotated[
-        float | None, Key("the mass of the base, a part of m_tot", "kg", NUMBER, low=0.0, high=1e12)
+    top_height: Annotated[
+        float | None, Key("the height of the top, for its total displacement, in m", "m", form=PLAIN)
     ] = None
+    base_mass: Annotated[float | None, Key("the mass of the base, a part of m_tot", "kg", low=0.0, high=1e12)] = None
 
 
 class TaperedTowerTable(StructureTable):
@@ -128,16 +133,14 @@ class TaperedTowerTable(StructureTable):
     title = "Tapered tower"
 
     height: Height
-    base_radius: Annotated[
-        float, Key("the outer radius at the base, half its width", "m", NUMBER, low=1e-2, high=500.0)
-    ]
-    top_radius: Annotated[float, Key("the outer radius at the top", "m", NUMBER, low=1e-2, high=500.0)]
-    wall: Annotated[float, Key("the thickness of the wall", "m", NUMBER, low=1e-3, high=100.0)]
-    density: Annotated[float, Key("the density of the material", "kg/m³", NUMBER, low=1.0, high=1e5)]
-    elastic_modulus: Annotated[float, Key("Young's modulus of the material", "N/m²", NUMBER)]
+    base_radius: Annotated[float, Key("the outer radius at the base, half its width", "m", low=1e-2, high=500.0)]
+    top_radius: Annotated[float, Key("the outer radius at the top", "m", low=1e-2, high=500.0)]
+    wall: Annotated[float, Key("the thickness of the wall", "m", low=1e-3, high=100.0)]
+    density: Annotated[float, Key("the density of the material", "kg/m³", low=1.0, high=1e5)]
+    elastic_modulus: Annotated[float, Key("Young's modulus of the material", "N/m²")]
     damping_ratio: Damping
     method: Annotated[
-        Literal["ritz", "fe"], Key('"ritz" (shapes over the whole height) or "fe" (2000 finite elements)')
+        Literal["ritz", "fe"], Key('"ritz" (shapes over the whole height) or "fe" (2000 finite elements)', form=PLAIN)
     ] = "ritz"
     n_modes: Modes = 5
 
@@ -148,19 +151,15 @@ class CantileverTable(StructureTable):
     makes = CantileverWithTipMass
     title = "Cantilever with a mass at its tip"
 
-    height: Annotated[
-        float, Key("the height of the body at the tip above the base", "m", NUMBER, low=0.01, high=2000.0)
-    ]
-    tip_mass: Annotated[float, Key("the mass of the body at the tip", "kg", NUMBER)]
-    bending_stiffness: Annotated[float, Key("EI of the column", "N m²", NUMBER)]
+    height: Annotated[float, Key("the height of the body at the tip above the base", "m", low=0.01, high=2000.0)]
+    tip_mass: Annotated[float, Key("the mass of the body at the tip", "kg")]
+    bending_stiffness: Annotated[float, Key("EI of the column", "N m²")]
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
-    mass_per_length: Annotated[float, Key("the mass of the column per metre", "kg/m", NUMBER)] = 0.0
-    tip_inertia: Annotated[
-        float, Key("the rotary inertia of the body at the tip about its own axis", "kg m²", NUMBER)
-    ] = 0.0
-    n_modes: Annotated[int | None, Key("how many modes to take", form=WHOLE, label="Modes", low=1, high=100)] = None
+    mass_per_length: Annotated[float, Key("the mass of the column per metre", "kg/m")] = 0.0
+    tip_inertia: Annotated[float, Key("the rotary inertia of the body at the tip about its own axis", "kg m²")] = 0.0
+    n_modes: Annotated[int | None, Key("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")] = None
 
 
 class WallFrameTable(StructureTable):
@@ -170,14 +169,14 @@ class WallFrameTable(StructureTable):
     title = "Wall and frame"
 
     height: Height
-    mass: Annotated[float, Key("the mass of wall and frame together, without the base", "kg", NUMBER)]
+    mass: Annotated[float, Key("the mass of wall and frame together, without the base", "kg")]
     stiffness_parameter: Annotated[
         float,
         Key(
             "α = H √(GA/EI), a number from 0 (a wall alone: flexure) to inf (a frame alone: shear)",
+            form=PLAIN,
             low=0.0,
             high=math.inf,
-            infinite=True,
         ),
     ]
     base_mass: BaseMass
@@ -194,19 +193,19 @@ class FishBoneTable(StructureTable):
     title = "Frame of unequal stories"
 
     story_heights: Annotated[
-        Vector, Key("a list of the heights of the stories in m, from the base up", "m", low=0.1, high=100.0)
+        Vector, Key("a list of the heights of the stories in m, from the base up", "m", form=PLAIN, low=0.1, high=100.0)
     ]
-    masses: Annotated[float | Vector, Key("the mass of each floor in kg", "kg", each("story"))]
+    masses: Annotated[float | Vector, Key("the mass of each floor in kg", "kg", form=each("story"))]
     column_stiffness: Annotated[
-        float | Vector, Key("EI of all columns of a story together in N m²", "N m²", each("story"))
+        float | Vector, Key("EI of all columns of a story together in N m²", "N m²", form=each("story"))
     ]
     beam_stiffness: Annotated[
         float | Vector,
         Key(
             "the rotational stiffness of the beams of a floor in N m/rad (0: no beams, inf: rigid ones)",
             "N m/rad",
-            each("story"),
-            infinite=True,
+            form=each("story"),
+            high=math.inf,
         ),
     ]
     base_mass: BaseMass
@@ -220,8 +219,6 @@ class BlockTable(StructureTable):
     makes = rigid_block
     title = "Rigid block"
 
-    slenderness: Annotated[float, Key("atan(b/h) of the half sides", "rad", NUMBER, low=1e-4, high=1.5)]
-    half_diagonal: Annotated[
-        float, Key("the distance from the corner to the centre", "m", NUMBER, low=1e-3, high=1000.0)
-    ]
-    mass: Annotated[float, Key("the mass, which rotations do not depend on", "kg", NUMBER)] = 1.0
+    slenderness: Annotated[float, Key("atan(b/h) of the half sides", "rad", low=1e-4, high=1.5)]
+    half_diagonal: Annotated[float, Key("the distance from the corner to the centre", "m", low=1e-3, high=1000.0)]
+    mass: Annotated[float, Key("the mass, which rotations do not depend on", "kg")] = 1.0
