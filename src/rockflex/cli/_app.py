@@ -1,4 +1,4 @@
-"""The application: its commands, its version, and how its failures end."""
+"""The application: its commands, its version and its exit codes."""
 
 import sys
 from typing import Annotated, Any
@@ -28,16 +28,15 @@ rockflex reproduce --out out/paper
 
 [bold]Exit codes[/bold]
 
-0: done; 1: a run could not be solved (in a study with --strict only, and then a fit that could not be made counts
-too); 2: something given cannot be used; 130:
-stopped by Ctrl-C."""
+0: done; 1: a run could not be solved (in a study only with --strict, which also counts fits that fail); 2: an input
+cannot be used; 130: stopped by Ctrl-C."""
 
 
 class Commands(TyperGroup):
     """Commands whose errors end in one paragraph on stderr and an exit code: 2 for input, 1 for the solver."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that the line names."""
+        """Run the command."""
         try:
             with remarks():
                 return super().invoke(ctx)
@@ -88,7 +87,7 @@ def rockflex(
 def main() -> None:
     """Run the command line; the entry point of ``rockflex`` and ``python -m rockflex``."""
     for stream in (sys.stdout, sys.stderr):
-        # A terminal without Greek letters shows question marks, and no traceback.
+        # A terminal without Greek letters shows question marks instead of a traceback.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # pyright: ignore[reportAttributeAccessIssue]
     app(prog_name="rockflex")

@@ -11,16 +11,14 @@ RECORD_FILES = "Record files"
 
 StructureFile = Annotated[
     Path | None,
-    typer.Option(
-        "--structure", "-s", metavar="FILE.toml", help="The structure's file, if it is not the first argument."
-    ),
+    typer.Option("--structure", "-s", metavar="FILE.toml", help="The structure file, if it is not the first argument."),
 ]
 Friction = Annotated[
     float | None,
     typer.Option(
         "--friction",
         metavar="MU",
-        help="Print the friction that each run needs (Eqs. 20-22), and when sliding would start with this coefficient.",
+        help="Print the friction that each run requires (Eqs. 20-22), and when sliding starts with this coefficient.",
         rich_help_panel=ASSUMPTIONS,
     ),
 ]
@@ -29,7 +27,7 @@ WorkLimit = Annotated[
     typer.Option(
         "--work-limit",
         metavar="S|none",
-        help="The most computing that one run may take, in s of one core; none lifts the limit. Default: 30.",
+        help="Longest computing time of one run, in s of one core; none: no limit. Default: 30.",
     ),
 ]
 Units = Annotated[
@@ -50,16 +48,16 @@ OnError = Annotated[
     typer.Option(
         "--on-error",
         metavar="raise|skip",
-        help="With files that cannot be read: stop and name them all, or go on with the others.",
+        help="If files cannot be read: stop and list them all, or skip them.",
         rich_help_panel=RECORD_FILES,
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, in SI units, and nothing else.")]
+Json = Annotated[bool, typer.Option("--json", help="Print only one JSON document, in SI units.")]
 Out = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables and figures to a folder.")]
-Force = Annotated[bool, typer.Option("--force", help="Let --out replace the results in a folder that is not empty.")]
+Force = Annotated[bool, typer.Option("--force", help="Let --out replace earlier results in a folder.")]
 Figures = Annotated[
     int,
     typer.Option(
-        "--figures", metavar="N", min=0, help="Write a series and a figure of each motion where there are at most N."
+        "--figures", metavar="N", min=0, help="Write a time series and a figure of each motion if there are at most N."
     ),
 ]

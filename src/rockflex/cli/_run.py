@@ -36,7 +36,7 @@ def run(
         list[str] | None,
         typer.Argument(
             metavar="STRUCTURE.toml MOTION",
-            help="The structure's file, then ground motions: suites, records (suite/name), files or directories.",
+            help="The structure file, then ground motions: suites, records (suite/name), files or directories.",
             show_default=False,
         ),
     ] = None,
@@ -50,11 +50,11 @@ def run(
         typer.Option(
             "--model",
             metavar="LABEL",
-            help="Several by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, MDOF-C, "
-            "3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; base held: fixed, 5DOF-fixed; one mode that "
-            "yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of modes left out in V_b and M_b: 2DOF-S-R, "
-            "5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
-            "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation those of them that rock.",
+            help="Labels, separated by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, "
+            "MDOF-C, 3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; fixed base: fixed, 5DOF-fixed; one "
+            "mode that yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of omitted modes in V_b and M_b: "
+            "2DOF-S-R, 5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
+            "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation, those of these that rock.",
             show_default=False,
         ),
     ] = None,
@@ -65,10 +65,10 @@ def run(
         str,
         typer.Option(metavar="S|settle", help="Seconds after the record, or settle: until at rest or overturned."),
     ] = "0",
-    times: Annotated[bool, typer.Option("--times", help="Print when the peaks occur, too.")] = False,
+    times: Annotated[bool, typer.Option("--times", help="Also print the times of the peaks.")] = False,
     workers: Annotated[
         int | None,
-        typer.Option(min=1, metavar="N", help="Threads. Default: one a core; one alone for 64 runs or fewer."),
+        typer.Option(min=1, metavar="N", help="Threads. Default: one per core; only one for up to 64 runs."),
     ] = None,
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,
@@ -83,7 +83,7 @@ def run(
 ) -> None:
     """Simulate a structure under ground motions and print the peaks of each run.
 
-    Peaks are those of the continuous motion, between samples too. Everything given is in kg, m, s, N and rad.
+    Peaks are those of the continuous motion, also between samples. All values are in kg, m, s, N and rad.
     """
     from time import perf_counter
 

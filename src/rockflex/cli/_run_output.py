@@ -1,4 +1,4 @@
-"""What ``rockflex run --out`` writes."""
+"""The files of ``rockflex run --out``."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -49,7 +49,7 @@ def write_runs(folder: Path, document: dict[str, Any], batch: Batch, runs: Seque
     Raises
     ------
     InputError
-        If the folder cannot be written to, or holds something and `force` is not set.
+        If the folder cannot be written to, or is not empty and `force` is not set.
     """
     import pandas as pd
 
@@ -57,7 +57,9 @@ def write_runs(folder: Path, document: dict[str, Any], batch: Batch, runs: Seque
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
         if batch.history:
             _write_histories(stage, batch, runs)
-    note(f"Written to {folder}" + ("" if batch.history else "; histories and figures only up to --figures motions"))
+    note(
+        f"Written to {folder}" + ("" if batch.history else "; no histories and figures of more than --figures motions")
+    )
 
 
 def _write_histories(stage: Path, batch: Batch, runs: Sequence[Run]) -> None:
@@ -89,6 +91,6 @@ def _series(batch: Batch, responses: Sequence[Response]) -> "Iterator[pd.DataFra
     if batch.friction is not None:
         names.append("friction_demand")
     for response in responses:
-        # Where the height of the top is not known, its total displacement is missing.
+        # The total displacement is missing where the height of the top is not known.
         values = {name: getattr(response, name, math.nan) for name in names}
         yield pd.DataFrame({"model": response.model, **values})

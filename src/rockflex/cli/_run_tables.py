@@ -1,4 +1,4 @@
-"""What ``rockflex run`` prints."""
+"""The printed tables of ``rockflex run``."""
 
 from collections.abc import Sequence
 from itertools import groupby
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 MAX_LISTED = 5
 LEGEND = (
-    "u_top: relative to the base, which turns; total: relative to the ground\n"
-    "V_b, M_b: of the elastic forces; ΣF_x: what the ground must hold across, with\n"
-    "the base's mass and the damping; N_min: least force between base and ground"
+    "u_top: relative to the rotating base; total: relative to the ground\n"
+    "V_b, M_b: of the elastic forces; ΣF_x: horizontal force on the ground, including\n"
+    "the base's inertia and the damping; N_min: least vertical force on the ground"
 )
 NOMINAL = "† θ passed 0.7 atan(B/h*_1), the nominal limit of overturning"
 FRICTION = (
@@ -27,7 +27,7 @@ Columns = list[tuple[str, list[str]]]
 
 
 def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *, times: bool) -> None:
-    """Print the peaks of every run, and when they occurred if asked to; by motion where the terminal is narrow."""
+    """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
     console = output()
     for line in (title, *batch.assumptions.remarks()):
         console.print(line, markup=False, soft_wrap=True)
@@ -61,23 +61,23 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
 
 
 def print_warnings(runs: Sequence[Run]) -> None:
-    """Say on stderr what runs ask of the ground or of their tendons that these cannot do."""
+    """Print warnings on stderr of demands that the ground or the tendons cannot meet."""
     found = [(run, warning) for run in runs for warning in run.warnings]
     for run, warning in found[:MAX_LISTED]:
         note(f"Warning: {run.motion} × {run.scale:g}: {warning}")
     if len(found) > MAX_LISTED:
-        note(f"and {len(found) - MAX_LISTED} more warnings; --json holds them all")
+        note(f"and {len(found) - MAX_LISTED} more warnings; --json lists them all")
 
 
 def print_failures(runs: Sequence[Run]) -> int:
-    """Say on stderr which runs could not be solved, and return how many."""
+    """List on stderr the runs that could not be solved, and return their number."""
     failed = [run for run in runs if run.error is not None]
     if failed:
         note(f"{len(failed)} of {len(runs)} runs could not be solved:")
     for run in failed[:MAX_LISTED]:
         note(f"  {run.model} under {run.motion} × {run.scale:g}: {run.error}")
     if len(failed) > MAX_LISTED:
-        note(f"  and {len(failed) - MAX_LISTED} more; --json and results.csv hold them all")
+        note(f"  and {len(failed) - MAX_LISTED} more; --json and results.csv list them all")
     return len(failed)
 
 
@@ -133,7 +133,7 @@ def _sliding(runs: Sequence[Run]) -> Columns:
 
 
 def _place(batch: Batch, run: Run) -> list[str]:
-    """Motion, and the scale where there are several or one that is not 1."""
+    """Motion, and the scale unless all runs have the scale 1."""
     return [run.motion] if batch.scales == [1.0] else [run.motion, f"{run.scale:g}"]
 
 
@@ -142,7 +142,7 @@ def _cells(columns: Columns) -> list[tuple[str, ...]]:
 
 
 def _flat(batch: Batch, runs: Sequence[Run], columns: Columns, n_words: int) -> "Table":
-    """One table of all runs."""
+    """Return one table of all runs."""
     words = [*("motion", "scale")[: len(_place(batch, runs[0]))], "model"]
     rows = [[*_place(batch, run), run.model, *row] for run, row in zip(runs, _cells(columns), strict=True)]
     return grid([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)

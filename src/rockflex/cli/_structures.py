@@ -1,4 +1,4 @@
-"""A structure from a TOML file or from the flags of a frame."""
+"""A structure from a TOML file, or a frame from flags."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -49,12 +49,12 @@ class LoadedStructure:
 
     @property
     def reference_mass(self) -> float:
-        """Mass above the base in kg, which all modes share; the total mass where only properties are known."""
+        """Mass above the base in kg; the total mass where only properties are known."""
         return self.properties.m_tot - (self.base_mass or 0.0)
 
     @property
     def title(self) -> str:
-        """One line for the head of a table."""
+        """Title of a table, in one line."""
         p = self.properties
         shift = f", e = {p.eccentricity:.4g} m" if p.eccentricity else ""
         if p.n_modes == 0:
@@ -70,12 +70,12 @@ class LoadedStructure:
 
 
 def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
-    """Take the structure file, given by --structure or as the first argument, from the arguments of a command.
+    """Return the structure file, given by --structure or as the first argument, and the remaining arguments.
 
     Raises
     ------
     InputError
-        If it was given in both ways.
+        If both were given.
     """
     if not arguments or not arguments[0].lower().endswith(".toml"):
         return option, list(arguments)
@@ -104,7 +104,7 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
 
 
 def describe_properties(properties: RockingProperties) -> dict[str, Any]:
-    """Return every parameter of a rocking structure by its name, for a document; `pivots` where there are two kinds."""
+    """Return every parameter of a rocking structure by name, for a document; `pivots` where the two differ."""
     names = (*KINDS["properties"].model_fields, "resisting_moment", "nominal_overturning_rotation")
     tendons = ("tendons", "prestress", "tendon_stiffness") if properties.tendons else ()
     described = {name: getattr(properties, name) for name in (*names, *tendons)}

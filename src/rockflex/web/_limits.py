@@ -24,12 +24,12 @@ BODY = 6_000_000  # bytes of any request
 FREEDOMS = 200  # stories, masses, rows of a matrix
 SAMPLES = 200_000
 DURATION = 300.0  # s of a record
-MODELS = 4  # side by side
+MODELS = 4  # at once
 RUNS = 20_000  # of a study
-RUN = 1.5  # s of computing that one run may take, as it is estimated (`rockflex.solve.Pace`)
-STOP = 5.0  # s of computing at which it is stopped: a hard run takes three times its estimate
-TOGETHER = 3.0  # s of the runs of one answer, as they are estimated
-STUDY = 180.0  # s of all runs of a study: some minutes
+RUN = 1.5  # s of estimated computing time of one run (`rockflex.solve.Pace`)
+STOP = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
+TOGETHER = 3.0  # s of estimated computing time of the runs of one answer
+STUDY = 180.0  # s of estimated computing time of all runs of a study
 
 LARGEST = 1e15
 
@@ -100,7 +100,7 @@ def check_motion(motion: GroundMotion, path: str) -> None:
 
 
 def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
-    """Refuse runs that take too long, one by one or together."""
+    """Refuse runs that take too long, individually or together."""
     together = sum(_checked_work(case.task(motion), "models") for case in cases)
     if together > TOGETHER:
         message = "these models take too long together for a page. Choose fewer of them, or a shorter record."
@@ -108,7 +108,7 @@ def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
 
 
 def _checked_work(task: Task, path: str) -> float:
-    """The work of a run in s; refuse one that would keep the page busy for long."""
+    """Return the estimated computing time of a run in s; refuse one that takes too long."""
     work = task.work().total
     if work > RUN:
         message = (
@@ -120,7 +120,7 @@ def _checked_work(task: Task, path: str) -> float:
 
 
 def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
-    """Refuse a model that the structure cannot have, as one with modes of a rigid block."""
+    """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
     assumptions, model = plan.bench.assumptions, parse_model(label)
     (bouc_wen,) = labelled_hysteresis([model], assumptions.bouc_wen)
     try:
@@ -130,7 +130,7 @@ def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, p
 
 
 def check_runs(plan: "CloudPlan", path: str) -> None:
-    """Refuse a study of which no run can be made, that has too many, or whose runs take too long."""
+    """Refuse a study whose runs are impossible, too many, or too long."""
     if plan.n_runs > RUNS:
         message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use the command line."
         raise Refusal({path: message})

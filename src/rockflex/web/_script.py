@@ -1,4 +1,4 @@
-"""The Python lines that repeat what the page shows."""
+"""Python programs that reproduce the results of the page."""
 
 import math
 from typing import Any
@@ -19,7 +19,7 @@ from rockflex.web._state import PulseChoice, State
 
 
 def response_script(state: State, upload_name: str = "record") -> str:
-    """Return a program that simulates what the Response tab shows, in `responses` by model."""
+    """Return a program that repeats the simulations of the Response tab, in `responses` by model."""
     extra = f", free_vibration={state.free_vibration!r}{_law(state)}"
     if yields := yielding(state.models):
         extra += ', bouc_wen=yielding if "-BW" in model else None'
@@ -106,12 +106,12 @@ def design_script(state: State) -> str:
 
 
 def record_file(upload_name: str) -> str:
-    """Name of the file in which the page gives an uploaded record back."""
+    """Name of the file in which the page saves an uploaded record."""
     return f"{upload_name}.csv"
 
 
 def _law(state: State) -> str:
-    """The argument that names an impact law; none where the model has its own."""
+    """The argument for an impact law; empty if each model has its own."""
     return "" if state.impact is None else f", impact=rf.{state.law()!r}"
 
 
@@ -142,7 +142,7 @@ def _structure(entry: StructureEntry) -> list[str]:
 def _motion(state: State, upload_name: str) -> list[str]:
     choice = state.record
     if choice.source == "upload":
-        line = f"motion = rf.read_motion({record_file(upload_name)!r})  # the page gives it: Record (CSV)"
+        line = f"motion = rf.read_motion({record_file(upload_name)!r})  # saved by the page: Record (CSV)"
     elif choice.source == "pulse":
         line = f"motion = rf.{_pulse(choice.pulse)}"
     else:

@@ -1,4 +1,4 @@
-"""Everything that the page shows, as one value: what a link holds."""
+"""The state of the page as one value, which a link holds."""
 
 import json
 import math
@@ -23,7 +23,7 @@ Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a 
 
 
 NODES = 150_000  # values in a state: three matrices of 200 freedoms, and some room
-TOLD = 50  # messages at once
+TOLD = 50  # messages in one answer
 
 
 class PulseChoice(Table):
@@ -53,7 +53,7 @@ class RecordChoice(Table):
 
 
 class CloudChoice(Table):
-    """A cloud analysis, and what is read from it."""
+    """A cloud analysis, and its limit state."""
 
     suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
     scales: list[Scale] = Field(
@@ -89,7 +89,7 @@ class DesignChoice(Table):
 
 
 class State(Assumed):
-    """All that the page shows."""
+    """The state of the whole page."""
 
     tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
         "structure", description="the name of a tab"
@@ -111,7 +111,7 @@ class State(Assumed):
 
 
 def parse_json(body: bytes) -> Any:
-    """Read JSON; infinite and absurd numbers are kept for the checks of fields.
+    """Read JSON; infinite and absurdly large numbers are left to the checks of the fields.
 
     Raises
     ------
@@ -121,11 +121,11 @@ def parse_json(body: bytes) -> Any:
     try:
         return json.loads(body, parse_int=lambda text: int(text) if len(text) < 16 else float(text))
     except (ValueError, RecursionError) as error:
-        raise Refusal(f"The request is no JSON that can be read: {str(error)[:200]}.", 400) from error
+        raise Refusal(f"The request is not valid JSON: {str(error)[:200]}.", 400) from error
 
 
 def parse_state(content: Any) -> State:
-    """Check what came from a form or a link.
+    """Return the state of a form or a link, checked.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def parse_state(content: Any) -> State:
     try:
         state.structure.name.encode()
     except UnicodeEncodeError as error:
-        raise Refusal({"structure.name": "it holds a character that cannot be written."}) from error
+        raise Refusal({"structure.name": "it contains a character that cannot be encoded."}) from error
     check_numbers("structure", state.structure.model_dump(), StructureEntry)
     _check_models(state)
     _check_assumed(state)
@@ -167,7 +167,7 @@ def _check_models(state: State) -> None:
         if len(set(labels)) < len(labels):
             raise Refusal({path: "the same model is chosen twice."})
         if yields and state.bouc_wen is None:
-            message = f"{yields[0]} yields, but nothing says at what displacement. Choose it on the Response tab."
+            message = f"{yields[0]} yields, but no yield displacement was given. Choose it on the Response tab."
             raise Refusal({path: message})
 
 
@@ -186,14 +186,14 @@ def _check_assumed(state: State) -> None:
 
 
 def _size(value: Any) -> int:
-    """How many values there are in it, tables and lists included."""
+    """The number of values, including tables and lists."""
     if isinstance(value, dict):
         return 1 + sum(map(_size, value.values()))
     return 1 + sum(map(_size, value)) if isinstance(value, list) else 1
 
 
 def _infinite(value: Any) -> Any:
-    """Put numbers in the place of "inf", which JSON cannot write."""
+    """Replace "inf" by the number, which JSON cannot write."""
     if isinstance(value, dict):
         return {str(key): _infinite(each) for key, each in value.items()}
     if isinstance(value, list):
@@ -202,7 +202,7 @@ def _infinite(value: Any) -> Any:
 
 
 def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:
-    """What is wrong with each field, in a sentence."""
+    """Return a sentence for each field at fault."""
     found: dict[str, str] = {}
     for problem in error.errors(include_url=False)[:TOLD]:
         path, description, given = _place(problem["loc"], content)
@@ -219,7 +219,7 @@ def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]
 
 
 def _place(location: tuple[int | str, ...], content: Any) -> tuple[str, str, Any]:
-    """Path, description and value of the field that a problem is in; what a union or a list adds is left out."""
+    """Return the path, description and value of the field at fault, without the parts that a union or a list adds."""
     table: type[Table] | None = State
     path: list[str] = []
     description, given = "a table", content

@@ -1,4 +1,4 @@
-"""Files of visitors: judged before they are parsed, and kept in memory only."""
+"""Uploaded files: checked before they are parsed, and stored only in memory."""
 
 import hashlib
 import io
@@ -23,9 +23,9 @@ MATRICES = ("mass", "stiffness", "heights", "rotations")
 
 
 class Uploads:
-    """Records by the checksum of their file, the latest `KEPT` of all visitors.
+    """Records by the checksum of their file; the latest `KEPT` of all visitors.
 
-    Only who has a file, or a link of one who has, knows its checksum.
+    The checksum is known only to those who have the file or a link with it.
     """
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Uploads:
         self._lock = Lock()
 
     def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
-        """Keep a record, and return its checksum."""
+        """Store a record, and return its checksum."""
         key = hashlib.sha256(content + b"\0" + options.encode()).hexdigest()
         with self._lock:
             self._kept[key] = motion
@@ -48,14 +48,16 @@ class Uploads:
         Raises
         ------
         Refusal
-            If it is not there (any more).
+            If it is not, or no longer, stored.
         """
         with self._lock:
             motion = self._kept.get(key)
             if motion is not None:
                 self._kept.move_to_end(key)
         if motion is None:
-            message = "the record of this link was a file, and a link does not hold files. Choose the file again."
+            message = (
+                "the record of this link was an uploaded file, which a link does not contain. Choose the file again."
+            )
             raise Refusal({"record.upload": message}, 410)
         return motion
 
@@ -66,7 +68,7 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Parameters
     ----------
     name
-        What the visitor calls the file; used in messages and as the motion's name, never as a path.
+        The visitor's name for the file; used in messages and as the motion's name, never as a path.
     content
         Its bytes.
     units, dt
@@ -75,7 +77,7 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Raises
     ------
     Refusal
-        If the file is too large, cannot be read, or holds too long a record or a vertical component.
+        If the file is too large, cannot be read, or contains a vertical component or a record that is too long.
     """
     shown = clean_name(name)
     _check_size(shown, content, "record.upload")
@@ -88,10 +90,10 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
             except InputError as error:
                 raise Refusal({"record.upload": str(error).replace(str(file), shown)}) from error
     except OSError as error:
-        message = "the server could not keep the file for a moment. Try again."
+        message = "the server could not store the file temporarily. Try again."
         raise Refusal({"record.upload": message}, 503) from error
     info = motion.metadata or RecordInfo()
-    info = replace(info, direction=direction_of(Path(shown), info.component))  # the file here has another name
+    info = replace(info, direction=direction_of(Path(shown), info.component))  # the temporary file has another name
     named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info)
     if is_vertical(named):
         message = f"{shown} is a vertical component by its header or its name. Choose a horizontal one."
@@ -133,7 +135,7 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
         }
     except Refusal:
         raise
-    except Exception as error:  # the readers of damaged files raise many kinds
+    except Exception as error:  # damaged files raise many kinds of errors
         message = f"{shown} does not hold matrices that can be read: {str(error)[:200]}."
         raise Refusal({"structure": message}) from error
 
@@ -144,7 +146,7 @@ def _from_npz(name: str, content: bytes) -> dict[str, list[Any]]:
         for part in MATRICES:
             if f"{part}.npy" not in archive.namelist():
                 continue
-            # A header may promise more than there is: it is read before any memory is taken.
+            # A header may claim an array of any size, so it is read before any memory is allocated.
             with archive.open(f"{part}.npy") as file:
                 version = np.lib.format.read_magic(file)
                 read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0

@@ -1,4 +1,4 @@
-"""A structure as a file holds it."""
+"""A structure as an entry of a file."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -56,7 +56,7 @@ class TendonTable(Table):
 
 
 class StructureEntry(Table):
-    """A structure, perhaps with a name, where it stands on its base, and the tendons that hold it down.
+    """A structure, with its optional name, its place on the base, and its tendons.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class StructureEntry(Table):
     eccentricity : float or None
         In m; None in the middle of the base.
     tendons : list of TendonTable
-        Perhaps none.
+        May be empty.
     """
 
     name: Annotated[str, Key("a name, in quotes", form=PLAIN)] = ""
@@ -98,22 +98,22 @@ class StructureEntry(Table):
 
     @property
     def kind(self) -> str:
-        """Name of the table that is the structure."""
+        """Name of the structure's table."""
         return next(kind for kind in KINDS if getattr(self, kind) is not None)
 
     @property
     def table(self) -> StructureTable:
-        """Table that is the structure."""
+        """The structure's table."""
         table: StructureTable = getattr(self, self.kind)
         return table
 
     def build(self, folder: Path | str = "") -> Built:
-        """Make the structure.
+        """Build the structure.
 
         Parameters
         ----------
         folder
-            Where the paths of matrices start. Default: the working directory.
+            Folder that the paths of matrices are relative to. Default: the working directory.
 
         Returns
         -------
@@ -122,7 +122,7 @@ class StructureEntry(Table):
         Raises
         ------
         InputError
-            If a value is outside its range, values do not go together, or a file of numbers cannot be read. The
+            If a value is out of range, values contradict each other, or a file of numbers cannot be read. The
             message begins with the table.
         """
         try:
@@ -145,7 +145,7 @@ class StructureEntry(Table):
             raise InputError(str(error), place="[[tendons]]", field="tendons") from error
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
-        """SHA-256 of the numbers in each file that the structure is made from, by its key, such as "matrices.mass".
+        """SHA-256 of the numbers in each file that the structure is built from, by its key, such as "matrices.mass".
 
         Raises
         ------
@@ -156,7 +156,7 @@ class StructureEntry(Table):
         return {f"{self.kind}.{name}": checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
-        """Return the values of the structure's table, and eccentricity and tendons if there are any."""
+        """Return the values of the structure's table, with eccentricity and tendons if given."""
         more: dict[str, Any] = {"eccentricity": self.eccentricity} if self.eccentricity else {}
         if self.tendons:
             more["tendons"] = [each.model_dump(exclude_none=True) for each in self.tendons]
