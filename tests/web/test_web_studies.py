@@ -199,7 +199,7 @@ def test_a_failure_is_told_without_a_traceback(caplog) -> None:
     assert (job.status, job.message) == ("failed", "The record is wrong.")
     job = Job(Plan(ZeroDivisionError("secret")), "cloud")
     job.compute()
-    assert (job.status, job.message) == ("failed", "An internal error occurred; the log of the server has the details.")
+    assert (job.status, job.message) == ("failed", "The server met an error of its own; its log has the details.")
     assert "ZeroDivisionError" in caplog.text
 
 
