@@ -33,12 +33,15 @@ FOUNDATION = {
     "_constants",
     "_errors",
     "_files",
+    "_json",
     "_kernel",
     "_matrices",
     "_numba",
     "_numba_pipeline",
+    "_schema",
     "_shown",
     "_values",
+    "_versions",
 }  # every layer may import these; they only each other
 FACES = {"cli", "web", "papers", "__main__"}  # may import anything, and nothing below them or the front
 

@@ -161,9 +161,7 @@ def test_a_hysteresis_in_the_file_that_no_model_asks_for_is_told(write):
     file = write(tail="[bouc_wen]\nyield_displacement = 0.05")
     result = invoke(file, RECORD, "--model", "MDOF-S")
     assert result.exit_code == 0
-    assert result.stderr == (
-        f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was asked for\n"
-    )
+    assert result.stderr == (f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given\n")
 
 
 @pytest.mark.parametrize(
@@ -171,21 +169,28 @@ def test_a_hysteresis_in_the_file_that_no_model_asks_for_is_told(write):
     [
         (
             ["--impact", "elastic"],
-            "--impact must be one of simplified, complete, restitution, but 'elastic' was given.",
+            '--impact must be "simplified", "complete" or "restitution", but \'elastic\' was given.',
         ),
-        (["--impact", "restitution"], "--impact restitution needs its coefficient. Give --restitution E, from 0 to 1."),
+        (
+            ["--impact", "restitution"],
+            'The impact law "restitution" needs its coefficient. Give restitution, a number from 0 to 1. On the '
+            "command line this is --restitution.",
+        ),
         (
             ["--restitution", 0.5],
-            "A restitution of 0.5 was given, but the impact law is the one of each model. Add --impact restitution, or",
+            "A restitution of 0.5 was given, but the impact law is the model's own. Choose the impact law",
         ),
-        (["--impact", "complete", "--restitution", 0.5], "but the impact law is complete. Add --impact restitution"),
+        (["--impact", "complete", "--restitution", 0.5], "but the impact law is 'complete'. Choose the impact law"),
         (
             ["--impact", "restitution", "--restitution", 1.5],
             "The restitution e must lie from 0 to 1, but 1.5 was given",
         ),
         (["--bw-exponent", 4], "The hysteresis needs its yield displacement. Give --yield-displacement DY in m."),
-        (["--yield-displacement", -1], "yield_displacement must be a positive, finite number in m, but -1.0 was given"),
-        ([*YIELDING, "--bw-exponent", 0.5], "exponent must be at least 1, but 0.5 was given."),
+        (
+            ["--yield-displacement", -1],
+            "--yield-displacement must be a positive, finite number in m, but -1.0 was given",
+        ),
+        ([*YIELDING, "--bw-exponent", 0.5], "--bw-exponent must be at least 1, but 0.5 was given."),
         (
             [*YIELDING, "--model", "2DOF-S,MDOF-S"],
             "A hysteresis was given, but 2DOF-S, MDOF-S do not yield. Models whose label ends in -BW do, such as "
@@ -193,26 +198,33 @@ def test_a_hysteresis_in_the_file_that_no_model_asks_for_is_told(write):
         ),
         (
             [*YIELDING, "--model", "MDOF-S-BW"],
-            "MDOF-S-BW would have 5 modes, and what yields has one. Use 2DOF-S-BW.",
+            "bouc_wen applies to models with one mode, but MDOF-S-BW has 5. Use 2DOF-S-BW, or leave it out.",
         ),
         (
             [*YIELDING, "--model", "fixed-BW"],
-            "fixed-BW would have 5 modes, and what yields has one. Use 1DOF-fixed-BW.",
+            "bouc_wen applies to models with one mode, but fixed-BW has 5. Use 1DOF-fixed-BW, or leave it out.",
         ),
         ([*YIELDING, "--model", "3DOF-S-BW"], "A Bouc-Wen superstructure has one mode, but 2 were asked for."),
         (
             ["--model", "2DOF-S-BW"],
-            "2DOF-S-BW needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure's file.",
+            "2DOF-S-BW needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file.",
         ),
         (
             [*YIELDING, "--free-vibration", "settle"],
-            "--free-vibration settle cannot tell when the hysteretic spring of 2DOF-S-BW, 1DOF-fixed-BW is at rest.",
+            'free_vibration="settle" cannot tell when the hysteretic spring of 2DOF-S-BW is at rest. Give the free '
+            "vibration in seconds. On the command line this is --free-vibration.",
         ),
         (["--initial-rotation", 0.1, "--model", "fixed"], "fixed has a base that cannot lift, but rotation=0.1"),
-        (["--initial-rotation", 2], "rotation must be a number between -1.5708 and 1.5708 rad, but 2.0 was given."),
+        (
+            ["--initial-rotation", 2],
+            "--initial-rotation must be a number between -1.5708 and 1.5708 rad, but 2.0 was given.",
+        ),
         (["--model", "3DOF-C"], "3DOF-C has no impact law of its own: Eq. 19 is one equation for 2 velocities."),
-        (["--friction", 0], "--friction must be a coefficient above zero, such as 0.5, but 0.0 was given."),
-        (["--friction", "nan"], "--friction must be a coefficient above zero, such as 0.5, but nan was given."),
+        (["--friction", 0], "--friction must be a friction coefficient above zero, such as 0.5, but 0.0 was given."),
+        (
+            ["--friction", "nan"],
+            "--friction must be a friction coefficient above zero, such as 0.5, but nan was given.",
+        ),
     ],
 )
 def test_bad_input(flags, said):
@@ -248,7 +260,7 @@ def test_free_vibration_of_no_length():
             'impact must be "simplified", "complete" or "restitution", but \'elastic\' was given',
         ),
         ("restitution = true", "", "restitution must be a number from 0 to 1, but True was given."),
-        ('impact = "restitution"', "", "needs its coefficient. Give --restitution E"),
+        ('impact = "restitution"', "", "needs its coefficient. Give restitution, a number from 0 to 1."),
         ("bouc_wen = 0.05", "", "bouc_wen must be a table, but 0.05 was given."),
     ],
 )

@@ -115,7 +115,7 @@ def test_rigid_block_has_no_modes(block, tmp_path):
     assert "Sum of" not in result.stdout
     # By hand: 0.7 atan(B/h) is 0.7 of the slenderness.
     assert "Nominal limit, 0.7 atan(B m_tot/L_0^r)     0.1400" in result.stdout
-    assert "no figure, as [block] holds no mode shapes" in result.stderr
+    assert "no figure, because [block] has no mode shapes" in result.stderr
     assert json.loads(invoke(block, "--json").stdout)["modes"] == []
 
 
@@ -189,7 +189,7 @@ def test_adequacy_is_printed():
     assert max(map(len, result.stdout.splitlines())) <= 80
     flat = " ".join(result.stdout.split())
     assert "Use 4DOF-S: with 2 modes, the second uplifted frequency is 87.8 % too high (allowed: 25 %); with 3," in flat
-    assert "How many modes it takes" not in invoke(STRUCTURE).stdout
+    assert "Number of modes needed" not in invoke(STRUCTURE).stdout
 
 
 def test_adequacy_of_the_chimney():
@@ -283,18 +283,18 @@ def test_figure_of_a_beam(tmp_path):
 
 def test_no_figure_without_shapes(tmp_path):
     result = invoke(EXAMPLES / "structure_properties.toml", "--out", tmp_path / "out")
-    assert "no figure, as [properties] holds no mode shapes" in result.stderr
+    assert "no figure, because [properties] has no mode shapes" in result.stderr
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["modes.csv", "summary.json"]
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["frame"], "frame is no structure file: a name that ends in .toml is expected."),
+        (["frame"], "frame is not a structure file: a name that ends in .toml is expected."),
         ([STRUCTURE, "--modes", 7], "n_modes must be a whole number from 1 to 5, but 7 was given."),
         ([STRUCTURE, "--structure", STRUCTURE], "Two structures were given"),
         (["--stories", 5], "The frame lacks --story-height, --story-mass"),
-        ([STRUCTURE, "--force"], "--force says what --out may replace, but no --out was given."),
+        ([STRUCTURE, "--force"], "--force was given without --out, to which it belongs."),
     ],
 )
 def test_bad_input(arguments, said):

@@ -90,7 +90,7 @@ def test_folder_of_many_motions_and_of_unknown_ones(tmp_path):
         (["nothing"], "'nothing' is neither a suite"),
         (["el-centro-1940", "--damping", 5], "damping_ratio must lie in [0, 1), but 5.0 was given."),
         (["el-centro-1940", "--period", "nan"], "periods must be finite"),
-        (["el-centro-1940", "--dt", 0.01], "--units, --dt and --on-error are for record files, but none was given."),
+        (["el-centro-1940", "--dt", 0.01], "--units, --dt and --on-error are for record files, but no file was given."),
         (["--units", "g"], "No ground motion was given."),
         (["--on-error", "skip"], "No ground motion was given."),
         (["--period", 1], "No ground motion was given."),

@@ -85,7 +85,7 @@ def test_structure_among_motions():
 
 
 def test_units_without_a_file():
-    with pytest.raises(InputError, match="--units, --dt and --on-error are for record files, but none was given"):
+    with pytest.raises(InputError, match="--units, --dt and --on-error are for record files, but no file was given"):
         find_motions(["el-centro-1940"], units="g")
 
 

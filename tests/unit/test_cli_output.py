@@ -136,9 +136,9 @@ def test_summary_cannot_reach_out_of_its_folder(tmp_path):
 def test_where_results_cannot_go(tmp_path):
     file = tmp_path / "file"
     file.touch()
-    with pytest.raises(InputError, match=r"--out .*file is a file\. Give a folder; it is made where it does not exist"):
+    with pytest.raises(InputError, match=r"--out .*file is a file\. Give a folder; it is created if it does not exist"):
         check_folder(file, force=True)
-    with pytest.raises(InputError, match=r"--force says what --out may replace, but no --out was given\."):
+    with pytest.raises(InputError, match=r"--force was given without --out, to which it belongs\."):
         check_folder(None, force=True)
     with pytest.raises(InputError, match=r"Cannot write to .*file/out: .*\. Give a folder that can be written to\."):
         write(file / "out", {})

@@ -133,9 +133,12 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         ),
         (
             'impact = "restitution"\n' + CLOUD,
-            'restitution and impact = "restitution" go together. Give both or',
+            'The impact law "restitution" needs its coefficient. Give restitution,',
         ),
-        ("restitution = 0.5\n" + CLOUD, 'restitution and impact = "restitution" go together. Give both or'),
+        (
+            "restitution = 0.5\n" + CLOUD,
+            "A restitution of 0.5 was given, but the impact law is the model's own. Choose",
+        ),
         ("free_vibration = -1.0\n" + CLOUD, "free_vibration: free_vibration must be zero or more seconds"),
         (
             'free_vibration = "long"\n' + CLOUD,

@@ -37,8 +37,8 @@ def test_the_page_is_served_on_loopback_and_stops_cleanly() -> None:
 def test_an_address_for_everybody_is_warned_of_and_a_port_checked() -> None:
     done = subprocess.run([*RUN, "--host", "192.0.2.1", "--port", "8080"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 2
-    assert "The page is open to everybody who reaches 192.0.2.1: it has no passwords." in done.stderr
-    assert "cannot listen at 192.0.2.1, port 8080" in " ".join(done.stderr.split())
+    assert "Everyone who can reach 192.0.2.1 can use the page: it has no passwords." in done.stderr
+    assert "cannot listen on 192.0.2.1, port 8080" in " ".join(done.stderr.split())
 
 
 def test_help_loads_no_server() -> None:

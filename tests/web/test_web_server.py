@@ -146,10 +146,10 @@ def test_a_bad_upload_is_refused(client) -> None:
         ({"record": {"suite": "el-centro-1940", "name": "X"}}, "record.name", "No motion of the suite"),
         ({"record": {"source": "pulse", "pulse": {"period": 36_000.0}}}, "record.pulse.period", "from 0.05 to 20"),
         ({"models": ["9DOF-S"]}, "models", "needs 8 modes, but the structure has 5"),
-        ({"models": ["2DOF-S-BW"]}, "models", "2DOF-S-BW yields, but nothing says at what displacement."),
+        ({"models": ["2DOF-S-BW"]}, "models", "2DOF-S-BW yields, but no yield displacement was given."),
         ({"models": ["MDOF-S-BW"], "bouc_wen": YIELDING}, "models", "bouc_wen applies to models with one mode"),
-        ({"impact": "restitution"}, "restitution", "go together. Give both or neither."),
-        ({"impact": "simplified", "restitution": 0.5}, "restitution", "go together. Give both or neither."),
+        ({"impact": "restitution"}, "restitution", "needs its coefficient. Give restitution, a number from 0 to 1."),
+        ({"impact": "simplified", "restitution": 0.5}, "restitution", "but the impact law is 'simplified'. Choose"),
         ({"impact": "restitution", "restitution": 1.5}, "restitution", "1.5"),
         (
             {"impact": "model"},
@@ -189,8 +189,8 @@ def test_energies_that_take_long_are_left_out(client) -> None:
     state = client.state(structure={"lumped": narrow}, models=["MDOF-S"])
     answer = client.ask("/api/response", state)
     assert answer["models"][0]["peaks"]["n_impacts"] >= 0
-    assert answer["energy"]["note"].startswith("The energy of so many modes, or of such fast ones")
-    assert "is left out here" in client.refused("/api/download/energy", state)["energy"]
+    assert answer["energy"]["note"].startswith("The energy is not computed here for so many or such fast modes")
+    assert "is not computed here" in client.refused("/api/download/energy", state)["energy"]
 
 
 def test_many_stories_are_judged_in_time(client) -> None:
@@ -247,7 +247,7 @@ def test_an_error_of_the_server_shows_no_traceback(client, monkeypatch) -> None:
     monkeypatch.setattr("rockflex.web._app.structure_view", broken)
     status, answer = client.post("/api/structure", {"state": client.state()})
     assert status == 500
-    assert answer == {"errors": {"": "The server met an error of its own; its log has the details."}}
+    assert answer == {"errors": {"": "An internal error occurred; the log of the server has the details."}}
 
 
 def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> None:
@@ -334,7 +334,7 @@ def test_a_port_that_is_taken_or_absurd_is_told() -> None:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         with pytest.raises(
-            InputError, match=r"The page cannot listen at 127\.0\.0\.1, port .*: .* Choose another --port\."
+            InputError, match=r"The page cannot listen on 127\.0\.0\.1, port .*: .* Choose another --port\."
         ):
             serve(taken.getsockname()[1])
     with pytest.raises(InputError, match="port"):

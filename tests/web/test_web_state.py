@@ -1,20 +1,23 @@
 """What a link or a form may hold, and what is said of the rest."""
 
+import base64
 import inspect
 import json
 import math
 from contextlib import suppress
+from typing import Annotated
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import Field
 
 import rockflex as rf
+from rockflex._json import plain
+from rockflex._schema import Key
 from rockflex.structure.file import KINDS, Table
 from rockflex.web._forms import _fields, forms
-from rockflex.web._packing import envelope, plain
+from rockflex.web._packing import envelope
 from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state
@@ -73,7 +76,7 @@ def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
         (
             {"structure": FRAME | {"eccentricity": "left"}},
             "structure.eccentricity",
-            "it must be how far the masses stand to the right of the middle of the base, a number in m, but 'left'",
+            "it must be the distance of the masses to the right of the middle of the base, a number in m, but 'left'",
         ),
         ({"structure": FRAME, "models": ["5DOF-Q"]}, "models", "Unknown model '5DOF-Q'."),
         ({"structure": FRAME, "models": ["2DOF-S"] * 2}, "models", "the same model is chosen twice."),
@@ -209,9 +212,39 @@ def test_the_parameters_of_both_edges_are_shown() -> None:
     assert plain_view["eccentricity"] == 0.0
 
 
+LINK = (
+    "eyJpbXBhY3QiOiJyZXN0aXR1dGlvbiIsInJlc3RpdHV0aW9uIjowLjgsImJvdWNfd2VuIjp7InlpZWxkX2Rpc3BsYWNlbWVudCI6MC4wN"
+    "SwicG9zdF95aWVsZF9yYXRpbyI6MC4wMSwiZ2FtbWEiOjAuNSwiYmV0YSI6MC41LCJleHBvbmVudCI6NC4wfSwidGFiIjoicmVzcG9uc2"
+    "UiLCJzdHJ1Y3R1cmUiOnsibmFtZSI6IlBpZXIiLCJjYW50aWxldmVyIjp7ImhlaWdodCI6MTIuMCwidGlwX21hc3MiOjUwMDAwMC4wLCJ"
+    "iZW5kaW5nX3N0aWZmbmVzcyI6NDAwMDAwMDAwMDAuMCwiYmFzZV9tYXNzIjoxMjAwMDAuMCwiaGFsZl93aWR0aCI6MS41LCJkYW1waW5n"
+    "X3JhdGlvIjowLjAzLCJtYXNzX3Blcl9sZW5ndGgiOjEwMDAwLjAsInRpcF9pbmVydGlhIjowLjAsIm5fbW9kZXMiOjN9LCJlY2NlbnRya"
+    "WNpdHkiOjAuMSwidGVuZG9ucyI6W3sicG9zaXRpb24iOi0wLjYsImluaXRpYWxfZm9yY2UiOjgwMDAwMC4wLCJzdGlmZm5lc3MiOjEwMD"
+    "AwMDAwLjAsInlpZWxkX2ZvcmNlIjoyMDAwMDAwLjB9XX0sInJlY29yZCI6eyJzb3VyY2UiOiJzdWl0ZSIsInN1aXRlIjoiZWwtY2VudHJ"
+    "vLTE5NDAiLCJuYW1lIjoiRUwtQ0VOVFJPLTE5NDAtTlMiLCJwdWxzZSI6eyJzaGFwZSI6InJpY2tlcl9hbnRpc3ltbWV0cmljIiwiYW1w"
+    "bGl0dWRlIjoyLjAsInBlcmlvZCI6MS4wLCJnYW1tYSI6MS41LCJudSI6MC4wfSwidXBsb2FkIjoiIn0sInNjYWxlIjoxLjUsIm1vZGVsc"
+    "yI6WyIyRE9GLVMiLCIyRE9GLVMtQlciXSwiZnJlZV92aWJyYXRpb24iOjUuMCwiY2xvdWQiOnsic3VpdGVzIjpbImZlbWEtcDY5NS1mYX"
+    "ItZmllbGQiXSwic2NhbGVzIjpbMC41LDEuMCwyLjBdLCJtb2RlbHMiOlsiTURPRi1TIl0sIm1lYXN1cmUiOiJwZ3YiLCJsaW1pdCI6InJ"
+    "vY2tpbmciLCJyb3RhdGlvbiI6MC4wMSwibGV2ZWwiOjAuOX0sImRlc2lnbiI6eyJzdWl0ZXMiOlsiZmVtYS1wNjk1LWZhci1maWVsZCJd"
+    "LCJzY2FsZXMiOlsxLjAsMi4wXSwibW9kZWwiOiIyRE9GLVMiLCJuYXJyb3dlc3QiOjEuMCwid2lkZXN0IjozLjAsIndpZHRocyI6OCwid"
+    "GVuZG9ucyI6WzAuMCwwLjJdLCJzdGlmZm5lc3MiOjAuNSwibWVhc3VyZSI6InBndiIsImF0IjowLjYsImxpbWl0Ijoicm90YXRpb24iLC"
+    "Jyb3RhdGlvbiI6MC4wMiwidGFyZ2V0IjowLjI1fX0"
+)
+"""A link of version 0.1.0, before the forms came from the schema."""
+
+
+def test_an_old_link_still_opens() -> None:
+    content = json.loads(base64.urlsafe_b64decode(LINK + "=" * (-len(LINK) % 4)))
+    state = parse_state(content)
+    assert plain(state.model_dump(exclude_none=True)) == content
+    assert state.structure.tendons[0].yield_force == 2e6
+    assert state.structure.eccentricity == 0.1
+    assert state.law() == rf.Restitution(0.8)
+    assert state.hysteresis() == rf.BoucWen(0.05, exponent=4.0)
+
+
 def test_json_that_is_none_is_refused() -> None:
     for body in (b"{", b"\xff", b"[" * 100_000, b""):
-        with pytest.raises(Refusal, match="no JSON that can be read"):
+        with pytest.raises(Refusal, match="not valid JSON"):
             parse_json(body)
     assert parse_json(b'{"a": ' + b"9" * 5000 + b"}")["a"] == math.inf
 
@@ -229,7 +262,7 @@ def test_the_forms_have_every_field_of_every_kind() -> None:
     assert [each["name"] for each in found["bouc_wen"]] == list(inspect.signature(rf.BoucWen).parameters)
     moved = found["eccentricity"]
     assert (moved["unit"], moved["required"], moved["default"], moved["type"]) == ("m", False, None, "number")
-    assert moved["help"] == "How far the masses stand to the right of the middle of the base."
+    assert moved["help"] == "The distance of the masses to the right of the middle of the base."
     period = next(each for each in found["kinds"]["frame"]["fields"] if each["name"] == "period")
     assert (period["unit"], period["low"], period["high"], period["required"]) == ("s", 0.01, 60.0, True)
 
@@ -257,8 +290,8 @@ def test_what_has_no_balance_says_why() -> None:
 
 def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
     class Plate(Table):
-        depth: float = Field(description="how deep, in m below, it lies", json_schema_extra={"unit": "ft"})
-        area: float = Field(description="its area in m", json_schema_extra={"form": "a table of {}, a number in s"})
+        depth: Annotated[float, Key("how deep, in m below, it lies", "ft")]
+        area: Annotated[float, Key("its area in m", form="a table of {}, a number in s")]
 
     depth, area = _fields(Plate)
     assert (depth["unit"], depth["help"]) == ("ft", "How deep, in m below, it lies.")

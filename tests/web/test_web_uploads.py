@@ -156,6 +156,6 @@ def test_the_latest_records_are_kept_by_their_checksum() -> None:
     kept, motion = Uploads(), rf.quiet_motion(1.0)
     keys = [kept.add(motion, bytes([i]), "") for i in range(KEPT + 1)]
     assert kept.get(keys[-1]) is motion
-    with pytest.raises(Refusal, match=r"a link does not hold files\. Choose the file again\.") as caught:
+    with pytest.raises(Refusal, match=r"which a link does not contain\. Choose the file again\.") as caught:
         kept.get(keys[0])
     assert caught.value.status == 410

@@ -1,4 +1,4 @@
-"""The application: its commands, its version, and how its failures end."""
+"""The application: its commands, its version and its exit codes."""
 
 import sys
 from typing import Annotated, Any
@@ -10,6 +10,7 @@ from rockflex import __version__
 from rockflex._errors import InputError, SolverError
 from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study
 from rockflex.cli._console import complain, note, remarks
+from rockflex.cli._flags import FrameCommand, RunCommand
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -27,16 +28,15 @@ rockflex reproduce --out out/paper
 
 [bold]Exit codes[/bold]
 
-0: done; 1: a run could not be solved (in a study with --strict only, and then a fit that could not be made counts
-too); 2: something given cannot be used; 130:
-stopped by Ctrl-C."""
+0: done; 1: a run could not be solved (in a study only with --strict, which also counts fits that fail); 2: an input
+cannot be used; 130: stopped by Ctrl-C."""
 
 
 class Commands(TyperGroup):
     """Commands whose errors end in one paragraph on stderr and an exit code: 2 for input, 1 for the solver."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that the line names."""
+        """Run the command."""
         try:
             with remarks():
                 return super().invoke(ctx)
@@ -58,8 +58,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("run", epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
-app.command("modes", epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
+app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
+app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
 for command in (_study.cloud, _study.ida, _study.stripes, _study.population, _study.design):
     app.command(command.__name__, epilog=_study.epilog(command.__name__), no_args_is_help=True)(command)
@@ -87,7 +87,7 @@ def rockflex(
 def main() -> None:
     """Run the command line; the entry point of ``rockflex`` and ``python -m rockflex``."""
     for stream in (sys.stdout, sys.stderr):
-        # A terminal without Greek letters shows question marks, and no traceback.
+        # A terminal without Greek letters shows question marks instead of a traceback.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # pyright: ignore[reportAttributeAccessIssue]
     app(prog_name="rockflex")

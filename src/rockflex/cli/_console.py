@@ -1,4 +1,4 @@
-"""What is printed: tables on stdout, everything else on stderr."""
+"""Printing: tables on stdout, everything else on stderr."""
 
 import math
 import warnings
@@ -31,7 +31,7 @@ def note(message: str) -> None:
 
 @contextmanager
 def remarks() -> Generator[None]:
-    """Print each warning of records that are left out once, as a remark."""
+    """Print each warning about skipped records once, as a remark."""
     with warnings.catch_warnings():
         warnings.simplefilter("default", RecordWarning)
         elsewhere = warnings.showwarning
@@ -51,7 +51,7 @@ def output() -> "Console":
 
 
 class Styled(str):
-    """A cell of a table, and the style that it is written in."""
+    """A cell of a table, and its style."""
 
     __slots__ = ("style",)
     style: str
@@ -63,7 +63,7 @@ class Styled(str):
 
 
 def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
-    """Return a table whose first `n_left` columns are words, aligned to the left, and the others numbers."""
+    """Return a table with `n_left` columns of words, aligned to the left, followed by columns of numbers."""
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -71,7 +71,7 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
     look: dict[str, Any] = {"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "collapse_padding": True}
     table = Table(**look)
     for place, heading in enumerate(headings):
-        # Units, and which of two kinds, stand below the names, which keeps the columns narrow.
+        # The unit goes below the name, to keep the columns narrow.
         text = Text(heading.replace(" [", "\n[").replace("u_top ", "u_top\n"))
         table.add_column(text, justify="left" if place < n_left else "right", no_wrap=True, vertical="bottom")
     for row in rows:
@@ -81,7 +81,7 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
 
 @contextmanager
 def progress(title: str, total: int | None = None) -> Generator[Callable[[int], None], None, None]:
-    """Show a bar on stderr while the work lasts, on a terminal only; what is given advances it by so many steps."""
+    """Show a bar on stderr, if it is a terminal; the yielded function advances it by a number of steps."""
     from rich.console import Console
 
     console = Console(stderr=True)
@@ -97,7 +97,7 @@ def progress(title: str, total: int | None = None) -> Generator[Callable[[int], 
 
 @contextmanager
 def study_progress(title: str) -> Generator[Callable[[int, int, int], None], None, None]:
-    """Show a bar with rate and time left on stderr, on a terminal only; what is given takes parts, done and runs."""
+    """Show a bar with rate and remaining time on stderr, if it is a terminal; the yielded function updates it."""
     from rich.console import Console
 
     console = Console(stderr=True)
@@ -110,10 +110,10 @@ def study_progress(title: str) -> Generator[Callable[[int, int, int], None], Non
 
     look = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[rate]}"))
     with Progress(*look, TimeRemainingColumn(), console=console, transient=True) as bar:
-        task, begun = bar.add_task(title, total=None, rate=""), perf_counter()
+        task, start = bar.add_task(title, total=None, rate=""), perf_counter()
 
         def show(parts: int, done: int, runs: int) -> None:
-            rate = runs / max(perf_counter() - begun, 1e-9)
+            rate = runs / max(perf_counter() - start, 1e-9)
             bar.update(task, total=parts, completed=done, rate=f"{rate:.0f} rows/s" if runs else "")
 
         yield show
@@ -127,12 +127,12 @@ def duration(seconds: float) -> str:
 
 
 def fits(console: "Console", table: "Table") -> bool:
-    """Tell whether a table can be printed without cutting it."""
+    """Tell whether a table fits the width of the terminal."""
     return _width(console, table) <= console.width
 
 
 def show(console: "Console", table: "Table") -> None:
-    """Print a table whole, if need be beyond the width of the terminal."""
+    """Print a table in full, even where it is wider than the terminal."""
     from rich.console import Console
 
     width = _width(console, table)
@@ -146,7 +146,7 @@ def _width(console: "Console", table: "Table") -> int:
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """Write a number with so many significant digits, with an exponent only where it is very large or small."""
+    """Write a number with `digits` significant digits, with an exponent only if it is very large or small."""
     if value is None or math.isnan(value):
         return "-"
     if value == 0.0 or math.isinf(value):

@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
+from rockflex._schema import FrameFlags
 from rockflex.cli import _options as options
+from rockflex.cli._flags import given
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,40 +51,33 @@ SIDES = {1: "right", -1: "left"}
 
 
 def modes(
+    context: typer.Context,
     file: Annotated[
-        str | None, typer.Argument(metavar="STRUCTURE.toml", help="The structure's file.", show_default=False)
+        str | None, typer.Argument(metavar="STRUCTURE.toml", help="The structure file.", show_default=False)
     ] = None,
     structure: options.StructureFile = None,
-    n_modes: Annotated[int | None, typer.Option("--modes", metavar="N", help="The first N modes alone.")] = None,
+    n_modes: Annotated[int | None, typer.Option("--modes", metavar="N", help="Show only the first N modes.")] = None,
     adequacy: Annotated[
         bool,
-        typer.Option("--adequacy", help="Tell how many modes the structure needs, and why; --modes does not limit it."),
+        typer.Option(
+            "--adequacy", help="Report how many modes the structure needs, and why; --modes does not limit this."
+        ),
     ] = False,
     json: options.Json = False,
     out: options.Out = None,
     force: options.Force = False,
-    stories: options.Stories = None,
-    story_height: options.StoryHeight = None,
-    story_mass: options.StoryMass = None,
-    base_mass: options.BaseMass = None,
-    stiffness_ratio: options.Stiffness = None,
-    period: options.Period = None,
-    aspect_ratio: options.AspectRatio = None,
-    damping_ratio: options.DampingRatio = None,
-    eccentricity: options.Eccentricity = None,
 ) -> None:
-    """Print the modes of a structure on a fixed base, and what it takes to rock."""
+    """Print the modes of a structure on a fixed base, and its rocking parameters."""
     from rockflex._checks import whole_number
     from rockflex.cli._modes_tables import print_modes
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
     check_folder(out, force=force)
-    frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
     path, rest = split_arguments(structure, [] if file is None else [file])
     if rest:
-        raise InputError(f"{file} is no structure file: a name that ends in .toml is expected.")
-    loaded = load_structure(path, options.frame_arguments((*frame, eccentricity)))
+        raise InputError(f"{file} is not a structure file: a name that ends in .toml is expected.")
+    loaded = load_structure(path, given(context, FrameFlags))
     properties = loaded.properties
     if n_modes is not None:
         properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))
@@ -111,7 +106,7 @@ def modes(
 
 
 def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:
-    """One row a mode, in SI units; the share is of the mass above the base where that is known, else of all."""
+    """One row per mode, in SI units; the share refers to the mass above the base if known, else to the total mass."""
     import math
 
     return [
@@ -130,7 +125,7 @@ def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[di
 
 
 def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
-    """One row a vibration about one pivot, or about each where they differ, with the same modes, in SI units."""
+    """One row per vibration about a pivot, or about both where they differ, with the same modes, in SI units."""
     import math
 
     from rockflex.modal import uplifted_modes
@@ -160,7 +155,7 @@ def _adequacy(loaded: "LoadedStructure") -> "Adequacy":
 
 
 def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
-    """Return everything for a document; in the rows what belongs to the first k modes."""
+    """Return the result for a document; each row refers to the first k modes."""
     from dataclasses import asdict
 
     rows = [
@@ -200,7 +195,7 @@ def _print_adequacy(need: "Adequacy") -> None:
         *(100.0 * need.frequency_error).T,
     )
     rows = [[str(k + 1), *(number(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
-    console.print("\nHow many modes it takes", markup=False)
+    console.print("\nNumber of modes needed", markup=False)
     show(console, grid(headings, rows))
     console.print()
     console.print(need.reason, markup=False)
@@ -216,11 +211,11 @@ def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", 
     built = loaded.built
     drawn = not isinstance(built, RockingProperties)
     with staged(folder, document, force=force) as stage:
-        # As the printed tables have them: beside each mode on a fixed base the one of the same number while uplifted.
+        # As in the printed tables: each mode on a fixed base, then the mode of the same number while uplifted.
         lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")
         pd.DataFrame(document["modes"]).join(lifted).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
         if drawn:
             from rockflex.plot import plot_mode_shapes, save_figure
 
             save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
-    note(f"Written to {folder}" + ("" if drawn else f"; no figure, as [{loaded.kind}] holds no mode shapes"))
+    note(f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes"))

@@ -1,4 +1,4 @@
-"""What ``rockflex modes`` prints."""
+"""The printed tables of ``rockflex modes``."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ Rows = list[dict[str, Any]]
 
 
 def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties") -> None:
-    """Print the modes on a fixed base and while uplifted, and what it takes to rock: once, or for each edge."""
+    """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ."""
     console = output()
     console.print(f"{loaded.title}\n", markup=False, soft_wrap=True)
     share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
@@ -23,7 +23,7 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
         headings, keys = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n"), ("period", "omega", "ratio", "zeta")
         for side in ("",) if p.symmetric else ("right", "left"):
             about = f" about the {side} edge" if side else ""
-            note = "" if side == "left" else "; fewer have other ζ*_n (--modes)"
+            note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
             console.print(f"\nWhile uplifted{about}, with these modes{note}", markup=False)
             kept = [row for row in lifted if row.get("side", "") == side]
             show(console, grid(headings, _numbers(kept, keys)))
@@ -47,7 +47,7 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
 
 
 def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
-    """What is the same about both pivots."""
+    """The parameters that are the same about both pivots."""
     unit, size = moment_unit(p.resisting_moment)
     stiffness = ("Their stiffness while rocking", number(p.tendon_stiffness / size), f"{unit}/rad")
     weight = "(m_tot g + P)" if p.tendons else "m_tot g"
@@ -59,7 +59,7 @@ def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
 
 
 def _each(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
-    """What differs from pivot to pivot."""
+    """The parameters that differ between the pivots."""
     unit, size = moment_unit(p.resisting_moment)
     sides = (p.pivot(1), p.pivot(-1))
 

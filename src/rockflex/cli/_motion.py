@@ -1,4 +1,4 @@
-"""``rockflex motion``: what is in a record or a suite."""
+"""``rockflex motion``: the contents and measures of records and suites."""
 
 from collections.abc import Sequence
 from textwrap import fill
@@ -23,7 +23,7 @@ rockflex motion fema-p695-far-field/FF-12-a --out record
 
 rockflex motion record.csv --units g --dt 0.01 --json"""
 
-PLAIN = str.maketrans("₀₁₂₃₄₅₆₇₈₉₋", "0123456789-")  # a terminal may lack what stands below the line
+PLAIN = str.maketrans("₀₁₂₃₄₅₆₇₈₉₋", "0123456789-")  # a terminal may lack subscripts
 
 
 def motion(
@@ -31,7 +31,7 @@ def motion(
         list[str] | None,
         typer.Argument(
             metavar="MOTION",
-            help="Suites, records (suite/name), files or directories; none: the suites that come with rockflex.",
+            help="Suites, records (suite/name), files or directories. Without any: list the embedded suites.",
             show_default=False,
         ),
     ] = None,
@@ -50,12 +50,12 @@ def motion(
     dt: options.Dt = None,
     on_error: options.OnError = "raise",
 ) -> None:
-    """Print what is known of ground motions and measured from them; without a name, list the embedded suites."""
+    """Print the data and the intensity measures of ground motions; without a name, list the embedded suites."""
     from rockflex.cli._motions import embedded_suites, find_motions
     from rockflex.cli._output import check_folder, to_json, versions
 
     check_folder(out, force=force)
-    # A folder or a unit asks for motions, so an empty list of names is an error then.
+    # With a folder or a unit, motions are expected, and an empty list of names is an error.
     about_files = units is not None or dt is not None or on_error != "raise"
     if not names and out is None and period is None and not about_files:
         suites = embedded_suites()

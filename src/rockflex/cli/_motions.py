@@ -11,12 +11,12 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion import GroundMotion, OnError, folder_files, load_suite, quiet_motion, read_files, suite_names
 
-SHORTEST = 0.01  # s of a quiet ground before the free vibration is left to settle
+SHORTEST = 0.01  # s of quiet ground before a free vibration until at rest
 
 
 @dataclass(frozen=True)
 class FoundMotion:
-    """A motion, and the suite or path that it came from."""
+    """A motion, and its suite or path."""
 
     motion: GroundMotion
     origin: str
@@ -27,7 +27,7 @@ class FoundMotion:
         return hashlib.sha256(self.motion.acceleration.astype("<f8").tobytes()).hexdigest()
 
     def describe(self) -> dict[str, Any]:
-        """Return what identifies the motion, for a document."""
+        """Return the data that identify the motion, for a document."""
         motion = self.motion
         return {
             "name": motion.name,
@@ -53,7 +53,7 @@ def embedded_suites() -> list[dict[str, Any]]:
 def find_motions(
     names: Sequence[str], units: str | None = None, dt: float | None = None, on_error: OnError = "raise"
 ) -> list[FoundMotion]:
-    """Find motions, in the order of their names; one that is named twice is taken once.
+    """Find motions, in the order of their names; a motion that is named twice appears once.
 
     Parameters
     ----------
@@ -91,17 +91,17 @@ def find_motions(
                     "Rename one of the files."
                 )
     if not files and (units is not None or dt is not None or on_error != "raise"):
-        raise InputError("--units, --dt and --on-error are for record files, but none was given. Leave them out.")
+        raise InputError("--units, --dt and --on-error are for record files, but no file was given. Leave them out.")
     return list(found.values())
 
 
 def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], float | Literal["settle"]]:
-    """Ground at rest for a free vibration, and what is left of that after it.
+    """Return ground at rest for a free vibration, and the free vibration that follows it.
 
     Raises
     ------
     InputError
-        If there is no length to it.
+        If the free vibration has no length.
     """
     if free == 0.0:
         raise InputError(

@@ -1,50 +1,42 @@
-"""Results as files: whole or not at all."""
+"""Results as files, written completely or not at all."""
 
 import json
-import math
-import platform
 import re
 import tempfile
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
-from dataclasses import asdict, is_dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from rockflex import __version__
 from rockflex._errors import InputError
 from rockflex._files import check_regular
+from rockflex._json import plain
+from rockflex._versions import versions_of
 
 SUMMARY = "summary.json"
 
 
 def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
-    """Return strictly valid JSON: what is not a number becomes null, and an infinity the string "inf" or "-inf"."""
-    return json.dumps(_plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
+    """Return strictly valid JSON: NaN becomes null, and an infinity the string "inf" or "-inf"."""
+    return json.dumps(plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of everything that the numbers depend on."""
-    return {
-        "rockflex": __version__,
-        "python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy", "numba")},
-    }
+    """Return the versions of the packages that the results depend on."""
+    return {"rockflex": __version__, **versions_of(("numpy", "scipy", "numba"))}
 
 
 def check_folder(folder: Path | None, *, force: bool) -> None:
-    """Raise an InputError where results must not be written, or where --force has nothing to do with."""
+    """Raise an InputError if the folder must not be written to, or --force was given without a folder."""
     if folder is None:
         if force:
             raise InputError(
-                "--force says what --out may replace, but no --out was given. Add --out DIR, or leave it out."
+                "--force was given without --out, to which it belongs. Add --out DIR, or leave --force out."
             )
         return
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out {folder} is a file. Give a folder; it is made where it does not exist.")
+        raise InputError(f"--out {folder} is a file. Give a folder; it is created if it does not exist.")
     if folder.is_dir() and not force and any(folder.iterdir()):
         raise InputError(
             f"The folder {folder} is not empty. Give another one, or --force to replace the results in it."
@@ -53,15 +45,14 @@ def check_folder(folder: Path | None, *, force: bool) -> None:
 
 @contextmanager
 def staged(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
-    """Give a temporary folder to write to; at the end its files move to `folder`, with `document` as summary.json.
+    """Yield a temporary folder; at the end its files move to `folder`, with `document` as summary.json.
 
-    Where anything fails before the end, `folder` stays as it was. Files of earlier results there, and no others, are
-    removed or replaced.
+    If anything fails before the end, `folder` is unchanged. Only earlier results there are removed or replaced.
 
     Raises
     ------
     InputError
-        If the folder must not or cannot be written to.
+        If the folder must not, or cannot, be written to.
     """
     check_folder(folder, force=force)
     home = folder if folder.is_dir() else folder.absolute().parent
@@ -82,7 +73,7 @@ def staged(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[
 
 
 def file_stems(names: Iterable[str]) -> list[str]:
-    """Return a file name, without its ending, for each name; no two alike."""
+    """Return a different file name, without its ending, for each name."""
     stems: list[str] = []
     for name in names:
         stem = plain = re.sub(r"[^\w.+-]+", "_", name).strip(".") or "motion"
@@ -98,7 +89,7 @@ def _move(stage: Path, folder: Path, names: list[str]) -> None:
     if not folder.exists():
         stage.rename(folder)
         return
-    # Results that the new ones do not replace would pass for theirs.
+    # Earlier results left in the folder would look like new ones.
     for name in _earlier(folder):
         if name not in names:
             (folder / name).unlink(missing_ok=True)
@@ -115,18 +106,3 @@ def _earlier(folder: Path) -> list[str]:
     except (OSError, ValueError, LookupError, TypeError):
         return []
     return [name for name in names if isinstance(name, str) and name == Path(name).name and (folder / name).is_file()]
-
-
-def _plain(value: Any) -> Any:
-    """Replace everything that JSON does not know."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None if math.isnan(value) else f"{value:g}"
-    return str(value) if isinstance(value, Path) else value

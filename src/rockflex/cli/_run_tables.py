@@ -1,11 +1,11 @@
-"""What ``rockflex run`` prints."""
+"""The printed tables of ``rockflex run``."""
 
 from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
-from rockflex.cli._simulations import SLIDING, Plan, Run
+from rockflex.cli._simulations import SLIDING, Batch, Run
 from rockflex.fragility import NOMINAL
 from rockflex.response import IMPACT_WINDOW
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 MAX_LISTED = 5
 LEGEND = (
-    "u_top: relative to the base, which turns; total: relative to the ground\n"
-    "V_b, M_b: of the elastic forces; ΣF_x: what the ground must hold across, with\n"
-    "the base's mass and the damping; N_min: least force between base and ground"
+    "u_top: relative to the rotating base; total: relative to the ground\n"
+    "V_b, M_b: of the elastic forces; ΣF_x: horizontal force on the ground, including\n"
+    "the base's inertia and the damping; N_min: least vertical force on the ground"
 )
 PASSED = f"† θ passed {NOMINAL.label}, the nominal limit of overturning"
 FRICTION = (
@@ -27,27 +27,27 @@ STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow
 Columns = list[tuple[str, list[str]]]
 
 
-def print_runs(title: str, plan: Plan, runs: Sequence[Run], elapsed: float, *, times: bool) -> None:
-    """Print the peaks of every run, and when they occurred if asked to; by motion where the terminal is narrow."""
+def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *, times: bool) -> None:
+    """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
     console = output()
-    for line in (title, *plan.assumptions.remarks()):
+    for line in (title, *batch.assumptions.remarks()):
         console.print(line, markup=False, soft_wrap=True)
     peaks, ground = _peaks(runs), _ground(runs)
     tables = [(peaks + ground, 1)]
-    if not fits(console, _flat(plan, runs, *tables[0])):
+    if not fits(console, _flat(batch, runs, *tables[0])):
         tables = [(peaks, 1), (ground, 0)]
     if times:
         tables.append((_times(runs), 0))
-    if plan.friction is not None:
+    if batch.friction is not None:
         tables.append((_sliding(runs), 0))
     for columns, n_words in tables:
-        flat = _flat(plan, runs, columns, n_words)
+        flat = _flat(batch, runs, columns, n_words)
         if fits(console, flat):
             console.print()
             show(console, flat)
             continue
         rows = zip(runs, _cells(columns), strict=True)
-        for place, members in groupby(rows, key=lambda row: _place(plan, row[0])):
+        for place, members in groupby(rows, key=lambda row: _place(batch, row[0])):
             console.print("\n" + " × ".join(place), markup=False, soft_wrap=True)
             cells = [[run.model, *row] for run, row in members]
             show(console, grid(["model", *(heading for heading, _ in columns)], cells, 1 + n_words))
@@ -55,30 +55,30 @@ def print_runs(title: str, plan: Plan, runs: Sequence[Run], elapsed: float, *, t
     if any(run.peaks["nominal_overturning"] for run in runs):
         console.print(PASSED, markup=False, soft_wrap=True)
     console.print(LEGEND, markup=False, soft_wrap=True)
-    if plan.friction is not None:
-        console.print(FRICTION.format(window=IMPACT_WINDOW, mu=plan.friction), markup=False, soft_wrap=True)
+    if batch.friction is not None:
+        console.print(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction), markup=False, soft_wrap=True)
     each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
     console.print(f"{len(runs)} run{'s' * (len(runs) > 1)} in {number(elapsed, 3)} s{each}", markup=False)
 
 
 def print_warnings(runs: Sequence[Run]) -> None:
-    """Say on stderr what runs ask of the ground or of their tendons that these cannot do."""
+    """Print warnings on stderr of demands that the ground or the tendons cannot meet."""
     found = [(run, warning) for run in runs for warning in run.warnings]
     for run, warning in found[:MAX_LISTED]:
         note(f"Warning: {run.motion} × {run.scale:g}: {warning}")
     if len(found) > MAX_LISTED:
-        note(f"and {len(found) - MAX_LISTED} more warnings; --json holds them all")
+        note(f"and {len(found) - MAX_LISTED} more warnings; --json lists them all")
 
 
 def print_failures(runs: Sequence[Run]) -> int:
-    """Say on stderr which runs could not be solved, and return how many."""
+    """List on stderr the runs that could not be solved, and return their number."""
     failed = [run for run in runs if run.error is not None]
     if failed:
         note(f"{len(failed)} of {len(runs)} runs could not be solved:")
     for run in failed[:MAX_LISTED]:
         note(f"  {run.model} under {run.motion} × {run.scale:g}: {run.error}")
     if len(failed) > MAX_LISTED:
-        note(f"  and {len(failed) - MAX_LISTED} more; --json and results.csv hold them all")
+        note(f"  and {len(failed) - MAX_LISTED} more; --json and results.csv list them all")
     return len(failed)
 
 
@@ -133,19 +133,19 @@ def _sliding(runs: Sequence[Run]) -> Columns:
     return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
 
 
-def _place(plan: Plan, run: Run) -> list[str]:
-    """Motion, and the scale where there are several or one that is not 1."""
-    return [run.motion] if plan.scales == [1.0] else [run.motion, f"{run.scale:g}"]
+def _place(batch: Batch, run: Run) -> list[str]:
+    """Motion, and the scale unless all runs have the scale 1."""
+    return [run.motion] if batch.scales == [1.0] else [run.motion, f"{run.scale:g}"]
 
 
 def _cells(columns: Columns) -> list[tuple[str, ...]]:
     return list(zip(*(values for _, values in columns), strict=True))
 
 
-def _flat(plan: Plan, runs: Sequence[Run], columns: Columns, n_words: int) -> "Table":
-    """One table of all runs."""
-    words = [*("motion", "scale")[: len(_place(plan, runs[0]))], "model"]
-    rows = [[*_place(plan, run), run.model, *row] for run, row in zip(runs, _cells(columns), strict=True)]
+def _flat(batch: Batch, runs: Sequence[Run], columns: Columns, n_words: int) -> "Table":
+    """Return one table of all runs."""
+    words = [*("motion", "scale")[: len(_place(batch, runs[0]))], "model"]
+    rows = [[*_place(batch, run), run.model, *row] for run, row in zip(runs, _cells(columns), strict=True)]
     return grid([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
 
 

@@ -16,16 +16,16 @@ def serve(
     port: Annotated[int, typer.Option("--port", "-p", help="TCP port.")] = 8080,
     host: Annotated[
         str,
-        typer.Option(help="Address to listen at. Others than this machine are let in only by an address of its own."),
+        typer.Option(help="Address to listen on. The default accepts only this machine."),
     ] = "127.0.0.1",
     open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
-    """Serve the web page: structure, earthquake, response, fragility and design by hand."""
+    """Serve the web page: structure, earthquake, response, fragility and design."""
     from rockflex.cli._console import note
     from rockflex.web import serve as start
 
     if host not in ("127.0.0.1", "localhost", "::1"):
-        note(f"The page is open to everybody who reaches {host}: it has no passwords.")
+        note(f"Everyone who can reach {host} can use the page: it has no passwords.")
     note(f"http://{f'[{host}]' if ':' in host else host}:{port} (stop with Ctrl-C)")
-    with suppress(KeyboardInterrupt):  # that is how it is stopped
+    with suppress(KeyboardInterrupt):  # the usual way to stop it
         start(port, host, open_browser=open_browser)

@@ -1,4 +1,4 @@
-"""The runs of one structure: timed one by one where they are few, shared among threads where they are many."""
+"""The runs of one structure: a few are timed one by one, many are shared among threads."""
 
 from collections.abc import Sequence
 from contextlib import nullcontext, suppress
@@ -18,13 +18,14 @@ from rockflex.solve import WorkLimitError
 from rockflex.study import WORK_LIMIT, Case
 from rockflex.study._arguments import free_vibration_time, work_limit_of
 from rockflex.study._runs import map_runs
+from rockflex.study._yielding import labelled_hysteresis
 
 FEW = 64  # runs; more are not timed one by one
 
 
 @dataclass(frozen=True)
-class Plan:
-    """What is to be run: every motion at every scale with every model."""
+class Batch:
+    """The runs of one command: every motion at every scale with every model."""
 
     properties: RockingProperties
     motions: Sequence[GroundMotion]
@@ -35,20 +36,20 @@ class Plan:
     workers: int | None = None
     assumptions: Assumptions = field(default_factory=Assumptions)
     friction: float | None = None
-    """Coefficient of friction, or None where sliding is not asked about."""
+    """Coefficient of friction at which sliding is reported, or None."""
     work_limit: float | None = WORK_LIMIT
-    """The most computing of one run in s, or None."""
+    """Longest computing time of one run in s, or None for no limit."""
 
     def case(self, model: str) -> Case:
-        """Return what is run with one model, which may keep its history: the friction is found from it."""
-        chosen = parse_model(model)
-        given, whole = self.assumptions, self.history or self.friction is not None
-        tied = chosen.of(self.properties, given.law, given.bouc_wen if chosen.yields else None)
+        """Return the case of one model, with its history where that is written or the friction is needed."""
+        chosen, given, whole = parse_model(model), self.assumptions, self.history or self.friction is not None
+        (bouc_wen,) = labelled_hysteresis([chosen], given.bouc_wen)
+        tied = chosen.of(self.properties, given.law, bouc_wen)
         free = free_vibration_time(self.free_vibration)
         return Case(tied, free, given.initial, work_limit_of(self.work_limit), history=whole, floors=whole)
 
     def describe(self) -> dict[str, Any]:
-        """Return what was asked for, for a document."""
+        """Return the options of the runs, for a document."""
         described = {"models": self.models, "scales": self.scales, "free_vibration": self.free_vibration}
         friction = {} if self.friction is None else {"friction": self.friction}
         return {**described, **self.assumptions.describe(), **friction}
@@ -61,7 +62,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Run:
-    """One run: its place in the plan, its peaks by name, and what became of it."""
+    """One run: its motion, scale and model, its peaks by name, and its outcome."""
 
     motion: str
     scale: float
@@ -73,9 +74,9 @@ class Run:
     """Seconds; None where runs were shared among threads."""
     response: Response | None = None
     friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
-    """Required friction and when sliding would start, by their names; empty where not asked for."""
+    """Required friction and the time at which sliding would start, by name; empty unless requested."""
     refused: bool = False
-    """Whether it was not begun, since it is more work than it may be."""
+    """Whether it was not started, because it would exceed the work limit."""
 
     def row(self) -> dict[str, Any]:
         """Return everything but the run time and the history, in the columns of `simulate_many`."""
@@ -84,7 +85,7 @@ class Run:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the run asks of the ground or of its tendons that they cannot do."""
+        """Demands of the run that the ground or its tendons cannot meet."""
         return () if self.error is not None else warnings_of(self.model, self.peaks)
 
 
@@ -92,27 +93,27 @@ COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "statu
 SLIDING = ("required_friction", "required_friction_excluding_impacts", "sliding_time")
 
 
-def perform(plan: Plan) -> list[Run]:
-    """Perform a plan; motions outermost, then scales, then models. A run that cannot be solved is no error here.
+def perform(batch: Batch) -> list[Run]:
+    """Perform a batch, motions outermost, then scales, then models; one run that cannot be solved is not an error.
 
     Raises
     ------
     InputError
-        If a value of the plan is out of range, or every run is more work than it may be.
+        If a value of the batch is out of range, or every run would exceed the work limit.
     SolverError
-        If not one run could be solved.
+        If no run could be solved.
     """
-    cases = {model: plan.case(model) for model in plan.models}
-    many = plan.size > FEW
+    cases = {model: batch.case(model) for model in batch.models}
+    many = batch.size > FEW
 
     def run(task: tuple[int, tuple[GroundMotion, float, str]]) -> tuple[int, Run]:
         place, (motion, scale, model) = task
-        return place, _run(plan, cases[model], motion, scale, timed=not many)
+        return place, _run(batch, cases[model], motion, scale, timed=not many)
 
-    tasks = enumerate(product(plan.motions, plan.scales, plan.models))
+    tasks = enumerate(product(batch.motions, batch.scales, batch.models))
     done: list[tuple[int, Run]] = []
-    with progress("Simulating", plan.size) if many else nullcontext() as advance:
-        for item in map_runs(run, tasks, plan.workers if many else plan.workers or 1):
+    with progress("Simulating", batch.size) if many else nullcontext() as advance:
+        for item in map_runs(run, tasks, batch.workers if many else batch.workers or 1):
             done.append(item)
             if advance is not None:
                 advance(1)
@@ -128,36 +129,36 @@ def perform(plan: Plan) -> list[Run]:
     return runs
 
 
-def warm_up(plan: Plan) -> None:
-    """Load the kernels, or compile them where that was never done, so that no run is charged with it."""
+def warm_up(batch: Batch) -> None:
+    """Load the kernels, or compile them the first time, so that the run times do not include it."""
     with progress("Loading the kernels (compiling them, the first time)"):
-        for model in plan.models:
+        for model in batch.models:
             with suppress(SolverError, WorkLimitError):
-                _friction(plan, replace(plan.case(model), free_vibration=0.0).run(plan.motions[0]))
+                _friction(batch, replace(batch.case(model), free_vibration=0.0).run(batch.motions[0]))
 
 
-def _run(plan: Plan, case: Case, motion: GroundMotion, scale: float, *, timed: bool) -> Run:
+def _run(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, timed: bool) -> Run:
     model = case.model.label
     start = perf_counter()
     try:
         response = case.run(motion, scale)
     except (SolverError, WorkLimitError) as error:
-        lost: dict[str, float | None] = {} if plan.friction is None else dict.fromkeys(SLIDING, None)
+        lost: dict[str, float | None] = {} if batch.friction is None else dict.fromkeys(SLIDING, None)
         refused = isinstance(error, WorkLimitError)
         return Run(motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost, refused=refused)
     elapsed = perf_counter() - start if timed else None
     peaks = {name: getattr(response, name) for name in COLUMNS}
-    kept = response if plan.history else None
-    return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, _friction(plan, response))
+    kept = response if batch.history else None
+    return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, _friction(batch, response))
 
 
-def _friction(plan: Plan, response: Response) -> dict[str, float | None]:
-    """The friction of one run, if it is asked for."""
-    if plan.friction is None:
+def _friction(batch: Batch, response: Response) -> dict[str, float | None]:
+    """Return the friction of one run, if requested."""
+    if batch.friction is None:
         return {}
     values = (
         response.required_friction,
         response.required_friction_excluding_impacts(),
-        response.sliding_time(plan.friction),
+        response.sliding_time(batch.friction),
     )
     return dict(zip(SLIDING, values, strict=True))

@@ -1,4 +1,4 @@
-"""A structure from a TOML file or from the flags of a frame."""
+"""A structure from a TOML file, or a frame from flags."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -7,25 +7,30 @@ from pathlib import Path
 from typing import Any
 
 from rockflex._errors import InputError
-from rockflex.cli._schema import StructureFile
+from rockflex._schema import FrameFlags, FrameKeys
+from rockflex.cli._flags import flags_of, naming
 from rockflex.modal import RockingProperties
 from rockflex.structure import Eccentric, Frame, Restrained
-from rockflex.structure.file import KINDS, Built, build_in, checked, read_toml
+from rockflex.structure.file import KINDS, Built, StructureEntry, build_in, checked, read_toml
+from rockflex.study.assumed import Assumed
 
-FLAGS = {"n_stories": "--stories"}  # the others are named after their argument
-ASSUMED = {"impact", "restitution", "bouc_wen"}
+FLAGS = flags_of(FrameFlags)
+
+
+class StructureFile(Assumed, StructureEntry):
+    """A structure file: one structure, optionally a name and tendons, and the assumptions of ``rockflex run``."""
 
 
 @dataclass(frozen=True)
 class LoadedStructure:
-    """A structure, and what it was made of."""
+    """A structure, and the values that it was built from."""
 
     name: str
     kind: str
     values: dict[str, Any]
     built: Built
     assumed: dict[str, Any] = field(default_factory=dict[str, Any])
-    """What the file says beside: `impact`, `restitution` and `bouc_wen`, each where it is there."""
+    """`impact`, `restitution` and `bouc_wen`, as far as the file has them."""
 
     @property
     def properties(self) -> RockingProperties:
@@ -44,12 +49,12 @@ class LoadedStructure:
 
     @property
     def reference_mass(self) -> float:
-        """Mass above the base in kg, which all modes share; the total mass where only properties are known."""
+        """Mass above the base in kg; the total mass where only properties are known."""
         return self.properties.m_tot - (self.base_mass or 0.0)
 
     @property
     def title(self) -> str:
-        """One line for the head of a table."""
+        """Title of a table, in one line."""
         p = self.properties
         shift = f", e = {p.eccentricity:.4g} m" if p.eccentricity else ""
         if p.n_modes == 0:
@@ -60,17 +65,17 @@ class LoadedStructure:
         return f"{self.name}: {modes}, T_1 = {period:.4g} s, h*_1/B = {slenderness:.4g}, ζ_1 = {p.zeta[0]:.4g}{shift}"
 
     def describe(self) -> dict[str, Any]:
-        """Return what it was made of, for a document."""
+        """Return the values that it was built from, for a document."""
         return {"name": self.name, "kind": self.kind, **self.values, **self.assumed}
 
 
 def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
-    """Take the structure file, given by --structure or as the first argument, from the arguments of a command.
+    """Return the structure file, given by --structure or as the first argument, and the remaining arguments.
 
     Raises
     ------
     InputError
-        If it was given in both ways.
+        If both were given.
     """
     if not arguments or not arguments[0].lower().endswith(".toml"):
         return option, list(arguments)
@@ -80,9 +85,7 @@ def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path
 
 
 def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
-    """Build a structure from a TOML file, or from flags (None where not given) named as the arguments of `Frame`.
-
-    A flag `eccentricity` may be there as well.
+    """Build a structure from a TOML file, or from flags named as in `FrameFlags`.
 
     Raises
     ------
@@ -90,19 +93,18 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
         If there is no structure or more than one, the file cannot be read, or a key or value in it is wrong; the
         message names the file and the key.
     """
-    given = {name: value for name, value in flags.items() if value is not None}
     if file is None:
-        return _from_flags(given, [name for name in flags if name not in given and name != "eccentricity"])
-    if given:
-        raise InputError(f"The structure was given by {file} and by {_flags(given)}. Give one or the other.")
+        return _from_flags(flags)
+    if flags:
+        raise InputError(f"The structure was given by {file} and by {_flags(flags)}. Give one or the other.")
     document = checked(StructureFile, read_toml(file, "structure"), str(file))
-    assumed = document.model_dump(include=ASSUMED, exclude_unset=True)
+    assumed = document.model_dump(include=set(Assumed.model_fields), exclude_unset=True)
     built = build_in(file, document)
     return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, assumed)
 
 
 def describe_properties(properties: RockingProperties) -> dict[str, Any]:
-    """Return every parameter of a rocking structure by its name, for a document; `pivots` where there are two kinds."""
+    """Return every parameter of a rocking structure by name, for a document; `pivots` where the two differ."""
     names = (*KINDS["properties"].model_fields, "resisting_moment", "nominal_overturning_rotation")
     tendons = ("tendons", "prestress", "tendon_stiffness") if properties.tendons else ()
     described = {name: getattr(properties, name) for name in (*names, *tendons)}
@@ -112,17 +114,19 @@ def describe_properties(properties: RockingProperties) -> dict[str, Any]:
     return described | {"eccentricity": properties.eccentricity, "pivots": pivots}
 
 
-def _from_flags(given: dict[str, Any], missing: list[str]) -> LoadedStructure:
+def _from_flags(given: dict[str, Any]) -> LoadedStructure:
+    needed = flags_of(FrameKeys)
+    missing = [name for name in needed if name not in given]
     if missing:
-        lack = "No structure was given." if not given else f"The frame lacks {_flags(missing)}."
-        needed = _flags(KINDS["frame"].model_fields)
+        lack = f"The frame lacks {_flags(missing)}." if given else "No structure was given."
         raise InputError(
-            f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {needed}."
+            f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {_flags(needed)}."
         )
-    frame = Frame(**{name: value for name, value in given.items() if name != "eccentricity"})
-    built = Eccentric(frame, given["eccentricity"]) if "eccentricity" in given else frame
+    with naming(FLAGS):
+        frame = Frame(**{name: value for name, value in given.items() if name in needed})
+        built = Eccentric(frame, given["eccentricity"]) if "eccentricity" in given else frame
     return LoadedStructure(f"{frame.n_stories}-story frame", "frame", given, built)
 
 
 def _flags(names: Iterable[str]) -> str:
-    return ", ".join(FLAGS.get(name, "--" + name.replace("_", "-")) for name in names)
+    return ", ".join(FLAGS[name] for name in names)

@@ -156,7 +156,7 @@ class Model:
                 raise InputError(f"{self.label} needs its hysteresis. Give bouc_wen=BoucWen(yield_displacement=...).")
             return self.label
         if kept.n_modes != 1:
-            one = "2DOF-S" if self.lifts else "1DOF-fixed"
+            one = ("2DOF-S" if self.lifts else "1DOF-fixed") + ("-BW" if self.yields else "")
             raise InputError(
                 f"bouc_wen applies to models with one mode, but {self.label} has {kept.n_modes}. Use {one}, or leave "
                 "it out."

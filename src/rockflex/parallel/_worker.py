@@ -1,14 +1,13 @@
 """Code that runs on the workers of a Dask cluster: it stores a plan and computes its chunks."""
 
 import pickle
-import platform
-from importlib import metadata
 from threading import Lock
 from typing import Any
 
 from distributed import WorkerPlugin, get_worker
 
 from rockflex._errors import InputError
+from rockflex._versions import versions_of
 
 PACKAGES = ("rockflex", "numpy", "scipy", "numba", "pyarrow", "distributed")  # the numbers or the transport need them
 
@@ -55,13 +54,7 @@ def compute(name: str, number: int, versions: dict[str, str]) -> Any:
 
 def installed_versions() -> dict[str, str]:
     """Return the version of Python and of each package that matters; "none" for one that is not installed."""
-    found = {"python": platform.python_version()}
-    for name in PACKAGES:
-        try:
-            found[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            found[name] = "none"
-    return found
+    return versions_of(PACKAGES)
 
 
 def refuse_other_versions(worker: str, there: dict[str, str], here: dict[str, str]) -> None:

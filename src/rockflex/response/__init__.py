@@ -2,7 +2,7 @@
 
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
-from rockflex.response._friction import IMPACT_WINDOW
+from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._global import GLOBAL, asked_of
 from rockflex.response._history import History
 from rockflex.response._response import PEAKS, Response, respond
@@ -17,6 +17,7 @@ __all__ = [
     "History",
     "Response",
     "asked_of",
+    "friction_coefficient",
     "respond",
     "warnings_of",
 ]

@@ -30,6 +30,20 @@ TURN = 0.2  # radians of the fastest mode between adjacent evaluation points
 FEWEST, MOST = 4, 2000  # evaluation points in the interval between adjacent nodes
 
 
+def friction_coefficient(mu: float) -> float:
+    """Return a coefficient of friction.
+
+    Raises
+    ------
+    InputError
+        If it is not a positive number.
+    """
+    coefficient = real_or_nan(mu)
+    if not 0.0 < coefficient < math.inf:
+        raise InputError(f"mu must be a friction coefficient above zero, such as 0.5, but {shown(mu)} was given.")
+    return coefficient
+
+
 class Friction:
     """Required friction along a history.
 
@@ -95,9 +109,7 @@ class Friction:
         InputError
             If `mu` is not a positive number, or the model is too fast for the sampling.
         """
-        coefficient = real_or_nan(mu)
-        if not 0.0 < coefficient < math.inf:
-            raise InputError(f"mu must be a friction coefficient above zero, such as 0.5, but {shown(mu)} was given.")
+        coefficient = friction_coefficient(mu)
         limit = math.atan(coefficient)
         if not self._stretches.size:
             return float(self._nodes[0, TIME]) if self.demand[0] > coefficient else None

@@ -9,7 +9,7 @@ from rockflex._checks import finite_vector, one_of, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model
+from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion
 from rockflex.study._initial import InitialState
 
@@ -77,7 +77,8 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
     if not 0.0 <= seconds <= LONGEST:
         raise InputError(
             f'free_vibration must be zero or more seconds (at most {LONGEST:g}), or "settle", but {shown(value)} was '
-            "given."
+            "given.",
+            field="free_vibration",
         )
     return seconds
 
@@ -96,7 +97,8 @@ def work_limit_of(value: float | Literal["none"] | None) -> float | None:
     if not seconds > 0.0:
         raise InputError(
             f"work_limit must be a positive number of seconds of computing for one run, or None for no limit ("
-            f'"none" in a file and on the command line), but {value!r} was given.'
+            f'"none" in a file and on the command line), but {shown(value)} was given.',
+            field="work_limit",
         )
     return seconds if math.isfinite(seconds) else None
 
@@ -114,12 +116,6 @@ def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
             "Restitution(e), or an object with `keeps`, `loses` and `after(properties, modal_velocity, "
             "rotation_velocity)`."
         )
-
-
-def hysteresis_of(models: Sequence[Model], bouc_wen: BoucWen | None) -> list[BoucWen | None]:
-    """The hysteresis of each model: of those whose label says that they yield (-BW), of all where none says so."""
-    chosen = any(model.yields for model in models)
-    return [bouc_wen if model.yields or not chosen else None for model in models]
 
 
 def check_initial(initial: InitialState | None) -> None:

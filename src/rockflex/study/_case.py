@@ -53,7 +53,8 @@ class Case:
         if self.free_vibration is None and self.model.bouc_wen is not None:
             raise InputError(
                 f'free_vibration="settle" cannot tell when the hysteretic spring of {self.model.label} is at rest. '
-                "Give the free vibration in seconds."
+                "Give the free vibration in seconds.",
+                field="free_vibration",
             )
         with preparing(self.model):
             asked = asked_of(self.model, floors=self.floors)

@@ -2,11 +2,9 @@
 # pyright: reportUnknownParameterType=false, reportUnknownLambdaType=false
 # (pyarrow comes without types)
 
-import platform
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, SupportsIndex
@@ -14,6 +12,7 @@ from typing import TYPE_CHECKING, SupportsIndex
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._versions import versions_of
 from rockflex.parallel import core_count, map_dask
 from rockflex.store import StudyFolder
 from rockflex.study._runs import map_runs
@@ -94,7 +93,7 @@ def run_study(
         return to_frame(*(tables[number] for number in range(plan.n_chunks)))
     checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
-        folder, spec.document(), plan.n_chunks, _versions(), checksums, any_version=any_version
+        folder, spec.document(), plan.n_chunks, versions_of(LIBRARIES), checksums, any_version=any_version
     ) as kept:
         _compute(plan, kept.missing(), kept.write, workers, dask, progress)
         return to_frame(kept.table())
@@ -124,10 +123,6 @@ def _here(
     plan: "ChunkedPlan", numbers: "range | list[int]", workers: SupportsIndex | None
 ) -> "Generator[tuple[int, pa.Table]]":
     yield from map_runs(lambda number: (number, plan.chunk(number)), numbers, workers)
-
-
-def _versions() -> dict[str, str]:
-    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
 def estimate_time(study: "Study", workers: SupportsIndex | None = None) -> float:

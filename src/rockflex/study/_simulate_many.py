@@ -15,7 +15,6 @@ from rockflex.study._arguments import (
     check_output,
     factors_of,
     free_vibration_time,
-    hysteresis_of,
     properties_of,
     work_limit_of,
 )
@@ -24,6 +23,7 @@ from rockflex.study._initial import InitialState
 from rockflex.study._runs import map_runs
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._table import Table
+from rockflex.study._yielding import hysteresis_of
 
 if TYPE_CHECKING:
     import pandas as pd

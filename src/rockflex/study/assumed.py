@@ -1,45 +1,41 @@
-"""What a run assumes beside its model, as it stands in a file or a link: impact law and hysteresis."""
+"""The assumptions of a run besides its model, as a file or a link gives them: impact law and hysteresis."""
 
-from typing import Literal
+from collections.abc import Callable
+from typing import Annotated
 
-from pydantic import Field, InstanceOf, field_validator
+from pydantic import InstanceOf, field_validator
 
 from rockflex._errors import InputError
+from rockflex._schema import IMPACT, PLAIN, BoucWenKeys, ImpactKeys, Key, LawName
+from rockflex._shown import shown
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified
-from rockflex.structure.file import NUMBER, Table, number
+from rockflex.structure.file import Table
 from rockflex.study._arguments import check_options
 
-LAWS = ("simplified", "complete", "restitution")
+_LAWS: dict[str, Callable[..., ImpactLaw]] = {
+    "simplified": VVELSimplified,
+    "complete": VVELComplete,
+    "restitution": Restitution,
+}
 
 
-class BoucWenTable(Table):
+class BoucWenTable(BoucWenKeys, Table):
     """The arguments of `BoucWen`."""
 
-    yield_displacement: float = Field(description="D_y of the first mode", json_schema_extra=number("m"))
-    post_yield_ratio: float = Field(
-        0.01, description="stiffness after yielding over that before", json_schema_extra=NUMBER
-    )
-    gamma: float = Field(0.5, description="γ of the hysteresis", json_schema_extra=NUMBER)
-    beta: float = Field(0.5, description="β of the hysteresis", json_schema_extra=NUMBER)
-    exponent: float = Field(8.0, description="n of the hysteresis, a number of at least 1")
 
+class Assumed(ImpactKeys, Table):
+    """Keys for the impact law and the hysteresis; by default each model has its own law and nothing yields.
 
-class Assumed(Table):
-    """Keys for the impact law and the hysteresis; None of either is the model's own law, and no yielding.
-
-    In Python `impact` may be any `ImpactLaw` too, in place of a name.
+    In Python `impact` may also be any `ImpactLaw`, in place of a name.
     """
 
-    impact: Literal["simplified", "complete", "restitution"] | InstanceOf[ImpactLaw] | None = Field(
-        None, description='"simplified", "complete" or "restitution"'
-    )
-    restitution: float | None = Field(None, description="a number from 0 to 1")
-    bouc_wen: BoucWenTable | None = Field(None, description="a table")
+    impact: Annotated[LawName | InstanceOf[ImpactLaw] | None, IMPACT] = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    bouc_wen: Annotated[BoucWenTable | None, Key("a table", form=PLAIN)] = None
 
     @field_validator("impact", mode="before")
     @classmethod
     def _law(cls, given: object) -> object:
-        if not isinstance(given, str | int | float | list | dict | None):  # none of what a file holds
+        if not isinstance(given, str | int | float | list | dict | None):  # not a value that a file can hold
             check_options(None, given)  # pyright: ignore[reportArgumentType]
         return given
 
@@ -51,11 +47,25 @@ class Assumed(Table):
         InputError
             If a coefficient of restitution is missing, out of range, or given to another law.
         """
-        if (self.restitution is not None) != (self.impact == "restitution"):
-            raise InputError('restitution and impact = "restitution" go together. Give both or neither.')
-        if self.impact is None or isinstance(self.impact, str):
-            return impact_law(self.impact, self.restitution)
-        check_options(None, self.impact)  # a copy with another law was not checked
+        if self.impact == "restitution" and self.restitution is None:
+            raise InputError(
+                'The impact law "restitution" needs its coefficient. Give restitution, a number from 0 to 1.',
+                field="restitution",
+            )
+        if self.restitution is not None and self.impact != "restitution":
+            chosen = "the model's own" if self.impact is None else shown(self.impact)
+            raise InputError(
+                f"A restitution of {self.restitution:g} was given, but the impact law is {chosen}. "
+                'Choose the impact law "restitution", or leave restitution out.',
+                field="restitution",
+            )
+        if self.impact is None:
+            return None
+        if isinstance(self.impact, str):
+            if self.impact not in _LAWS:  # a copy with another law was not checked
+                raise InputError(f"impact must be {IMPACT.expected}, but {shown(self.impact)} was given.")
+            return _LAWS[self.impact](*[] if self.restitution is None else [self.restitution])
+        check_options(None, self.impact)
         return self.impact
 
     def hysteresis(self) -> BoucWen | None:
@@ -69,12 +79,6 @@ class Assumed(Table):
         return None if self.bouc_wen is None else BoucWen(**self.bouc_wen.model_dump())
 
 
-def impact_law(name: str | None, restitution: float | None = None) -> ImpactLaw | None:
-    """Return the law of a name in `LAWS`, or None for None; `restitution` belongs to ``"restitution"``."""
-    if name is None:
-        return None
-    if name not in LAWS:
-        raise InputError(f"impact must be one of {', '.join(LAWS)}, but {name!r} was given.")
-    if restitution is not None:
-        return Restitution(restitution)
-    return VVELSimplified() if name == "simplified" else VVELComplete()
+def name_of(law: ImpactLaw) -> str:
+    """Return the name of an impact law of the package in a file."""
+    return next(name for name, kind in _LAWS.items() if type(law) is kind)

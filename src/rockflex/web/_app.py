@@ -1,4 +1,4 @@
-"""The server: questions in JSON, answers in JSON, and the files of the page. It keeps nothing of a visitor's state."""
+"""The server: requests and answers in JSON, and the files of the page. It does not store a visitor's state."""
 
 import asyncio
 import logging
@@ -19,6 +19,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
+from rockflex._json import plain
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web._cloud import cloud_plan, cloud_view
 from rockflex.web._design import design_plan, design_view
@@ -30,7 +31,6 @@ from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limit_states import limit_states
 from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
 from rockflex.web._measures import measures
-from rockflex.web._packing import plain
 from rockflex.web._presets import PRESETS
 from rockflex.web._records import PULSES, record_view, suite_view, suites
 from rockflex.web._refusal import Refusal
@@ -39,17 +39,17 @@ from rockflex.web._state import State
 from rockflex.web._structures import build, structure_view
 from rockflex.web._uploads import Uploads, read_matrices, read_record
 
-LOOK = 0.2  # s between looks at whether a visitor still waits
+LOOK = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
 LOOPBACK = ("127.0.0.1", "localhost")
-THREADS = 4  # answers computed at once: the kernels hold no lock, and long ones must not keep short ones waiting
-FILES = 2  # files made at once: they are long, and much of them holds the lock
-LONGEST = 1000  # characters of a message: some repeat what was given
+THREADS = 4  # answers computed at once: the kernels release the lock, and short answers must not wait for long ones
+FILES = 2  # files written at once: they take long and mostly hold the lock
+LONGEST = 1000  # characters of a message: some repeat an input
 Answer = Callable[[], Any]
 
 
 class Server:
-    """Answers to the page; besides uploads and running studies it keeps nothing."""
+    """The requests of the page; only uploads and running studies are stored."""
 
     def __init__(self) -> None:
         self.uploads, self.jobs = Uploads(), Jobs()
@@ -57,7 +57,7 @@ class Server:
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
     def warm_up(self) -> None:
-        """Load the kernels, or compile them where that was never done, before the first visitor needs them."""
+        """Load the kernels, or compile them the first time, before the first visitor needs them."""
         pulse = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 5.0, "period": 0.5}}
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = State.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
@@ -65,13 +65,13 @@ class Server:
         self._ready.set()
 
     async def _answer(self, work: Answer, most: int = THREADS) -> Any:
-        """Compute off the event loop, at most so many of a kind at once."""
+        """Compute outside the event loop, with a limited number of answers at once."""
         if most not in self._limiters:
             self._limiters[most] = anyio.CapacityLimiter(most)
         return await anyio.to_thread.run_sync(work, limiter=self._limiters[most])
 
     async def _run(self, request: Request, work: Answer, most: int = THREADS) -> Any:
-        """Compute as `_answer` does, and stop the runs in it once the visitor no longer waits for them."""
+        """Compute as `_answer` does, and stop its runs when the visitor no longer waits for them."""
         gone = Event()
 
         def guarded() -> Any:
@@ -87,7 +87,7 @@ class Server:
         try:
             return await self._answer(guarded, most)
         except RunStoppedError as error:
-            raise Refusal("The run was stopped, for nobody waits for its answer.", 499) from error
+            raise Refusal("The run was stopped because nobody waits for its answer.", 499) from error
         finally:
             watching.cancel()
 
@@ -101,7 +101,7 @@ class Server:
         return JSONResponse(await anyio.to_thread.run_sync(suite_view, name))
 
     async def state(self, request: Request) -> Response:
-        """Check the state of a link, and fill in what it leaves out."""
+        """Check the state of a link, and fill in its missing values."""
         state = await state_of(request)
         return JSONResponse(plain(state.model_dump(exclude_none=True)))
 
@@ -118,7 +118,7 @@ class Server:
             try:
                 built = build(state.structure)
             except Refusal:
-                built = None  # the record can be looked at before the structure is right
+                built = None  # the record can be shown before the structure is complete
             return record_view(state, built, self.uploads)
 
         return JSONResponse(await self._answer(work))
@@ -130,7 +130,7 @@ class Server:
         return JSONResponse(await self._run(request, lambda: response_view(state, self.uploads, focus)))
 
     async def upload(self, request: Request) -> Response:
-        """A record from a file, whose bytes are the body; its name and unit are in the query."""
+        """A record from an uploaded file; its name and unit are in the query."""
         body, query = await file_of(request), request.query_params
         name, units = query.get("name", "record"), query.get("units") or None
         dt = step_of(query.get("dt", ""))
@@ -149,7 +149,7 @@ class Server:
         return JSONResponse(await self._answer(lambda: read_matrices(name, body, part)))
 
     async def download(self, request: Request) -> Response:
-        """A file of what the page shows."""
+        """A file of the results on the page."""
         state = await state_of(request)
         what = request.path_params["what"]
         return file_answer(*await self._run(request, lambda: download(state, what, self.uploads), FILES))
@@ -166,7 +166,7 @@ class Server:
         return JSONResponse(await self._answer(work))
 
     async def progress(self, request: Request) -> Response:
-        """Progress of a study, and what follows from its runs so far for the questions in the state."""
+        """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
         state = await state_of(request)
         return JSONResponse(await self._answer(lambda: _STUDIES[kind][1](job, state)))
@@ -186,7 +186,7 @@ class Server:
     def _job(self, request: Request) -> tuple[str, Job]:
         kind, job = _kind(request), self.jobs.get(request.path_params["token"])
         if job.kind != kind:
-            raise Refusal(f"That study is not of the kind {kind}.", 404)
+            raise Refusal(f"That study is not a {kind} study.", 404)
         return kind, job
 
 
@@ -194,7 +194,7 @@ _STUDIES: dict[str, tuple[Any, Any, Any]] = {
     "cloud": (cloud_plan, cloud_view, cloud_files),
     "design": (design_plan, design_view, design_files),
 }
-"""How each kind of study is planned, looked at and taken away."""
+"""For each kind of study: its plan, its view and its files."""
 
 
 def _kind(request: Request) -> str:
@@ -205,7 +205,7 @@ def _kind(request: Request) -> str:
 
 
 def create(host: str) -> Starlette:
-    """Return the application for a host name; one for this machine alone answers to no other name."""
+    """Return the application for a host name; on a loopback address it answers only to loopback names."""
     server = Server()
 
     @asynccontextmanager
@@ -215,7 +215,7 @@ def create(host: str) -> Starlette:
         server.jobs.close()
 
     middleware = [Middleware(Headers), Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3)]
-    if host in LOOPBACK:  # a foreign page whose name points here must not read the answers
+    if host in LOOPBACK:  # a foreign page whose host name resolves to this machine must not read the answers
         middleware.insert(1, Middleware(TrustedHostMiddleware, allowed_hosts=list(LOOPBACK)))
     routes = [
         Route("/", _page),
@@ -273,10 +273,10 @@ async def _unusable(_: Request, error: Exception) -> Response:
 
 
 async def _gone(_: Request, __: Exception) -> Response:
-    return Response(status_code=400)  # nobody reads it: the visitor left in the middle of a request
+    return Response(status_code=400)  # the visitor left during the request, and nobody reads this
 
 
 async def _failed(_: Request, error: Exception) -> Response:
-    logging.getLogger(__name__).error("The page met an error", exc_info=error)
-    message = "The server met an error of its own; its log has the details."
+    logging.getLogger(__name__).error("Internal error", exc_info=error)
+    message = "An internal error occurred; the log of the server has the details."
     return JSONResponse({"errors": {"": message}}, status_code=500)

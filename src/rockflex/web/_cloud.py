@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
+from rockflex._json import plain
 from rockflex.fragility import (
     NOMINAL,
     OVERTURNING,
@@ -20,7 +21,6 @@ from rockflex.fragility import (
 from rockflex.study.plans import CloudPlan, CloudStudy, pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION, limit_state
-from rockflex.web._packing import plain
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
 from rockflex.web._studies import none_solved, planned, progress, runs_of, shared, study_of

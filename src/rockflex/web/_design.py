@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._errors import InputError, SolverError
+from rockflex._json import plain
 from rockflex.study.plans import CloudPlan, DesignStudy, design_table, pivot_lifts, smallest_width
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION
-from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build

@@ -1,4 +1,4 @@
-"""Everything that can be taken away: figure, tables, study and program."""
+"""The downloads: figures, tables, studies and programs."""
 
 import csv
 import io
@@ -11,7 +11,6 @@ import tomli_w
 
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import NOMINAL, fit_each_cloud
-from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, design_table_of
@@ -48,7 +47,7 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     Parameters
     ----------
     state
-        What the page shows.
+        The state of the page.
     what
         ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``, ``"study"``,
         ``"structure"``, ``"python"``, and ``"cloud-study"``, ``"cloud-python"``, ``"design-study"``,
@@ -63,7 +62,7 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     """
     maker = _MAKERS.get(what)
     if maker is None:
-        raise Refusal(f"There is nothing to download by the name {what[:40]!r}.", 404)
+        raise Refusal(f"There is no download named {what[:40]!r}.", 404)
     name, content = maker(state, uploads)
     kinds = {".svg": "image/svg+xml", ".csv": "text/csv", ".toml": "application/toml", ".py": "text/x-python"}
     data = content if isinstance(content, bytes) else content.encode()
@@ -125,7 +124,9 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
         )
         raise Refusal({"models": message})
     for response in found:
-        missing = np.full(response.time.size, np.nan)  # of the total displacement, where no height of the top is known
+        missing = np.full(
+            response.time.size, np.nan
+        )  # for the total displacement where the height of the top is not known
         columns = np.column_stack([getattr(response, name, missing) for name in COLUMNS])
         writer.writerows([response.model, *(f"{value:.9g}" for value in row)] for row in columns.tolist())
     return "histories.csv", text.getvalue()
@@ -139,7 +140,7 @@ def _record(state: State, uploads: Uploads) -> tuple[str, str]:
 
 
 def _file_name(motion: GroundMotion) -> str:
-    """The name of a motion as that of a file; a unit in it is no path."""
+    """The name of a motion as a file name; a unit in it, such as m/s, is not a path."""
     return clean_name(motion.name.replace("/", "_"))
 
 
@@ -154,7 +155,7 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
     records: dict[str, Any] = {"suites": [state.record.suite], "include": [motion.name]}
     if state.record.source != "suite":
         name = f"{_file_name(motion)}.csv"
-        head += f'# Put the record, which the page gives as "{name}", into the folder records beside this file.\n'
+        head += f'# Put the record, which the page saves as "{name}", into the folder records next to this file.\n'
         records = {"folder": "records"}
     content: dict[str, Any] = {
         "study": "cloud",
@@ -163,7 +164,7 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
         "scales": [state.scale],
         "free_vibration": state.free_vibration,
     }
-    content |= state.assumed(yields=any(parse_model(label).yields for label in state.models))
+    content |= state.assumed(state.models)
     structure = state.structure.model_dump(exclude_none=True)
     return "study.toml", head + tomli_w.dumps(content | {"records": records, "structures": [structure]})
 
@@ -193,7 +194,7 @@ def _design_python(state: State, _: Uploads) -> tuple[str, str]:
 
 
 def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
-    """Return the table or the figure of a cloud, as far as it has come.
+    """Return the table or the figure of a cloud, from its runs so far.
 
     Raises
     ------
@@ -218,7 +219,7 @@ def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
 
 
 def design_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
-    """Return the table or the figure of a design study, as far as it has come.
+    """Return the table or the figure of a design study, from its runs so far.
 
     Raises
     ------
@@ -240,7 +241,7 @@ def design_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
 def _runs(job: Job) -> "pd.DataFrame":
     runs = runs_of(job)
     if runs is None:
-        raise Refusal("No run has come yet.")
+        raise Refusal("There are no results yet.")
     return runs
 
 

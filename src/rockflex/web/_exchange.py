@@ -1,4 +1,4 @@
-"""What comes with a request, and files as answers."""
+"""The content of requests, and files as answers."""
 
 import re
 from typing import Any
@@ -12,12 +12,12 @@ from rockflex.web._limits import BODY, FILE
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state
 
-PATIENCE = 60.0  # s for a body to arrive
-SMALL = 20_000  # bytes that are judged within a millisecond or some; more would keep the event loop busy
+PATIENCE = 60.0  # s to receive a body
+SMALL = 20_000  # bytes that are checked within a few milliseconds; more would block the event loop
 
 
 async def state_of(request: Request) -> State:
-    """Return the state that came with a request.
+    """Return the state in a request.
 
     Raises
     ------
@@ -28,7 +28,7 @@ async def state_of(request: Request) -> State:
 
 
 async def question_of(request: Request) -> tuple[State, dict[str, Any]]:
-    """Return the state that came with a request, and everything else that came with it.
+    """Return the state in a request, and all of its content.
 
     Raises
     ------
@@ -42,13 +42,13 @@ async def question_of(request: Request) -> tuple[State, dict[str, Any]]:
 
 
 async def file_of(request: Request) -> bytes:
-    """Bytes of an uploaded file; another type of content would let foreign pages send them unasked."""
+    """Return the bytes of an uploaded file; another content type would let foreign pages send them unasked."""
     _check_type(request, "application/octet-stream")
     return await _body_of(request)
 
 
 async def _body_of(request: Request) -> bytes:
-    """Body of a request, read no further than it may be long, and no longer than a visitor may take."""
+    """Return the body of a request, within the limits of its size and its time."""
     chunks, size = list[bytes](), 0
     try:
         with anyio.fail_after(PATIENCE):
@@ -60,13 +60,13 @@ async def _body_of(request: Request) -> bytes:
                     break
     except TimeoutError as error:
         raise Refusal(f"The request did not arrive within {PATIENCE:g} s.", 408) from error
-    if size > BODY:  # the rest was read and dropped: an answer before its end would be lost to most clients
+    if size > BODY:  # the rest was read and dropped, because most clients lose an answer that comes before the end
         raise Refusal(f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes.", 413)
     return b"".join(chunks)
 
 
 async def _json_of(request: Request) -> bytes:
-    """Body of a request; another type of content would let foreign pages ask without the browser's question."""
+    """Return the body of a request; another content type would let foreign pages skip the browser's preflight."""
     _check_type(request, "application/json")
     return await _body_of(request)
 
@@ -84,7 +84,7 @@ def _question(body: bytes) -> tuple[State, dict[str, Any]]:
 
 
 def step_of(text: str) -> float | None:
-    """Return the sampling step that stands in a query; None for the file's own.
+    """Return the sampling step in a query; None for the file's own.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def step_of(text: str) -> float | None:
 
 
 def file_answer(name: str, kind: str, content: bytes) -> Response:
-    """Return a file to be kept by a name."""
+    """Return a file as a download with a name."""
     # A header holds Latin letters only: others are given in the long form, and as underscores in the short one.
     short = re.sub(r"[^ -~]", "_", name)
     disposition = f"attachment; filename=\"{short}\"; filename*=UTF-8''{quote(name)}"

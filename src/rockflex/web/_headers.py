@@ -1,4 +1,4 @@
-"""Headers of every answer: what a browser may do with it."""
+"""Headers of every answer, which restrict what a browser may do with it."""
 
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -13,13 +13,13 @@ HEADERS = {
 
 
 class Headers:
-    """Adds them to answers of an application."""
+    """Middleware that adds them to every answer."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer as the application does."""
+        """Answer as the application does, with the headers."""
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":

@@ -1,4 +1,4 @@
-"""The limits that the page asks about, in its words."""
+"""The limit states of the page, with their labels."""
 
 from typing import Annotated, Any, NamedTuple
 
@@ -9,16 +9,16 @@ from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKING, Limi
 
 
 class Asked(NamedTuple):
-    """How the page asks of a limit."""
+    """The labels of a limit state."""
 
     name: str
     clause: str  # in the list "Limit state"
-    noun: str  # after "What is not to be exceeded"; empty where a search for a width does not ask of it
-    line: float | None = None  # rad at which it is drawn, where that is not asked for
+    noun: str  # in the design tab; empty if it does not offer this limit
+    line: float | None = None  # rad at which it is drawn, if the visitor does not choose it
 
 
 LIMIT = f"the nominal limit {NOMINAL.label.replace('_1', '₁')}"
-ROTATION = "rotation"  # of which the page asks how large
+ROTATION = "rotation"  # whose size the visitor chooses
 ASKED = (
     Asked(ROCKING.name, f"it rocks (θ > {1e3 * ROCKING.threshold:g} mrad)", "", ROCKING.threshold),
     Asked(ROTATION, "the rotation exceeds …", "a rotation"),
@@ -49,5 +49,5 @@ def limit_state(name: str, rotation: float) -> LimitState:
 
 
 def limit_states() -> list[dict[str, Any]]:
-    """Return what the lists of the page say of each limit."""
+    """Return the labels of all limit states."""
     return [each._asdict() for each in ASKED]

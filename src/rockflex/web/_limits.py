@@ -1,15 +1,19 @@
-"""What one visitor may ask of the page: the same for forms, for links and for files."""
+"""The limits of what one visitor may request: the same for forms, links and files."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, get_origin
+
+from pydantic.fields import FieldInfo
 
 from rockflex._errors import InputError
+from rockflex._schema import Key
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.solve import Task
+from rockflex.structure.file import Table, inner_table, key_of, parts
 from rockflex.study import Case
+from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._refusal import Refusal
 
 if TYPE_CHECKING:
@@ -20,92 +24,69 @@ BODY = 6_000_000  # bytes of any request
 FREEDOMS = 200  # stories, masses, rows of a matrix
 SAMPLES = 200_000
 DURATION = 300.0  # s of a record
-MODELS = 4  # side by side
+MODELS = 4  # at once
 RUNS = 20_000  # of a study
-RUN = 1.5  # s of computing that one run may take, as it is estimated (`rockflex.solve.Pace`)
-STOP = 5.0  # s of computing at which it is stopped: a hard run takes three times its estimate
-TOGETHER = 3.0  # s of the runs of one answer, as they are estimated
-STUDY = 180.0  # s of all runs of a study: some minutes
+RUN = 1.5  # s of estimated computing time of one run (`rockflex.solve.Pace`)
+STOP = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
+TOGETHER = 3.0  # s of estimated computing time of the runs of one answer
+STUDY = 180.0  # s of estimated computing time of all runs of a study
 
-INFINITE = frozenset({"stiffness_ratio", "stiffness_parameter", "beam_stiffness"})
 LARGEST = 1e15
 
-RANGES: dict[str, tuple[float, float]] = {
-    "n_stories": (1, FREEDOMS),
-    "n_modes": (1, 100),
-    "n_elements": (2, 2000),
-    "story_height": (0.1, 100.0),
-    "story_heights": (0.1, 100.0),
-    "height": (0.01, 2000.0),
-    "period": (0.01, 60.0),
-    "aspect_ratio": (0.1, 100.0),
-    "damping_ratio": (0.0, 0.99),
-    "zeta": (0.0, 0.99),
-    "half_width": (1e-3, 1000.0),
-    "eccentricity": (-1000.0, 1000.0),
-    "base_radius": (1e-2, 500.0),
-    "top_radius": (1e-2, 500.0),
-    "wall": (1e-3, 100.0),
-    "density": (1.0, 1e5),
-    "story_mass": (1e-3, 1e12),
-    "base_mass": (0.0, 1e12),
-    "omega": (1e-3, 1e6),
-    "slenderness": (1e-4, 1.5),
-    "half_diagonal": (1e-3, 1000.0),
-    "stiffness_ratio": (0.0, math.inf),
-    "stiffness_parameter": (0.0, math.inf),
-    "yield_displacement": (1e-6, 100.0),
-    "post_yield_ratio": (0.0, 0.99),
-    "gamma": (1e-3, 10.0),
-    "beta": (-10.0, 10.0),
-    "exponent": (1.0, 50.0),
-}
-"""Least and largest value of a field by its name, whichever structure it belongs to."""
 
+def check_numbers(path: str, value: Any, table: type[Table]) -> None:
+    """Refuse numbers outside the range of their field, lists that are too long, and text in place of numbers.
 
-def check_numbers(path: str, value: Any) -> None:
-    """Refuse numbers outside their range, lists that are too long, and text in place of numbers.
-
-    Text would be the path of a file: nothing that a visitor writes reaches the file system.
+    Such text would be the path of a file: nothing that a visitor writes reaches the file system.
     """
-    errors = errors_of_numbers(path, value)
+    errors = errors_of_numbers(path, value, table)
     if errors:
         raise Refusal(errors)
 
 
-def errors_of_numbers(path: str, value: Any) -> dict[str, str]:
-    """What is wrong with numbers, lists and text, each by itself, in a message for each field."""
+def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, str]:
+    """Return a message for each field with a number, a list or a text that the page does not accept."""
     errors: dict[str, str] = {}
-    for place, name, each in _leaves(path, value):
+    for place, field, each in _leaves(path, value, table):
         if isinstance(each, str):
-            if name not in ("method", "name"):
+            if field is None or not _takes_text(field):
                 errors[place] = "it must be numbers, not the name of a file: import the file instead."
         elif isinstance(each, list):
             errors[place] = f"it holds {len(each)} values, but the page takes {FREEDOMS} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
-            low, high = RANGES.get(name, (-LARGEST, LARGEST))
-            if math.isinf(each) and each > 0.0 and name in INFINITE:
-                continue
+            key = Key("") if field is None else key_of(field)
+            low, high = (-LARGEST if key.low is None else key.low), (LARGEST if key.high is None else key.high)
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
     return errors
 
 
-def _leaves(path: str, value: Any, name: str = "") -> Iterator[tuple[str, str, Any]]:
-    """Every number and text, with the field that it belongs to, and every list that is too long."""
+def _takes_text(field: FieldInfo) -> bool:
+    """Tell whether a field holds a word or a name; one that may hold numbers takes text as the path of a file."""
+    kinds = parts(field.annotation)
+    return kinds == [str] or any(get_origin(kind) is Literal for kind in kinds)
+
+
+def _leaves(
+    path: str, value: Any, table: type[Table] | None, field: FieldInfo | None = None
+) -> Iterator[tuple[str, FieldInfo | None, Any]]:
+    """Yield every number and text with its field, and every list that is too long."""
     if isinstance(value, Mapping):
         for key, each in value.items():
-            # The heights of freedoms are a table of their indices.
-            field, inner = (name, path) if str(key).isdigit() else (str(key), f"{path}.{key}")
-            yield from _leaves(inner, each, field)
+            if str(key).isdigit():  # the heights of degrees of freedom by their indices
+                yield from _leaves(path, each, None, field)
+            else:
+                inner = None if table is None else table.model_fields.get(str(key))
+                below = None if inner is None else inner_table(inner.annotation)
+                yield from _leaves(f"{path}.{key}", each, below, inner)
     elif isinstance(value, list | tuple):
         if len(value) > FREEDOMS:
-            yield path, name, list(value)
+            yield path, field, list(value)
             return
         for place, each in enumerate(value):
-            yield from _leaves(f"{path}.{place}" if isinstance(each, Mapping) else path, each, name)
+            yield from _leaves(f"{path}.{place}" if isinstance(each, Mapping) else path, each, table, field)
     elif value is not None:
-        yield path, name, value
+        yield path, field, value
 
 
 def check_motion(motion: GroundMotion, path: str) -> None:
@@ -119,7 +100,7 @@ def check_motion(motion: GroundMotion, path: str) -> None:
 
 
 def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
-    """Refuse runs that take too long, one by one or together."""
+    """Refuse runs that take too long, individually or together."""
     together = sum(_checked_work(case.task(motion), "models") for case in cases)
     if together > TOGETHER:
         message = "these models take too long together for a page. Choose fewer of them, or a shorter record."
@@ -127,7 +108,7 @@ def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
 
 
 def _checked_work(task: Task, path: str) -> float:
-    """The work of a run in s; refuse one that would keep the page busy for long."""
+    """Return the estimated computing time of a run in s; refuse one that takes too long."""
     work = task.work().total
     if work > RUN:
         message = (
@@ -139,16 +120,17 @@ def _checked_work(task: Task, path: str) -> float:
 
 
 def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
-    """Refuse a model that the structure cannot have, as one with modes of a rigid block."""
+    """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
     assumptions, model = plan.bench.assumptions, parse_model(label)
+    (bouc_wen,) = labelled_hysteresis([model], assumptions.bouc_wen)
     try:
-        model.of(properties, assumptions.impact, assumptions.bouc_wen if model.yields else None)
+        model.of(properties, assumptions.impact, bouc_wen)
     except InputError as error:
         raise Refusal({path: str(error)}) from error
 
 
 def check_runs(plan: "CloudPlan", path: str) -> None:
-    """Refuse a study of which no run can be made, that has too many, or whose runs take too long."""
+    """Refuse a study whose runs are impossible, too many, or too long."""
     if plan.n_runs > RUNS:
         message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use the command line."
         raise Refusal({path: message})

@@ -7,7 +7,7 @@ from pydantic_core import PydanticCustomError
 
 from rockflex.motion import Measure, intensities
 
-FIRST = ("pgv", "pga", "pgd", "sa_t1", "sd_t1")  # of a list to choose from; the others follow in their order
+FIRST = ("pgv", "pga", "pgd", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
 
 
 def _known(name: str) -> str:
@@ -24,11 +24,11 @@ def _same_for_all(name: str) -> str:
 
 MeasureName = Annotated[str, AfterValidator(_known)]
 SameForAll = Annotated[MeasureName, AfterValidator(_same_for_all)]
-"""One that does not look at the base, so that its level is the same motion for every width."""
+"""A measure that does not depend on the base, so that one level means the same motion for every width."""
 
 
 def measures() -> list[dict[str, Any]]:
-    """Return what a list of the page says of each measure, and whether a search for a width can take it."""
+    """Return the labels of each measure, and whether a search for a width can use it."""
     return [
         {
             "name": measure.name,

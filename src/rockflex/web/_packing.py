@@ -1,49 +1,32 @@
-"""Numbers on their way to the browser."""
+"""Curves as the browser receives them."""
 
 import base64
-import math
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
 def pack(values: ArrayLike) -> str:
-    """Write an array as base64 of little-endian single precision: enough for a picture, and half of the size."""
+    """Encode an array as base64 of little-endian single precision, which is enough for a figure."""
     with np.errstate(over="ignore"):
         return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
 
 
-def plain(value: Any) -> Any:
-    """Make what JSON can write: numbers that are not finite become null, or "inf"."""
-    if isinstance(value, dict):
-        return {str(key): plain(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(each) for each in value]
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return "inf" if value > 0.0 else None
-    return value
-
-
 def envelope(curves: list[NDArray[np.float64]], most: int) -> NDArray[np.intp]:
-    """Indices of at most about `most` points that keep the highest and the lowest of every curve in every stretch.
+    """Return the indices of about `most` points that include the extremes of every curve in every interval.
 
     Parameters
     ----------
     curves
         Curves over the same points, shape (n,) each.
     most
-        How many points to keep; all of them if there are no more.
+        Number of points; all points are retained if there are no more.
 
     Returns
     -------
     ndarray
-        Rising indices, the first and the last point among them.
+        Increasing indices, including the first and the last point.
     """
     n = curves[0].size
     if n <= most:

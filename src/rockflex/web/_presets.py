@@ -1,4 +1,4 @@
-"""Structures to begin with."""
+"""Example structures."""
 
 import math
 from typing import Any

@@ -1,4 +1,4 @@
-"""The Earthquake tab: the record that shakes the structure, and what it is like."""
+"""The Earthquake tab: the record, its spectrum and its intensity measures."""
 
 from functools import lru_cache
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._json import plain
 from rockflex.motion import (
     MEASURES,
     GroundMotion,
@@ -22,13 +23,13 @@ from rockflex.motion import (
     ricker_pulse,
     suite_names,
 )
-from rockflex.web._packing import envelope, pack, plain
+from rockflex.web._packing import envelope, pack
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import PulseChoice, RecordChoice, State
 from rockflex.web._structures import Built
 from rockflex.web._uploads import Uploads
 
-THUMBNAIL = 120  # points of a small picture
+THUMBNAIL = 120  # points of a thumbnail
 POINTS = 2000  # of a curve
 PERIODS = np.geomspace(0.05, 5.0, 90)
 
@@ -59,7 +60,7 @@ def _suite(name: str) -> Suite:
 
 
 def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
-    """Return the record that was chosen, without the scale factor.
+    """Return the chosen record, without the scale factor.
 
     Raises
     ------
@@ -100,7 +101,7 @@ def _pulse(p: PulseChoice) -> GroundMotion:
 
 @lru_cache(maxsize=8)
 def suite_view(name: str) -> dict[str, Any]:
-    """Return the records of a suite with small pictures and their measures.
+    """Return the records of a suite with thumbnails and intensity measures.
 
     Raises
     ------
@@ -132,7 +133,7 @@ def _thumbnail(motion: GroundMotion) -> dict[str, Any]:
 
 
 def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str, Any]:
-    """Return what the tab shows of the scaled record: history, spectrum and measures."""
+    """Return the history, the spectrum and the measures of the scaled record."""
     motion = motion_of(state.record, uploads).scaled(state.scale)
     velocity, displacement = motion.velocity, motion.displacement
     kept = envelope([motion.acceleration, velocity, displacement], POINTS)

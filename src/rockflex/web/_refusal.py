@@ -1,4 +1,4 @@
-"""What the page is told when something given cannot be used."""
+"""The answer of the server when an input cannot be used."""
 
 from collections.abc import Mapping
 

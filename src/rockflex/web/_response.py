@@ -1,4 +1,4 @@
-"""The Response tab: models side by side, thinned to what a screen can show; the peaks are the true ones."""
+"""The Response tab: several models, with histories thinned to the resolution of a screen, and exact peaks."""
 
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -8,14 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
+from rockflex._json import plain
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
 from rockflex.solve import pace_of
 from rockflex.study import Case
+from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._limits import STOP, check_together
-from rockflex.web._packing import envelope, pack, plain
+from rockflex.web._packing import envelope, pack
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State
@@ -25,12 +27,12 @@ from rockflex.web._uploads import Uploads
 Array = NDArray[np.float64]
 
 POINTS = 2000  # of a history, events aside
-EVENTS = 600  # nodes of events kept, at most
-LEDGER = 1.0  # s of computing that the energies may take, see `rockflex.solve.Pace`
+EVENTS = 600  # nodes of events that are retained, at most
+LEDGER = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`
 
 
 def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list[Response]]:
-    """Simulate what a state asks for.
+    """Simulate the models of a state.
 
     Raises
     ------
@@ -40,10 +42,11 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     built = build(state.structure)
     motion = motion_of(state.record, uploads).scaled(state.scale)
     law, cases, found = state.law(), dict[str, Case](), list[Response]()
-    for label in state.models:
+    models = [parse_model(label) for label in state.models]
+    given = labelled_hysteresis(models, state.hysteresis())
+    for label, model, bouc_wen in zip(state.models, models, given, strict=True):
         with _refusing(label):
-            model = parse_model(label)
-            tied = model.of(built.properties, law, state.hysteresis() if model.yields else None)
+            tied = model.of(built.properties, law, bouc_wen)
             cases[label] = Case(tied, state.free_vibration, work_limit=STOP, history=True, floors=True)
     check_together(list(cases.values()), motion)
     for label, case in cases.items():
@@ -54,7 +57,7 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
 
 @contextmanager
 def _refusing(label: str) -> Generator[None]:
-    """Refuse what a model cannot do."""
+    """Turn the error of a model into a refusal."""
     try:
         yield
     except (InputError, SolverError) as error:
@@ -85,7 +88,7 @@ def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[st
 
 
 def _suggested_yield(p: RockingProperties, motion: GroundMotion) -> float | None:
-    """A yield displacement D_y to begin with, in m: beyond what lifts the base, below what a fixed base would see."""
+    """Suggest a yield displacement in m, beyond the uplift of the base and below the demand on a fixed base."""
     if not p.n_modes:
         return None
     stiffness = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2)
@@ -122,7 +125,7 @@ def _curves(built: Built, response: Response) -> dict[str, Any]:
 
 
 def _kept(history: History) -> NDArray[np.intp]:
-    """Nodes that are sent: the extremes of every stretch, and both sides of the events."""
+    """Return the nodes that are sent: the extremes of every interval, and both sides of the events."""
     curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear]
     if history.model.properties.top_height is not None:
         curves.append(history.total_top_displacement)
@@ -132,7 +135,7 @@ def _kept(history: History) -> NDArray[np.intp]:
 
 
 def _fall_time(history: History) -> float | None:
-    """Time at which the rotation passes that of balance for good, if it does."""
+    """Return the time after which the rotation stays beyond the point of balance, if there is one."""
     p = history.model.properties
     balance = np.where(history.rotation < 0.0, p.pivot(-1).balance_rotation, p.pivot(1).balance_rotation)
     inside = np.flatnonzero(np.abs(history.rotation) <= balance)
@@ -142,16 +145,16 @@ def _fall_time(history: History) -> float | None:
 
 
 def check_energy(response: Response, motion: GroundMotion, state: State) -> None:
-    """Refuse energies that would take long to compute."""
+    """Refuse energies that would take too long to compute."""
     assert response.history is not None  # asked for in `responses`
     samples = motion.acceleration.size + state.free_vibration / motion.dt
     if pace_of(response.history.model, 1).energy(samples, motion.dt) > LEDGER:
-        message = "the energy of so many modes, or of such fast ones, over so long a time is left out here."
+        message = "the energy is not computed here for so many or such fast modes over so long a time."
         raise Refusal({"energy": message})
 
 
 def _energy(motion: GroundMotion, response: Response, state: State) -> dict[str, Any]:
-    """Energies over time, stacked in the browser; a note in their place where they cannot be had."""
+    """Return the energies over time, or a note if they cannot be computed."""
     history = response.history
     assert history is not None  # asked for in `responses`
     try:

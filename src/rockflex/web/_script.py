@@ -1,16 +1,15 @@
-"""The Python lines that repeat what the page shows."""
+"""Python programs that reproduce the results of the page."""
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import Tendon
-from rockflex.models import parse_model
 from rockflex.structure import LumpedMasses
 from rockflex.structure.file import StructureEntry
+from rockflex.study._yielding import yielding
 from rockflex.study.assumed import Assumed
 from rockflex.web._cloud import cloud_study
 from rockflex.web._design import design_study, limit_of
@@ -20,9 +19,9 @@ from rockflex.web._state import PulseChoice, State
 
 
 def response_script(state: State, upload_name: str = "record") -> str:
-    """Return a program that simulates what the Response tab shows, in `responses` by model."""
+    """Return a program that repeats the simulations of the Response tab, in `responses` by model."""
     extra = f", free_vibration={state.free_vibration!r}{_law(state)}"
-    if yields := _yields(state.models):
+    if yields := yielding(state.models):
         extra += ', bouc_wen=yielding if "-BW" in model else None'
     return "\n".join(
         [
@@ -107,17 +106,13 @@ def design_script(state: State) -> str:
 
 
 def record_file(upload_name: str) -> str:
-    """Name of the file in which the page gives an uploaded record back."""
+    """Name of the file in which the page saves an uploaded record."""
     return f"{upload_name}.csv"
 
 
 def _law(state: State) -> str:
-    """The argument that names an impact law; none where the model has its own."""
+    """The argument for an impact law; empty if each model has its own."""
     return "" if state.impact is None else f", impact=rf.{state.law()!r}"
-
-
-def _yields(labels: Sequence[str]) -> bool:
-    return any(parse_model(label).yields for label in labels)
 
 
 def _hysteresis(state: State) -> str:
@@ -147,7 +142,7 @@ def _structure(entry: StructureEntry) -> list[str]:
 def _motion(state: State, upload_name: str) -> list[str]:
     choice = state.record
     if choice.source == "upload":
-        line = f"motion = rf.read_motion({record_file(upload_name)!r})  # the page gives it: Record (CSV)"
+        line = f"motion = rf.read_motion({record_file(upload_name)!r})  # saved by the page: Record (CSV)"
     elif choice.source == "pulse":
         line = f"motion = rf.{_pulse(choice.pulse)}"
     else:

@@ -12,12 +12,12 @@ NEEDED = ("anyio", "starlette", "tomli_w", "uvicorn")
 
 
 def make_app(host: str = "127.0.0.1") -> "Starlette":
-    """Return the page as an ASGI application, for a server of one's own.
+    """Return the page as an ASGI application, for another server.
 
     Parameters
     ----------
     host
-        Where it will listen. On this machine alone it answers to the names 127.0.0.1 and localhost only.
+        Address that it will listen on. At a loopback address it answers only to the names 127.0.0.1 and localhost.
 
     Raises
     ------
@@ -38,15 +38,15 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, open_browser: bool = Fal
     port
         TCP port.
     host
-        Address to listen at; the default lets nobody in but this machine. There are no users and passwords: before
-        it is opened to a network, put a server that knows them in front of it.
+        Address to listen on; the default accepts only this machine. There are no users and passwords: before opening
+        it to a network, put a server with authentication in front of it.
     open_browser
         Whether to open the page in the browser of this machine.
 
     Raises
     ------
     InputError
-        If the packages of ``rockflex[web]`` are missing, or the port cannot be had.
+        If the packages of ``rockflex[web]`` are missing, or the port cannot be opened.
     """
     number = whole_number("port", port, 1, 65535)
     app = make_app(host)
@@ -61,7 +61,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, open_browser: bool = Fal
     except OSError as error:
         listener.close()
         raise InputError(
-            f"The page cannot listen at {host}, port {number}: {error.strerror or error}. Choose another --port."
+            f"The page cannot listen on {host}, port {number}: {error.strerror or error}. Choose another --port."
         ) from error
     config = uvicorn.Config(app, log_level="warning", timeout_keep_alive=20, limit_concurrency=500, server_header=False)
     with listener:

@@ -1,15 +1,16 @@
-"""Everything that the page shows, as one value: what a link holds."""
+"""The state of the page as one value, which a link holds."""
 
 import json
 import math
-from typing import Annotated, Any, Literal, get_args
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
 
 from pydantic import AliasChoices, Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
-from rockflex.models import parse_model
-from rockflex.structure.file import StructureEntry, Table, expected
-from rockflex.study.assumed import Assumed
+from rockflex.structure.file import StructureEntry, Table, expected, inner_table
+from rockflex.study._yielding import yielding
+from rockflex.study.assumed import Assumed, BoucWenTable
 from rockflex.web._limit_states import DesignLimit, LimitName
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._measures import MeasureName, SameForAll
@@ -22,7 +23,7 @@ Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a 
 
 
 NODES = 150_000  # values in a state: three matrices of 200 freedoms, and some room
-TOLD = 50  # messages at once
+TOLD = 50  # messages in one answer
 
 
 class PulseChoice(Table):
@@ -52,7 +53,7 @@ class RecordChoice(Table):
 
 
 class CloudChoice(Table):
-    """A cloud analysis, and what is read from it."""
+    """A cloud analysis, and its limit state."""
 
     suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
     scales: list[Scale] = Field(
@@ -94,7 +95,7 @@ class DesignChoice(Table):
 
 
 class State(Assumed):
-    """All that the page shows."""
+    """The state of the whole page."""
 
     tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
         "structure", description="the name of a tab"
@@ -109,14 +110,14 @@ class State(Assumed):
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
 
-    def assumed(self, *, yields: bool) -> dict[str, Any]:
-        """Impact law and hysteresis as keys of a study, the hysteresis only where something yields."""
-        names = {"impact", "restitution", *(["bouc_wen"] if yields else [])}
+    def assumed(self, labels: Sequence[str]) -> dict[str, Any]:
+        """Return the impact law, and the hysteresis if one of the models yields, as keys of a study."""
+        names = {"impact", "restitution", *(["bouc_wen"] if yielding(labels) else [])}
         return self.model_dump(include=names, exclude_none=True)
 
 
 def parse_json(body: bytes) -> Any:
-    """Read JSON; infinite and absurd numbers are kept for the checks of fields.
+    """Read JSON; infinite and absurdly large numbers are left to the checks of the fields.
 
     Raises
     ------
@@ -126,11 +127,11 @@ def parse_json(body: bytes) -> Any:
     try:
         return json.loads(body, parse_int=lambda text: int(text) if len(text) < 16 else float(text))
     except (ValueError, RecursionError) as error:
-        raise Refusal(f"The request is no JSON that can be read: {str(error)[:200]}.", 400) from error
+        raise Refusal(f"The request is not valid JSON: {str(error)[:200]}.", 400) from error
 
 
 def parse_state(content: Any) -> State:
-    """Check what came from a form or a link.
+    """Return the state of a form or a link, checked.
 
     Raises
     ------
@@ -145,15 +146,15 @@ def parse_state(content: Any) -> State:
         state = State.model_validate(_infinite(content))
     except ValidationError as error:
         structure = _infinite(content.get("structure"))
-        ranges = errors_of_numbers("structure", structure) if isinstance(structure, dict) else {}
+        ranges = errors_of_numbers("structure", structure, StructureEntry) if isinstance(structure, dict) else {}
         raise Refusal(dict([*(ranges | _messages(error, content)).items()][:TOLD])) from error
     except RecursionError as error:
         raise Refusal("The link is nested too deep.") from error
     try:
         state.structure.name.encode()
     except UnicodeEncodeError as error:
-        raise Refusal({"structure.name": "it holds a character that cannot be written."}) from error
-    check_numbers("structure", state.structure.model_dump(exclude={"name"}))
+        raise Refusal({"structure.name": "it contains a character that cannot be encoded."}) from error
+    check_numbers("structure", state.structure.model_dump(), StructureEntry)
     _check_models(state)
     _check_assumed(state)
     return state
@@ -166,13 +167,13 @@ def _check_models(state: State) -> None:
         ("design.model", [state.design.model]),
     ):
         try:
-            yields = [label for label in labels if parse_model(label).yields]
+            yields = yielding(labels)
         except ValueError as error:
             raise Refusal({path: str(error)}) from error
         if len(set(labels)) < len(labels):
             raise Refusal({path: "the same model is chosen twice."})
         if yields and state.bouc_wen is None:
-            message = f"{yields[0]} yields, but nothing says at what displacement. Choose it on the Response tab."
+            message = f"{yields[0]} yields, but no yield displacement was given. Choose it on the Response tab."
             raise Refusal({path: message})
 
 
@@ -183,7 +184,7 @@ def _check_assumed(state: State) -> None:
         raise Refusal({"restitution": str(error)}) from error
     if state.bouc_wen is None:
         return
-    check_numbers("bouc_wen", state.bouc_wen.model_dump())
+    check_numbers("bouc_wen", state.bouc_wen.model_dump(), BoucWenTable)
     try:
         state.hysteresis()
     except InputError as error:
@@ -191,14 +192,14 @@ def _check_assumed(state: State) -> None:
 
 
 def _size(value: Any) -> int:
-    """How many values there are in it, tables and lists included."""
+    """The number of values, including tables and lists."""
     if isinstance(value, dict):
         return 1 + sum(map(_size, value.values()))
     return 1 + sum(map(_size, value)) if isinstance(value, list) else 1
 
 
 def _infinite(value: Any) -> Any:
-    """Put numbers in the place of "inf", which JSON cannot write."""
+    """Replace "inf" by the number, which JSON cannot write."""
     if isinstance(value, dict):
         return {str(key): _infinite(each) for key, each in value.items()}
     if isinstance(value, list):
@@ -207,7 +208,7 @@ def _infinite(value: Any) -> Any:
 
 
 def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:
-    """What is wrong with each field, in a sentence."""
+    """Return a sentence for each field at fault."""
     found: dict[str, str] = {}
     for problem in error.errors(include_url=False)[:TOLD]:
         path, description, given = _place(problem["loc"], content)
@@ -224,7 +225,7 @@ def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]
 
 
 def _place(location: tuple[int | str, ...], content: Any) -> tuple[str, str, Any]:
-    """Path, description and value of the field that a problem is in; what a union or a list adds is left out."""
+    """Return the path, description and value of the field at fault, without the parts that a union or a list adds."""
     table: type[Table] | None = State
     path: list[str] = []
     description, given = "a table", content
@@ -243,14 +244,8 @@ def _place(location: tuple[int | str, ...], content: Any) -> tuple[str, str, Any
         if field is None:
             break
         description = expected(field) or "something else"
-        table = _table_in(field.annotation)
+        table = inner_table(field.annotation)
     return ".".join(path), description, given
-
-
-def _table_in(annotation: Any) -> type[Table] | None:
-    if isinstance(annotation, type) and not get_args(annotation) and issubclass(annotation, Table):
-        return annotation
-    return next((found for part in get_args(annotation) if (found := _table_in(part)) is not None), None)
 
 
 def _short(value: Any) -> str:

@@ -1,4 +1,4 @@
-"""The Structure tab: what a structure is, its modes, and how many of them it needs."""
+"""The Structure tab: the structure, its modes, and how many of them it needs."""
 
 import json
 import math
@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._errors import InputError
+from rockflex._json import plain
 from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure.file import Structure, StructureEntry
-from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
 
 DRAWN = 40  # heights of a structure, at most
@@ -21,7 +21,7 @@ SHOWN = 6  # modes drawn
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """A structure ready to be simulated and drawn.
+    """A structure that can be simulated and drawn.
 
     Attributes
     ----------
@@ -30,11 +30,11 @@ class Built:
     properties
         Its parameters with all modes.
     modes
-        Its modes on a fixed base; None where they are not known, or it has none.
+        Its modes on a fixed base; None if they are unknown or there are none.
     heights
         Heights of the points drawn, in m, from the base to the top, shape (m,).
     shapes
-        Displacement of these points for a unit of each D_n, shape (m, n).
+        Displacements of these points for a unit of each D_n, shape (m, n).
     """
 
     structure: Structure | RockingProperties
@@ -45,12 +45,12 @@ class Built:
 
 
 def build(entry: StructureEntry) -> Built:
-    """Build a structure, or take it from those built lately.
+    """Build a structure, or return it from the cache.
 
     Raises
     ------
     Refusal
-        If it cannot be built, with the message beside the field at fault.
+        If it cannot be built, with the message at the field at fault.
     """
     try:
         return _build(json.dumps(entry.model_dump(exclude_none=True)))
@@ -78,7 +78,7 @@ def _build(text: str) -> Built:
 
 
 def _straight(entry: StructureEntry, p: RockingProperties) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Shape of a structure of which only the top's displacement is known: a straight line."""
+    """Shape of a structure with only a known displacement of the top: a straight line."""
     if p.n_modes:
         height = float(np.abs(p.effective_height).max()) * 1.25
     else:
@@ -88,12 +88,12 @@ def _straight(entry: StructureEntry, p: RockingProperties) -> tuple[NDArray[np.f
 
 
 def structure_view(entry: StructureEntry) -> dict[str, Any]:
-    """Return what the tab shows of a structure: its outline, parameters, modes and what they are good for.
+    """Return the outline, the parameters, the modes and the adequacy of a structure.
 
     Raises
     ------
     Refusal
-        If it cannot be built, or its modes cannot be judged.
+        If it cannot be built, or the adequacy of its modes cannot be determined.
     """
     built = build(entry)
     p = built.properties
@@ -119,19 +119,19 @@ def structure_view(entry: StructureEntry) -> dict[str, Any]:
 
 
 def _judged(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:
-    """What is said of how many modes are enough."""
+    """How many modes are enough, and why."""
     if not p.n_modes:
         return None
     base = getattr(entry.table, "base_mass", None)
     try:
         found = adequacy(p, base_mass=base)
-    except InputError:  # a mass of the base that does not go with the rest
+    except InputError:  # a mass of the base that contradicts the rest
         found = adequacy(p)
     return {"reason": found.reason, "model": found.model, "model_for_shear": found.model_for_shear}
 
 
 def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
-    """Parameters with symbols, units and meaning; those of each edge of the base where the two differ."""
+    """Return the parameters with symbols, units and meaning, for each edge of the base where the two differ."""
     moved = {"symbol": "e", "value": p.eccentricity, "unit": "m", "help": "masses to the right of the base's middle"}
     base = [
         {"symbol": "B", "value": p.half_width, "unit": "m", "help": "half the width of the base"},
@@ -154,7 +154,7 @@ def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, 
         ("M_r", pivot.resisting_moment, "N m", "moment at which the base lifts"),
         ("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
         ("a_lift", lifting, "m/s²", "slow ground acceleration that lifts the base"),
-        ("α", alpha, "rad", "rotation at which it no longer stands up by itself"),
+        ("α", alpha, "rad", "rotation beyond which it does not return to the upright position"),
         ("θ_nom", nominal, "rad", limit),
     ]
     return [
@@ -189,7 +189,7 @@ def _modes(built: Built) -> list[dict[str, Any]]:
 
 
 def _place(entry: StructureEntry, name: str | None) -> str:
-    """Path of a field of the form, or of the whole form if it has no such field."""
+    """Return the path of a field of the form, or of the whole form if it has no such field."""
     if name in type(entry.table).model_fields:
         return f"structure.{entry.kind}.{name}"
     return f"structure.{name}" if name in type(entry).model_fields else "structure"

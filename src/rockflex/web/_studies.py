@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rockflex._errors import InputError
-from rockflex.models import parse_model
 from rockflex.motion import MEASURES
+from rockflex.study._yielding import yielding
 from rockflex.study.plans import CloudPlan, CloudStudy, DesignStudy, to_frame
 from rockflex.web._jobs import Job
 from rockflex.web._limits import RUN, check_runs
@@ -23,16 +23,15 @@ AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
 
 def shared(state: State, choice: CloudChoice | DesignChoice, labels: Sequence[str], name: str) -> dict[str, Any]:
     """Return the content that both kinds of study have; `name` is for a nameless structure."""
-    yields = any(parse_model(label).yields for label in labels)
     return {
         "name": state.structure.name or name,
         "structures": [state.structure.model_dump(exclude_none=True)],
         "records": {"suites": list(choice.suites)},
         "models": list(labels),
         "scales": list(choice.scales),
-        "free_vibration": CALM if yields else "settle",
+        "free_vibration": CALM if yielding(labels) else "settle",
         "runs_per_chunk": PER_CHUNK,
-        **state.assumed(yields=yields),
+        **state.assumed(labels),
     }
 
 

@@ -1,4 +1,4 @@
-"""Files of visitors: judged before they are parsed, and kept in memory only."""
+"""Uploaded files: checked before they are parsed, and stored only in memory."""
 
 import hashlib
 import io
@@ -23,9 +23,9 @@ MATRICES = ("mass", "stiffness", "heights", "rotations")
 
 
 class Uploads:
-    """Records by the checksum of their file, the latest `KEPT` of all visitors.
+    """Records by the checksum of their file; the latest `KEPT` of all visitors.
 
-    Only who has a file, or a link of one who has, knows its checksum.
+    The checksum is known only to those who have the file or a link with it.
     """
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Uploads:
         self._lock = Lock()
 
     def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
-        """Keep a record, and return its checksum."""
+        """Store a record, and return its checksum."""
         key = hashlib.sha256(content + b"\0" + options.encode()).hexdigest()
         with self._lock:
             self._kept[key] = motion
@@ -48,14 +48,16 @@ class Uploads:
         Raises
         ------
         Refusal
-            If it is not there (any more).
+            If it is not, or no longer, stored.
         """
         with self._lock:
             motion = self._kept.get(key)
             if motion is not None:
                 self._kept.move_to_end(key)
         if motion is None:
-            message = "the record of this link was a file, and a link does not hold files. Choose the file again."
+            message = (
+                "the record of this link was an uploaded file, which a link does not contain. Choose the file again."
+            )
             raise Refusal({"record.upload": message}, 410)
         return motion
 
@@ -66,7 +68,7 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Parameters
     ----------
     name
-        What the visitor calls the file; used in messages and as the motion's name, never as a path.
+        The visitor's name for the file; used in messages and as the motion's name, never as a path.
     content
         Its bytes.
     units, dt
@@ -75,23 +77,23 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Raises
     ------
     Refusal
-        If the file is too large, cannot be read, or holds too long a record or a vertical component.
+        If the file is too large, cannot be read, or contains a vertical component or a record that is too long.
     """
     shown = clean_name(name)
-    text = _decoded(shown, content)
+    _check_size(shown, content, "record.upload")
     try:
         with TemporaryDirectory() as folder:
             file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
-            file.write_text(text, "utf-8", newline="")
+            file.write_bytes(content)
             try:
                 motion = read_motion(file, units=units, dt=dt)
             except InputError as error:
                 raise Refusal({"record.upload": str(error).replace(str(file), shown)}) from error
     except OSError as error:
-        message = "the server could not keep the file for a moment. Try again."
+        message = "the server could not store the file temporarily. Try again."
         raise Refusal({"record.upload": message}, 503) from error
     info = motion.metadata or RecordInfo()
-    info = replace(info, direction=direction_of(Path(shown), info.component))  # the file here has another name
+    info = replace(info, direction=direction_of(Path(shown), info.component))  # the temporary file has another name
     named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info)
     if is_vertical(named):
         message = f"{shown} is a vertical component by its header or its name. Choose a horizontal one."
@@ -106,21 +108,10 @@ def clean_name(name: str) -> str:
     return re.sub(r"[^\w.()+ -]", "_", last)[:80].strip() or "record"
 
 
-def _decoded(name: str, content: bytes) -> str:
+def _check_size(name: str, content: bytes, field: str) -> None:
     if len(content) > FILE:
         message = f"{name} has {len(content) / 1e6:.1f} MB, but the page takes {FILE / 1e6:g} MB at most."
-        raise Refusal({"record.upload": message}, 413)
-    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
-    for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
-        try:
-            text = content.decode(encoding)
-            break
-        except UnicodeDecodeError:
-            continue
-    else:
-        message = f"{name} is no text file. A record is expected as AT2, CSV or columns of numbers."
-        raise Refusal({"record.upload": message})
-    return text
+        raise Refusal({field: message}, 413)
 
 
 def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
@@ -132,9 +123,7 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
         If the file is too large or cannot be read, or an array is.
     """
     shown = clean_name(name)
-    if len(content) > FILE:
-        message = f"{shown} has {len(content) / 1e6:.1f} MB, but the page takes {FILE / 1e6:g} MB at most."
-        raise Refusal({"structure": message}, 413)
+    _check_size(shown, content, "structure")
     try:
         if shown.lower().endswith(".npz"):
             return _from_npz(shown, content)
@@ -146,7 +135,7 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
         }
     except Refusal:
         raise
-    except Exception as error:  # the readers of damaged files raise many kinds
+    except Exception as error:  # damaged files raise many kinds of errors
         message = f"{shown} does not hold matrices that can be read: {str(error)[:200]}."
         raise Refusal({"structure": message}) from error
 
@@ -157,7 +146,7 @@ def _from_npz(name: str, content: bytes) -> dict[str, list[Any]]:
         for part in MATRICES:
             if f"{part}.npy" not in archive.namelist():
                 continue
-            # A header may promise more than there is: it is read before any memory is taken.
+            # A header may claim an array of any size, so it is read before any memory is allocated.
             with archive.open(f"{part}.npy") as file:
                 version = np.lib.format.read_magic(file)
                 read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0

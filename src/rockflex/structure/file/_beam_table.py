@@ -1,71 +1,66 @@
 """The table of a beam whose mass and stiffness vary along the height."""
 
 from pathlib import Path
-from typing import Any, Literal
-
-from pydantic import Field
+from typing import Annotated, Any, Literal
 
 from rockflex._errors import InputError
+from rockflex._schema import PLAIN, WHOLE, BaseMass, Key, each
 from rockflex.structure import Beam, LumpedMasses
-from rockflex.structure.file._table import WHOLE, Table, each, number, written
-from rockflex.structure.file._tables import BaseMass, Damping, HalfWidth, StructureTable, Vector
+from rockflex.structure.file._table import Table
+from rockflex.structure.file._tables import Damping, HalfWidth, Modes, StructureTable, Vector
 
 _PROFILES = ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia")
+_ALONG = each("height in z")
 
 
 class LumpedMassesTable(Table):
     """The arguments of `LumpedMasses`."""
 
-    heights: Vector = Field(
-        description="a list of the heights of the bodies above the base in m", json_schema_extra={"unit": "m"}
-    )
-    masses: Vector = Field(description="a list of the masses of the bodies in kg", json_schema_extra={"unit": "kg"})
-    rotary: Vector | None = Field(
-        None,
-        description="a list of the rotary inertias of the bodies about their own axes in kg m²",
-        json_schema_extra={"unit": "kg m²"},
-    )
+    heights: Annotated[Vector, Key("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
+    masses: Annotated[Vector, Key("a list of the masses of the bodies in kg", "kg", form=PLAIN)]
+    rotary: Annotated[
+        Vector | None,
+        Key("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²", form=PLAIN),
+    ] = None
 
 
 class BeamTable(StructureTable):
-    """The arguments of `Beam`; what varies along the height has a value for each height in `z`."""
+    """The arguments of `Beam`; a quantity that varies along the height has a value for each height in `z`."""
 
     makes = Beam
+    title = "Beam, perhaps tapered"
 
-    height: float = Field(description="the height of the beam above the base", json_schema_extra=number("m"))
-    z: Vector | None = Field(
-        None,
-        description="a list of heights in m from 0 to the top, for the lists of values (the same twice: a jump)",
-        json_schema_extra={"unit": "m"},
-    )
-    mass: float | Vector = Field(
-        description="the mass for each metre in kg/m", json_schema_extra=each("height in z", "kg/m")
-    )
-    bending_stiffness: float | Vector = Field(description="EI in N m²", json_schema_extra=each("height in z", "N m²"))
-    shear_stiffness: float | Vector | None = Field(
-        None, description="GA_s in N (default: no deformation in shear)", json_schema_extra=each("height in z", "N")
-    )
-    rotary_inertia: float | Vector | None = Field(
-        None, description="ρI in kg m (default: none)", json_schema_extra=each("height in z", "kg m")
-    )
-    lumped_masses: LumpedMassesTable | None = Field(
-        None, description="bodies", json_schema_extra=written("a table of {}")
-    )
+    height: Annotated[float, Key("the height of the beam above the base", "m", low=0.01, high=2000.0)]
+    z: Annotated[
+        Vector | None,
+        Key(
+            "a list of heights in m from 0 to the top, for the lists of values (the same twice: a jump)",
+            "m",
+            form=PLAIN,
+            label="Heights z",
+        ),
+    ] = None
+    mass: Annotated[float | Vector, Key("the mass per metre in kg/m", "kg/m", form=_ALONG)]
+    bending_stiffness: Annotated[float | Vector, Key("EI in N m²", "N m²", form=_ALONG)]
+    shear_stiffness: Annotated[
+        float | Vector | None, Key("GA_s in N (default: no deformation in shear)", "N", form=_ALONG)
+    ] = None
+    rotary_inertia: Annotated[float | Vector | None, Key("ρI in kg m (default: none)", "kg m", form=_ALONG)] = None
+    lumped_masses: Annotated[LumpedMassesTable | None, Key("bodies", form="a table of {}")] = None
     half_width: HalfWidth
     damping_ratio: Damping
     base_mass: BaseMass = 0.0
-    rotary_in_modes: bool = Field(
-        True,
-        description="whether the rotary inertia takes part in the modes, or in I_θ alone",
-        json_schema_extra=written("true or false: {}"),
-    )
-    method: Literal["fe", "ritz"] = Field(
-        "fe", description='"fe" (finite elements) or "ritz" (shapes over the whole height)'
-    )
-    n_modes: int = Field(5, description="how many modes to take", json_schema_extra=WHOLE)
-    n_elements: int | None = Field(
-        None, description="how many finite elements to take (default: 1000)", json_schema_extra=WHOLE
-    )
+    rotary_in_modes: Annotated[
+        bool, Key("whether the rotary inertia takes part in the modes, or in I_θ only", form="true or false: {}")
+    ] = True
+    method: Annotated[
+        Literal["fe", "ritz"], Key('"fe" (finite elements) or "ritz" (shapes over the whole height)', form=PLAIN)
+    ] = "fe"
+    n_modes: Modes = 5
+    n_elements: Annotated[
+        int | None,
+        Key("how many finite elements to take (default: 1000)", form=WHOLE, low=2, high=2000, label="Elements"),
+    ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with a table for each list."""

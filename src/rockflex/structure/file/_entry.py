@@ -1,18 +1,19 @@
-"""A structure as a file holds it."""
+"""A structure as an entry of a file."""
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
+from rockflex._schema import PLAIN, Eccentricity, Key
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._matrix_files import checksum
 from rockflex.structure.file._beam_table import BeamTable
 from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
-from rockflex.structure.file._table import Table, number
+from rockflex.structure.file._table import Table
 from rockflex.structure.file._tables import (
     BlockTable,
     Built,
@@ -25,8 +26,6 @@ from rockflex.structure.file._tables import (
     TaperedTowerTable,
     WallFrameTable,
 )
-
-_A_TABLE = "a table"
 
 KINDS: dict[str, type[StructureTable]] = {
     "frame": FrameTable,
@@ -44,23 +43,20 @@ KINDS: dict[str, type[StructureTable]] = {
 """The table of each kind of structure by its name in a file."""
 
 
+_KIND = Key("a table", form=PLAIN)
+
+
 class TendonTable(Table):
     """The arguments of `Tendon`."""
 
-    position: float = Field(
-        0.0, description="the distance to the right of the axis of the masses", json_schema_extra=number("m")
-    )
-    initial_force: float = Field(
-        description="the force while the base stands on the ground", json_schema_extra=number("N")
-    )
-    stiffness: float = Field(description="EA/L over the unbonded length", json_schema_extra=number("N/m"))
-    yield_force: float | None = Field(
-        None, description="the force at which the tendon yields", json_schema_extra=number("N")
-    )
+    position: Annotated[float, Key("the distance to the right of the axis of the masses", "m")] = 0.0
+    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N")]
+    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m")]
+    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N")] = None
 
 
 class StructureEntry(Table):
-    """A structure, perhaps with a name, where it stands on its base, and the tendons that hold it down.
+    """A structure, with its optional name, its place on the base, and its tendons.
 
     Attributes
     ----------
@@ -71,28 +67,24 @@ class StructureEntry(Table):
     eccentricity : float or None
         In m; None in the middle of the base.
     tendons : list of TendonTable
-        Perhaps none.
+        May be empty.
     """
 
-    name: str = Field("", description="a name, in quotes")
-    frame: FrameTable | None = Field(None, description=_A_TABLE)
-    fish_bone: FishBoneTable | None = Field(None, description=_A_TABLE)
-    wall_frame: WallFrameTable | None = Field(None, description=_A_TABLE)
-    tapered_tower: TaperedTowerTable | None = Field(None, description=_A_TABLE)
-    cantilever: CantileverTable | None = Field(None, description=_A_TABLE)
-    beam: BeamTable | None = Field(None, description=_A_TABLE)
-    lumped: LumpedTable | None = Field(None, description=_A_TABLE)
-    matrices: MatricesTable | None = Field(None, description=_A_TABLE)
-    modes: ModesTable | None = Field(None, description=_A_TABLE)
-    properties: PropertiesTable | None = Field(None, description=_A_TABLE)
-    block: BlockTable | None = Field(None, description=_A_TABLE)
-    eccentricity: float | None = Field(
-        None,
-        description="how far the masses stand to the right of the middle of the base",
-        json_schema_extra=number("m"),
-    )
-    tendons: list[TendonTable] = Field(
-        default_factory=list[TendonTable], description="a list of tables, each under a heading [[tendons]]"
+    name: Annotated[str, Key("a name, in quotes", form=PLAIN)] = ""
+    frame: Annotated[FrameTable | None, _KIND] = None
+    fish_bone: Annotated[FishBoneTable | None, _KIND] = None
+    wall_frame: Annotated[WallFrameTable | None, _KIND] = None
+    tapered_tower: Annotated[TaperedTowerTable | None, _KIND] = None
+    cantilever: Annotated[CantileverTable | None, _KIND] = None
+    beam: Annotated[BeamTable | None, _KIND] = None
+    lumped: Annotated[LumpedTable | None, _KIND] = None
+    matrices: Annotated[MatricesTable | None, _KIND] = None
+    modes: Annotated[ModesTable | None, _KIND] = None
+    properties: Annotated[PropertiesTable | None, _KIND] = None
+    block: Annotated[BlockTable | None, _KIND] = None
+    eccentricity: Eccentricity = None
+    tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]", form=PLAIN)] = (
+        Field(default_factory=list[TendonTable])
     )
 
     @model_validator(mode="after")
@@ -106,22 +98,22 @@ class StructureEntry(Table):
 
     @property
     def kind(self) -> str:
-        """Name of the table that is the structure."""
+        """Name of the structure's table."""
         return next(kind for kind in KINDS if getattr(self, kind) is not None)
 
     @property
     def table(self) -> StructureTable:
-        """Table that is the structure."""
+        """The structure's table."""
         table: StructureTable = getattr(self, self.kind)
         return table
 
     def build(self, folder: Path | str = "") -> Built:
-        """Make the structure.
+        """Build the structure.
 
         Parameters
         ----------
         folder
-            Where the paths of matrices start. Default: the working directory.
+            Folder that the paths of matrices are relative to. Default: the working directory.
 
         Returns
         -------
@@ -130,7 +122,7 @@ class StructureEntry(Table):
         Raises
         ------
         InputError
-            If a value is outside its range, values do not go together, or a file of numbers cannot be read. The
+            If a value is out of range, values contradict each other, or a file of numbers cannot be read. The
             message begins with the table.
         """
         try:
@@ -153,7 +145,7 @@ class StructureEntry(Table):
             raise InputError(str(error), place="[[tendons]]", field="tendons") from error
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
-        """SHA-256 of the numbers in each file that the structure is made from, by its key, such as "matrices.mass".
+        """SHA-256 of the numbers in each file that the structure is built from, by its key, such as "matrices.mass".
 
         Raises
         ------
@@ -164,7 +156,7 @@ class StructureEntry(Table):
         return {f"{self.kind}.{name}": checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
-        """Return the values of the structure's table, and eccentricity and tendons if there are any."""
+        """Return the values of the structure's table, with eccentricity and tendons if given."""
         more: dict[str, Any] = {"eccentricity": self.eccentricity} if self.eccentricity else {}
         if self.tendons:
             more["tendons"] = [each.model_dump(exclude_none=True) for each in self.tendons]

@@ -5,44 +5,47 @@ from typing import Annotated, Any
 
 from pydantic import Field, StringConstraints
 
+from rockflex._schema import PLAIN, WHOLE, BaseMass, Key
 from rockflex.structure import from_matrices, from_modes
-from rockflex.structure.file._table import WHOLE, written
-from rockflex.structure.file._tables import BaseMass, Damping, HalfWidth, StructureTable, Vector
+from rockflex.structure.file._tables import Damping, HalfWidth, Matrix, StructureTable, Vector
 
-Matrix = list[list[float]]
 Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
 
 _OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
 
 
 class _FromFiles(StructureTable):
-    """What both kinds have: freedoms above a base."""
+    """The keys that both kinds share: degrees of freedom above a base."""
 
-    mass: Vector | Matrix | str = Field(
-        description="a list of masses in kg, or the mass matrix", json_schema_extra=written(_OR_FILE, "kg")
-    )
-    heights: Vector | dict[Index, float] | str = Field(
-        description="a list of the heights of all freedoms in m, or a table { index = height } of those that move "
-        "sideways, counted from 0",
-        json_schema_extra=written(_OR_FILE, "m"),
-    )
-    rotations: list[int] = Field(
-        default_factory=list[int], description="a list of the indices of rotations in the plane, counted from 0"
-    )
+    mass: Annotated[Vector | Matrix | str, Key("a list of masses in kg, or the mass matrix", "kg", form=_OR_FILE)]
+    heights: Annotated[
+        Vector | dict[Index, float] | str,
+        Key(
+            "a list of the heights of all freedoms in m, or a table { index = height } of those that move "
+            "sideways, counted from 0",
+            "m",
+            form=_OR_FILE,
+        ),
+    ]
+    rotations: Annotated[
+        list[int], Key("a list of the indices of rotations in the plane, counted from 0", form=PLAIN)
+    ] = Field(default_factory=list[int])
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
-    n_modes: int | None = Field(None, description="how many modes to take (default: all)", json_schema_extra=WHOLE)
+    n_modes: Annotated[
+        int | None, Key("how many modes to take (default: all)", form=WHOLE, low=1, high=100, label="Modes")
+    ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
-        """Return the arguments with paths from `folder`, and indices as numbers."""
+        """Return the arguments with paths relative to `folder`, and indices as numbers."""
         given = super().arguments(folder)
         if isinstance(self.heights, dict):
             given["heights"] = {int(index): height for index, height in self.heights.items()}
         return given
 
     def files(self, folder: Path) -> dict[str, Path]:
-        """Return the path, from `folder`, of each value that is kept in a file."""
+        """Return the path, relative to `folder`, of each value that is stored in a file."""
         return {name: folder / value for name, value in self.values().items() if isinstance(value, str)}
 
 
@@ -50,21 +53,23 @@ class MatricesTable(_FromFiles):
     """The arguments of `from_matrices`."""
 
     makes = from_matrices
+    title = "Mass and stiffness matrices"
 
-    stiffness: Matrix | str = Field(
-        description="the stiffness matrix in N/m, a list of rows", json_schema_extra=written(_OR_FILE, "N/m")
-    )
+    stiffness: Annotated[Matrix | str, Key("the stiffness matrix in N/m, a list of rows", "N/m", form=_OR_FILE)]
 
 
 class ModesTable(_FromFiles):
     """The arguments of `from_modes`."""
 
     makes = from_modes
+    title = "Modes of a finite element model"
 
-    omega: Vector | str = Field(
-        description="a list of circular frequencies in rad/s, one a mode", json_schema_extra=written(_OR_FILE, "rad/s")
-    )
-    shapes: Matrix | str = Field(
-        description="the mode shapes, a list of rows, one a freedom with a column for each mode",
-        json_schema_extra=written(_OR_FILE),
-    )
+    omega: Annotated[
+        Vector | str,
+        Key(
+            "a list of circular frequencies in rad/s, one a mode", "rad/s", form=_OR_FILE, low=1e-3, high=1e6, label="ω"
+        ),
+    ]
+    shapes: Annotated[
+        Matrix | str, Key("the mode shapes, a list of rows, one a freedom with a column for each mode", form=_OR_FILE)
+    ]

@@ -11,25 +11,25 @@ from rockflex.structure.file._entry import StructureEntry
 from rockflex.structure.file._table import checked
 from rockflex.structure.file._tables import Built
 
-_FOR_RUNS = ("impact", "restitution", "bouc_wen")  # for `rockflex run` alone
+_FOR_RUNS = ("impact", "restitution", "bouc_wen")  # only for `rockflex run`
 
 
 def read_structure(path: str | Path) -> Built:
-    """Return the structure of a TOML file, as the command line takes it.
+    """Return the structure of a TOML file, the same file that the command line reads.
 
     The file holds one table, whose keys are the arguments of the class: ``[frame]`` (`Frame`), ``[fish_bone]``
     (`FishBone`), ``[wall_frame]`` (`WallFrame`), ``[tapered_tower]`` (`TaperedTower`), ``[cantilever]``
     (`CantileverWithTipMass`), ``[beam]`` (`Beam`, with lists of values at the heights ``z``), ``[lumped]``
     (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
-    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[tendons]]`` (`Tendon`) hold it down, and a number
+    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[tendons]]`` (`Tendon`) restrain it, and a number
     ``eccentricity`` above all tables moves it from the middle of its base (`Eccentric`). Units are kg, m, s, N and rad;
-    paths of matrices start from the folder of the file.
+    paths of matrices are relative to the folder of the file.
 
     Parameters
     ----------
     path
-        The file. What it says to ``rockflex run`` alone, ``impact``, ``restitution`` and ``[bouc_wen]``, belongs to the
-        arguments of `simulate` and is not looked at.
+        The file. The keys ``impact``, ``restitution`` and ``[bouc_wen]`` are for ``rockflex run`` and are ignored; in
+        Python they are arguments of `simulate`.
 
     Returns
     -------
@@ -47,12 +47,12 @@ def read_structure(path: str | Path) -> Built:
 
 
 def read_toml(file: Path, kind: str) -> dict[str, Any]:
-    """Return the content of a TOML file; `kind` says what the file is to hold, for messages.
+    """Return the content of a TOML file; `kind` names its expected content in messages.
 
     Raises
     ------
     InputError
-        If the file cannot be read, is no regular file, or is not TOML.
+        If the file cannot be read, is not a regular file, or is not TOML.
     """
     check_regular(file)
     try:
@@ -70,7 +70,7 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
 
 
 def build_in(file: Path, entry: StructureEntry) -> Built:
-    """Make the structure of a file, which messages then name.
+    """Build the structure of a file, which messages name.
 
     Raises
     ------

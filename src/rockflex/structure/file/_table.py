@@ -1,16 +1,17 @@
-"""A table of a TOML file, and what is said of one that is wrong."""
+"""A table of a TOML file, and the messages about one that is wrong."""
 
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from types import GenericAlias
-from typing import Any, TypeVar, get_args, get_origin
+from types import GenericAlias, UnionType
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from rockflex._errors import InputError
+from rockflex._schema import PLAIN, Key
 
 AnyTable = TypeVar("AnyTable", bound="Table")
 
@@ -18,39 +19,38 @@ AnyTable = TypeVar("AnyTable", bound="Table")
 class Table(BaseModel):
     """A table of a file: known keys only, and no silent conversion.
 
-    The description of each key completes the sentence "it must be ...", in the form that it may have beside it.
+    Each field has a `Key` in its annotation, or a description that completes the sentence "it must be ...".
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=True)
 
 
-def written(form: str, unit: str = "") -> dict[str, JsonValue]:
-    """Return what a key has beside its description: how it is written, the description in place of {}, and its unit."""
-    return {"form": form, "unit": unit}
-
-
-def number(unit: str) -> dict[str, JsonValue]:
-    """Return what a number with a unit has beside its description."""
-    return written(f"{{}}, a number in {unit}", unit)
-
-
-def each(what: str, unit: str = "") -> dict[str, JsonValue]:
-    """Return what a number, or one for each of many, has beside its description."""
-    return written(f"{{}}, a number or one for each {what}", unit)
-
-
-NUMBER, WHOLE = written("{}, a number"), written("{}, a whole number")
-
-
-def beside(field: FieldInfo, key: str) -> str:
-    """Return the form or the unit of a field; empty where it has none."""
-    extra = field.json_schema_extra
-    return str(extra.get(key, "")) if isinstance(extra, dict) else ""
+def key_of(field: FieldInfo) -> Key:
+    """Return the key of a field; one without it has its description alone."""
+    return next((part for part in field.metadata if isinstance(part, Key)), Key(field.description or "", form=PLAIN))
 
 
 def expected(field: FieldInfo) -> str:
     """Say what a field must be, and how it is written."""
-    return (beside(field, "form") or "{}").format(field.description or "")
+    return key_of(field).expected
+
+
+def parts(annotation: Any) -> list[Any]:
+    """Return the kinds of value that an annotation accepts: the members of a union, or itself."""
+    if get_origin(annotation) is Annotated:
+        return parts(get_args(annotation)[0])
+    if get_origin(annotation) in (Union, UnionType):
+        return [part for member in get_args(annotation) for part in parts(member)]
+    return [annotation]
+
+
+def inner_table(annotation: Any) -> type["Table"] | None:
+    """Return the kind of table that a field holds, one or a list of them; None if it holds another value."""
+    for part in parts(annotation):
+        kind = get_args(part)[0] if get_origin(part) is list else part
+        if isinstance(kind, type) and not isinstance(kind, GenericAlias) and issubclass(kind, Table):
+            return kind
+    return None
 
 
 def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") -> AnyTable:
@@ -59,7 +59,7 @@ def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") 
     Raises
     ------
     InputError
-        If a key is unknown or missing, or a value is of the wrong kind; every one of them is told.
+        If a key is unknown or missing, or a value is of the wrong kind; the message lists all of them.
     """
     try:
         return model.model_validate(content)
@@ -69,7 +69,7 @@ def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") 
 
 
 def problems(error: ValidationError, content: Mapping[str, Any], model: type[Table]) -> list[str]:
-    """Say of each key at fault what is expected, in a sentence each; the branches of a union count once."""
+    """Return one sentence for each key at fault, with what is expected; the branches of a union count once."""
     sentences: dict[tuple[str, str], str] = {}
     for problem in error.errors():
         spot = _spot(problem["loc"], content, model)
@@ -93,7 +93,7 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
 
 @dataclass(frozen=True)
 class _Spot:
-    """Where in a file a problem lies; `key` is empty where it is the table itself."""
+    """The place of a problem in a file; `key` is empty where it is the table itself."""
 
     header: str
     key: str
@@ -102,7 +102,7 @@ class _Spot:
 
 
 def _spot(location: Sequence[str | int], content: Any, model: type[Table]) -> _Spot:
-    """Follow the location of a problem down to the last key that the file has a name for."""
+    """Follow the location of a problem down to the last key that has a name in the file."""
     spot, names = _Spot("", "", content, model), list[str]()
     numbers: list[str] = []
     rest = list(location)
@@ -110,7 +110,8 @@ def _spot(location: Sequence[str | int], content: Any, model: type[Table]) -> _S
         key = str(rest.pop(0))
         value = spot.value.get(key) if isinstance(spot.value, Mapping) else None
         field = spot.model.model_fields.get(key)
-        inner, many = (None, False) if field is None else _inner(field.annotation)
+        inner = None if field is None else inner_table(field.annotation)
+        many = field is not None and any(get_origin(part) is list for part in parts(field.annotation))
         if inner is None or not (rest or isinstance(value, Mapping)):
             return _Spot(spot.header, key, value, spot.model)
         names.append(key)
@@ -123,14 +124,3 @@ def _spot(location: Sequence[str | int], content: Any, model: type[Table]) -> _S
             value = value[place] if isinstance(value, Sequence) else None
         spot = _Spot(" ".join(numbers if many else [*numbers, header]), "", value, inner)
     return _Spot(spot.header.removesuffix(","), "", spot.value, spot.model)
-
-
-def _inner(annotation: Any) -> tuple[type[Table] | None, bool]:
-    """Return the kind of table that a field holds, if any, and whether it holds a list of them."""
-    if isinstance(annotation, type) and not isinstance(annotation, GenericAlias):
-        return (annotation, False) if issubclass(annotation, Table) else (None, False)
-    for part in get_args(annotation):
-        found, many = _inner(part)
-        if found is not None:
-            return found, many or get_origin(annotation) in (list, tuple)
-    return None, False

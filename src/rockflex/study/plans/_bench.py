@@ -16,12 +16,12 @@ from rockflex.study._arguments import (
     WORK_LIMIT,
     check_options,
     free_vibration_time,
-    hysteresis_of,
     properties_of,
     work_limit_of,
 )
 from rockflex.study._case import Case
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
+from rockflex.study._yielding import hysteresis_of
 from rockflex.study.plans._intensity import intensity_measures, scaled_measures
 from rockflex.study.plans._records import record_group
 from rockflex.study.plans._tables import RESULTS, Columns, Row, kinds_of, peaks_of
