@@ -48,6 +48,17 @@ class AdequacyTolerance:
     ------
     InputError
         If a value is negative or not a number.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> strict = rf.AdequacyTolerance(first_frequency=0.02, second_frequency=0.02)
+    >>> rf.adequacy(frame.rocking(), strict).model
+    '4DOF-S'
     """
 
     base_moment: float = 0.12
@@ -93,6 +104,19 @@ class Adequacy(Value):
         The tolerance used.
     reason : str
         Recommendation and the numbers behind it, in sentences.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> found = rf.adequacy(frame.rocking())
+    >>> found.enough
+    3
+    >>> found.base_moment_left.round(3)
+    array([0.043, 0.008, 0.002, 0.   , 0.   ])
     """
 
     base_moment: Float
@@ -172,6 +196,17 @@ def adequacy(
     References
     ----------
     Silva & Stojadinović 2024, Sections 3.4 and 4.1.1.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tower = rf.TaperedTower(
+    ...     height=200.0, base_radius=8.0, top_radius=4.0, wall=1.0, density=2400.0, elastic_modulus=25e9,
+    ...     damping_ratio=0.02,
+    ... )
+    >>> found = rf.adequacy(tower.rocking())
+    >>> found.model, found.model_for_shear
+    ('3DOF-S', None)
     """
     p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:

@@ -80,6 +80,18 @@ class RockingProperties(Value):
     ------
     InputError
         If a value is not finite or outside the range given above, or the lengths differ.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> props = rf.RockingProperties(
+    ...     omega=[6.28], effective_mass=[160e3], effective_height=[10.5], top_ordinate=[1.3],
+    ...     i_theta=22e6, l0r=1.8e6, m_tot=240e3, half_width=1.3, zeta=0.02,
+    ... )
+    >>> round(props.resisting_moment)
+    3060720
+    >>> round(props.with_half_width(2.0).resisting_moment)
+    4708800
     """
 
     omega: Float

@@ -65,6 +65,12 @@ def ricker_pulse(
     References
     ----------
     Ricker (1943), Geophysics 8(4); Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.ricker_pulse(amplitude=3.0, period=1.0, kind="symmetric")
+    GroundMotion('Ricker symmetric 3 m/s², T=1 s', 601 samples, dt=0.005 s, duration=3 s, pga=3 m/s²)
     """
     if not one_of(kind, ("antisymmetric", "symmetric")):
         raise InputError(f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.')
@@ -102,6 +108,12 @@ def one_sine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Ground
     ------
     InputError
         If `period` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.one_sine_pulse(amplitude=3.0, period=1.0)
+    GroundMotion('One sine 3 m/s², T=1 s', 201 samples, dt=0.005 s, duration=1 s, pga=3 m/s²)
     """
     n, step = _intervals("period", period, dt)
     return _pulse("One sine", amplitude, _sine(n, 1.0), step, f"T={period:g} s")
@@ -131,6 +143,12 @@ def one_cosine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Grou
     ------
     InputError
         If `period` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.one_cosine_pulse(amplitude=3.0, period=1.0)
+    GroundMotion('One cosine 3 m/s², T=1 s', 201 samples, dt=0.005 s, duration=1 s, pga=3 m/s²)
     """
     n, step = _intervals("period", period, dt)
     return _pulse("One cosine", amplitude, np.cos(2 * np.pi * np.arange(n + 1) / n), step, f"T={period:g} s")
@@ -157,6 +175,12 @@ def half_sine_pulse(amplitude: float, duration: float, dt: float = 0.005) -> Gro
     ------
     InputError
         If `duration` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.half_sine_pulse(amplitude=3.0, duration=0.5)
+    GroundMotion('Half sine 3 m/s², t=0.5 s', 101 samples, dt=0.005 s, duration=0.5 s, pga=3 m/s²)
     """
     n, step = _intervals("duration", duration, dt)
     return _pulse("Half sine", amplitude, _sine(n, 0.5), step, f"t={duration:g} s")
@@ -186,6 +210,13 @@ def rectangular_pulse(amplitude: float, duration: float, dt: float = 0.005) -> G
     ------
     InputError
         If `duration` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pulse = rf.rectangular_pulse(amplitude=3.0, duration=0.5)
+    >>> round(pulse.pgv, 3)
+    1.5
     """
     n, step = _intervals("duration", duration, dt)
     return _pulse("Rectangle", amplitude, np.ones(n + 1), step, f"t={duration:g} s")
@@ -226,6 +257,13 @@ def mavroeidis_papageorgiou_pulse(
     References
     ----------
     Mavroeidis & Papageorgiou (2003), Bull. Seism. Soc. Am. 93(3), 1099-1131, Eqs. 3 and 4.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pulse = rf.mavroeidis_papageorgiou_pulse(amplitude=1.0, period=2.0, gamma=1.5, nu=0.0)
+    >>> round(pulse.pgv, 3)
+    1.0
     """
     positive("period", period, "s")
     if not 1 < real_or_nan(gamma) < math.inf:
@@ -260,6 +298,12 @@ def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
     ------
     InputError
         If `duration` or `dt` is not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.quiet_motion(duration=10.0)
+    GroundMotion('Quiet t=10 s', 2001 samples, dt=0.005 s, duration=10 s, pga=0 m/s²)
     """
     n, step = _intervals("duration", duration, dt)
     return GroundMotion(np.zeros(n + 1), step, name=f"Quiet t={duration:g} s")
