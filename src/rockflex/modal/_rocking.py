@@ -65,11 +65,9 @@ class RockingProperties(Value):
     floors : FloorModes or None
         Floor displacements and forces of the same n modes, for floor quantities.
     top_height : float or None
-        Height in m above the base of the top, to which `top_ordinate` refers. Default: the highest floor. If None, the
-        total displacement of the top is not available.
+        Height in m of the top above the base. Default: the highest floor. If None, there is no total top displacement.
     base_mass : float or None
-        Mass m_0 of the base in kg, a part of `m_tot`. Default: `m_tot` minus the effective mass of all modes; None
-        (unknown) if modes are missing.
+        Mass m_0 of the base in kg. Default: `m_tot` minus the effective mass of all modes; None if modes are missing.
     tendons : tuple of Tendon
         Tendons that hold the base down; within the base, from -(B + e) to B - e.
     eccentricity : float
@@ -90,8 +88,6 @@ class RockingProperties(Value):
     ... )
     >>> round(props.resisting_moment)
     3060720
-    >>> round(props.with_half_width(2.0).resisting_moment)
-    4708800
     """
 
     omega: Float
