@@ -18,6 +18,7 @@ from rockflex.study import plans
 
 SPANS = re.compile(r"(``.*?``|`[^`]*`|\*[A-Z][A-Za-z ]+\*)", re.DOTALL)  # literals, links, titles of books
 PRIVATE = re.compile(r"rockflex\..*\._|rockflex\._")
+EXAMPLE = re.compile(r"(^>>> .*(?:\n.+)*)", re.MULTILINE)  # code and its output, up to a blank line
 COLON = "\x00"
 MARKUP = re.compile(r"([*|]|(?<=\w)_(?!\w))")
 
@@ -34,11 +35,17 @@ def escape(app: Sphinx, what: str, name: str, obj: object, options: object, line
                 "" if field.is_required() else f"; ``{field.get_default(call_default_factory=True)!r}`` by default"
             )
             lines += [key, f"    {expected(field)}{default}"]
-    # Literals may continue on the next line, so the text is split as a whole.
-    parts = SPANS.split("\n".join(lines))
+    pieces = EXAMPLE.split("\n".join(lines))
+    pieces[::2] = [_escaped(piece) for piece in pieces[::2]]
+    lines[:] = "".join(pieces).split("\n")
+
+
+def _escaped(text: str) -> str:
+    """Return prose with its symbols escaped; literals may continue on the next line, so the text is split as a whole."""
+    parts = SPANS.split(text)
     parts = [f"`{part}`" if part.startswith("`.") else part for part in parts]  # an attribute of the object just named
     parts[::2] = [MARKUP.sub(r"\\\1", part) for part in parts[::2]]
-    lines[:] = "".join(parts).split("\n")
+    return "".join(parts)
 
 
 def restore(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:

@@ -43,8 +43,8 @@ def put(kind, path):
 
 REMEDY = {
     "a folder": "Give a file in it.",
-    "a pipe": "Write what it gives to a file, and give that.",
-    "a device": "Write what it gives to a file, and give that.",
+    "a pipe": "Write its content to a file, and give that.",
+    "a device": "Write its content to a file, and give that.",
 }
 
 
@@ -126,9 +126,7 @@ def test_a_socket_and_what_is_not_there(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with socket.socket(socket.AF_UNIX) as end:
         end.bind("s")  # a long path is none for a socket
-        with pytest.raises(
-            rf.InputError, match=r"^s is a socket, but a regular file is expected\. Write what it gives"
-        ):
+        with pytest.raises(rf.InputError, match=r"^s is a socket, but a regular file is expected\. Write its content"):
             check_regular(Path("s"))
     assert irregular(tmp_path / "none") == ""
     (tmp_path / "file").touch()

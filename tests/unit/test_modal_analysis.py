@@ -169,7 +169,7 @@ GOOD = {"mass": [1.0, 2.0], "stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": 
         ),
         (
             {"stiffness": [[1.0, -2.0], [-2.0, 1.0]]},
-            r"stiffness must be positive definite.* smallest eigenvalue is -1 N/m .*largest is 3\)\. Hold",
+            r"stiffness must be positive definite.* smallest eigenvalue is -1 N/m .*largest is 3\)\. Fix",
         ),
         ({"stiffness": [[1.0, -1.0], [-1.0, 1.0]]}, r"stiffness must be positive definite"),
         ({"stiffness": np.zeros((2, 2))}, r"stiffness must be positive definite"),
@@ -177,7 +177,7 @@ GOOD = {"mass": [1.0, 2.0], "stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": 
         ({"heights": [6.0, 3.0]}, r"heights\[1\] = 3 m is not above heights\[0\] = 6 m\. Sort"),
         ({"heights": [3.0, 3.0]}, r"heights\[1\] = 3 m is not above heights\[0\] = 3 m"),
         ({"heights": [0.0, 3.0]}, r"heights must be positive.*heights\[0\] = 0 was given.*base_mass"),
-        ({"heights": []}, r"heights must hold at least one height in m, but none was given"),
+        ({"heights": []}, r"heights must contain at least one height in m, but none was given"),
         ({"heights": [3.0, np.nan]}, r"heights must be finite, but 1 of 2"),
         ({"n_modes": 0}, r"n_modes must be a whole number from 1 to 2, but 0 was given"),
         ({"n_modes": 3}, r"n_modes must be a whole number from 1 to 2, but 3 was given"),

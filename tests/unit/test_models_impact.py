@@ -207,7 +207,7 @@ def test_the_laws_of_the_library_are_values():
     ("arguments", "text"),
     [
         ((-0.1,), "The restitution e must lie from 0 to 1, but -0.1 was given."),
-        ((1.0000001,), "The restitution e must lie from 0 to 1, but 1.0000001 was given. It is the rotation velocity"),
+        ((1.0000001,), "The restitution e must lie from 0 to 1, but 1.0000001 was given. It is the ratio"),
         ((math.nan,), "e must be a finite number, but nan was given."),
         (("half",), "e must be a finite number, but 'half' was given."),
         ((None,), "e must be a finite number, but None was given."),

@@ -120,7 +120,7 @@ def test_the_mass_of_the_base_must_be_known():
         m_tot=1.6e5, half_width=1.0, zeta=0.02,
     )  # fmt: skip
     assert p.base_mass is None
-    with pytest.raises(rf.InputError, match=r"2DOF-S-R needs the mass above the base.*Give Rocking.* their base"):
+    with pytest.raises(rf.InputError, match=r"2DOF-S-R needs the mass above the base.*Give Rocking.* the base"):
         rf.simulate(p, MOTION, "2DOF-S-R")
     known = replace(p, base_mass=2e4)
     assert known.mass_left_out[0] == pytest.approx(4e4)

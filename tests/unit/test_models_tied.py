@@ -90,8 +90,7 @@ def test_a_spring_makes_any_model_of_one_mode_yield(label, named, complete):
             parse_model("5DOF-C-SI"),
             PROPERTIES,
             {},
-            "Model 5DOF-C-SI needs 4 modes, but the structure has 3. Give more modes, or use MDOF-C-SI for all there "
-            "are.",
+            "Model 5DOF-C-SI needs 4 modes, but the structure has 3. Give more modes, or use MDOF-C-SI for all modes.",
         ),
         (
             Model(1, complete=True),

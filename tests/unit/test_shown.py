@@ -97,11 +97,12 @@ HUGE = 10**400
         (lambda: path_of("path", 1), "path must be a path, but int was given."),
         (
             lambda: path_of("path", "a\0b"),
-            "path must be that of a file, but 'a\\x00b' was given: a path holds no null character.",
+            "path must be a valid path, but 'a\\x00b' was given: a path cannot contain a null character.",
         ),
         (
             lambda: path_of("path", "\ud800"),
-            "path must be that of a file, but '\\ud800' was given: it holds a character that no path has.",
+            "path must be a valid path, but '\\ud800' was given: it contains a character that is not allowed in a "
+            "path.",
         ),
     ],
 )
@@ -112,5 +113,5 @@ def test_messages(check: object, message: str) -> None:
 
 
 def test_a_path_too_long() -> None:
-    with pytest.raises(InputError, match=r"^path must be that of a file, but 'xxx.*x' was given: File name too long"):
+    with pytest.raises(InputError, match=r"^path must be a valid path, but 'xxx.*x' was given: File name too long"):
         path_of("path", "x" * 10**5)

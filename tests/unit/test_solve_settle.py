@@ -140,7 +140,7 @@ def test_undamped_modes_may_add_up_for_ever():
             Status.STALLED,
             0.25,
             (
-                "The motion of 2DOF-S cannot be followed in the sample before 0.14 s: no step is short enough. ",
+                "The motion of 2DOF-S cannot be integrated in the sample before 0.14 s: no step is short enough. ",
                 "Check the parameters.",
             ),
         ),
@@ -149,7 +149,7 @@ def test_undamped_modes_may_add_up_for_ever():
             0.5,
             (
                 "The impact law VVELSimplified() returns energy in the sample before 0.14 s. ",
-                "A law can only lose energy: mend its `after`, or lower its restitution.",
+                "A law can only lose energy: correct its `after`, or lower its restitution.",
             ),
         ),
     ],

@@ -71,7 +71,7 @@ def test_frozen_and_read_only():
     [
         ({"masses": [2.0]}, r"one mass for each of the 2 heights, but 1 were given"),
         ({"masses": [2.0, 0.0]}, r"mass must be positive, but mass\[1\] = 0 kg"),
-        ({"masses": [[1.0, 1.0], [1.0, 1.0]]}, r"mass must be positive definite.*Condense massless freedoms"),
+        ({"masses": [[1.0, 1.0], [1.0, 1.0]]}, r"mass must be positive definite.*Condense massless degrees of freedom"),
         ({"stiffness": np.eye(3)}, r"stiffness must have the shape \(2, 2\), but an array of shape \(3, 3\)"),
         ({"stiffness": [[30.0, -10.0], [-9.0, 10.0]]}, r"stiffness must be symmetric.*\[0, 1\] = -10 and"),
         ({"stiffness": [[1.0, 0.0], [0.0, -4.0]]}, r"smallest eigenvalue is -4 N/m \(the largest is 1\)"),

@@ -92,7 +92,9 @@ def test_a_law_that_returns_energy(model):
         until = 0.02 * np.ceil(first / 0.02)
         start = f"The impact law Law() returns energy in the sample before {until:.6g} s. The state [D, D', θ, θ']"
         assert str(caught.value).startswith(start)
-        assert str(caught.value).endswith("]. A law can only lose energy: mend its `after`, or lower its restitution.")
+        assert str(caught.value).endswith(
+            "]. A law can only lose energy: correct its `after`, or lower its restitution."
+        )
 
 
 def test_a_restitution_may_return_energy_in_a_complete_model():

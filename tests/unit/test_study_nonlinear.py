@@ -126,7 +126,7 @@ def test_a_motion_that_cannot_be_followed(model, label, zeros, options):
     """Accelerations beyond all numbers: the error names the sample and the state."""
     shaken = GroundMotion(np.array([0.0, 1e160, -1e160, 0.0]), 0.02)
     text = (
-        f"The motion of {label} cannot be followed in the sample before 0.02 s: no step is short enough. The state "
+        f"The motion of {label} cannot be integrated in the sample before 0.02 s: no step is short enough. The state "
         f"[D, D', θ, θ'] there is [{', '.join('0' * zeros)}]. Check the parameters."
     )
     with pytest.raises(SolverError) as caught:

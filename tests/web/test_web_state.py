@@ -165,7 +165,7 @@ LUMPED = {"stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": [3.0, 6.0], "base_
         (
             {"lumped": LUMPED | {"masses": [1.0], "damping_ratio": 0.0}},
             "structure.lumped.masses",
-            "mass must hold one mass for each of the 2 heights, but 1 were given.",
+            "mass must contain one mass for each of the 2 heights, but 1 were given.",
         ),
         (
             {"lumped": LUMPED | {"masses": [1.0, 1.0], "damping_ratio": [0.5, 0.98, 0.0]}},

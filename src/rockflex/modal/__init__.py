@@ -1,6 +1,7 @@
 """From mass, stiffness and heights to modes, and from modes to the parameters of a rocking structure."""
 
-from rockflex.modal._adequacy import Adequacy, AdequacyTolerance, adequacy
+from rockflex.modal._adequacy import Adequacy, adequacy
+from rockflex.modal._adequacy_tolerance import AdequacyTolerance
 from rockflex.modal._analysis import ModalProperties, modal_properties
 from rockflex.modal._assembly import rocking_properties
 from rockflex.modal._floors import FloorModes

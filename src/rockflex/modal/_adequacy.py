@@ -1,6 +1,6 @@
 """How many modes a rocking structure needs."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal._adequacy_frequencies import frequency_errors
+from rockflex.modal._adequacy_tolerance import AdequacyTolerance
 from rockflex.modal._rocking import RockingProperties
 
 Float = NDArray[np.float64]
@@ -19,46 +20,6 @@ _LEFT_OUT = (
     "The horizontal ground reaction ΣF_x leaves no mass out: the mass of missing modes moves with the base, as it does "
     "in the base shear of models that end in -R."
 )
-
-
-@dataclass(frozen=True)
-class AdequacyTolerance:
-    """What a surrogate model may leave out, as fractions; infinity disables a criterion.
-
-    The defaults separate the models that Silva & Stojadinović 2024 consider sufficient from those that they do not.
-
-    Attributes
-    ----------
-    base_moment : float
-        Fraction of the base moment L_0^r left out. Sufficient: 0.11 (one mode of 15 stories in flexure, Section 3.4)
-        and 0.06 (two of the chimney, Section 4.1.1). Insufficient: 0.13 (one of specimen S1, Section 3.1) and 0.18 (one
-        of the chimney).
-    first_frequency : float
-        Relative error by which the first uplifted frequency is too high. Sufficient: 0.166 (2DOF-S, 15 stories in
-        flexure, h*_1/B = 10: "quite good", Section 3.4). Insufficient: 1.15 (the same in shear: "poor"). The paper also
-        finds 2DOF-S likely satisfactory in shear below h*_1/B = 5, where the error reaches 0.44; use 0.45 to agree.
-    second_frequency : float
-        The same for the second frequency, with two modes or more. Sufficient: 0.20 (3DOF-S, chimney) and 0.03 (15
-        stories in flexure). Insufficient: 0.79 (15 stories in shear: "quite inaccurate").
-    base_shear : float
-        Fraction of the mass left out. Sufficient: 0.08 (specimen 2Hz-Long Base). Insufficient: 0.29 (two modes of the
-        chimney, with 19 % of the base shear missing). EN 1998-1:2004, 4.3.3.3.1, also requires 0.1.
-
-    Raises
-    ------
-    InputError
-        If a value is negative or not a number.
-    """
-
-    base_moment: float = 0.12
-    first_frequency: float = 0.17
-    second_frequency: float = 0.25
-    base_shear: float = 0.10
-
-    def __post_init__(self) -> None:
-        for each in fields(self):
-            value = positive(each.name, getattr(self, each.name), "fractions (5 % is 0.05)", zero=True, infinite=True)
-            vars(self)[each.name] = value
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +54,19 @@ class Adequacy(Value):
         The tolerance used.
     reason : str
         Recommendation and the numbers behind it, in sentences.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> found = rf.adequacy(frame.rocking())
+    >>> found.enough
+    3
+    >>> found.base_moment_left.round(3)
+    array([0.043, 0.008, 0.002, 0.   , 0.   ])
     """
 
     base_moment: Float
@@ -172,6 +146,17 @@ def adequacy(
     References
     ----------
     Silva & Stojadinović 2024, Sections 3.4 and 4.1.1.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tower = rf.TaperedTower(
+    ...     height=200.0, base_radius=8.0, top_radius=4.0, wall=1.0, density=2400.0, elastic_modulus=25e9,
+    ...     damping_ratio=0.02,
+    ... )
+    >>> found = rf.adequacy(tower.rocking())
+    >>> found.model, found.model_for_shear
+    ('3DOF-S', None)
     """
     p = instance("properties", properties, RockingProperties)
     if p.n_modes == 0:

@@ -42,6 +42,19 @@ class ModalProperties(Value):
         the largest ordinate), the largest ordinate is 1.
     heights : ndarray, shape (N,)
         Heights of the masses above the base in m.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> modes = frame.modal()
+    >>> modes.omega.round(2)
+    array([ 6.28, 18.34, 28.91, 37.14, 42.36])
+    >>> modes.truncated(2).effective_height.round(2)
+    array([10.54, -3.61])
     """
 
     omega: Float
@@ -113,6 +126,15 @@ def modal_properties(
     References
     ----------
     Silva & Stojadinović 2024, Section 2.1: the definitions after Eq. 12.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> modes = rf.modal_properties(mass=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0])
+    >>> modes.period.round(3)
+    array([0.719, 0.275])
+    >>> modes.effective_mass.round()
+    array([37889.,  2111.])
     """
     h = checked_heights(heights)
     m = checked_mass(mass, h.size)

@@ -64,6 +64,15 @@ def rocking_properties(
     References
     ----------
     Silva & Stojadinović 2024, Table 2 and Eqs. 13 and 14.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> mass, stiffness, heights = [20e3, 20e3], [[8e6, -4e6], [-4e6, 4e6]], [3.0, 6.0]
+    >>> modes = rf.modal_properties(mass, stiffness, heights)
+    >>> props = rf.rocking_properties(modes, mass, heights, base_mass=20e3, half_width=0.6, damping_ratio=0.02)
+    >>> round(props.resisting_moment)
+    353160
     """
     h = checked_heights(heights)
     if not np.array_equal(h, instance("modal", modal, ModalProperties).heights):

@@ -30,6 +30,13 @@ class PinnedBeam(Value):
         an uplifted structure.
     roots : ndarray, shape (n + 1,)
         λ of the rotation and of the vibrations: ω = λ² √(EI/(m L⁴)) in flexure, λ √(GA/(m L²)) in shear.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> beam = rf.pinned_beam("shear", spring=1.0)
+    >>> round(beam.rotation_ratio, 3), beam.ratio.round(3)
+    (0.742, array([2.931, 1.653]))
     """
 
     rotation_ratio: float
@@ -61,6 +68,13 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     References
     ----------
     The limit k_r → 0 is that of Wiebe & Christopoulos, cited in Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> beam = rf.pinned_beam("flexure")
+    >>> beam.ratio.round(3)
+    array([4.385, 2.268])
     """
     if not one_of(behaviour, ("flexure", "shear")):
         raise InputError(

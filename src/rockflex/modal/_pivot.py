@@ -43,6 +43,13 @@ class Pivot:
     nominal_overturning_rotation : float
         Nominal limit 0.7 atan(`arm`/h*_1) of the rotation in rad (Silva & Stojadinović 2024, Section 3.3); for a rigid
         block with L_0^r/m_tot in place of h*_1.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pivot = rf.rigid_block(slenderness=0.25, half_diagonal=3.0).pivot(1)
+    >>> round(pivot.arm, 3), round(pivot.balance_rotation, 3)
+    (0.742, 0.255)
     """
 
     side: int

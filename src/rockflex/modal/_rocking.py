@@ -65,11 +65,9 @@ class RockingProperties(Value):
     floors : FloorModes or None
         Floor displacements and forces of the same n modes, for floor quantities.
     top_height : float or None
-        Height in m above the base of the top, to which `top_ordinate` refers. Default: the highest floor. If None, the
-        total displacement of the top is not available.
+        Height in m of the top above the base. Default: the highest floor. If None, there is no total top displacement.
     base_mass : float or None
-        Mass m_0 of the base in kg, a part of `m_tot`. Default: `m_tot` minus the effective mass of all modes; None
-        (unknown) if modes are missing.
+        Mass m_0 of the base in kg. Default: `m_tot` minus the effective mass of all modes; None if modes are missing.
     tendons : tuple of Tendon
         Tendons that hold the base down; within the base, from -(B + e) to B - e.
     eccentricity : float
@@ -80,6 +78,16 @@ class RockingProperties(Value):
     ------
     InputError
         If a value is not finite or outside the range given above, or the lengths differ.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> props = rf.RockingProperties(
+    ...     omega=[6.28], effective_mass=[160e3], effective_height=[10.5], top_ordinate=[1.3],
+    ...     i_theta=22e6, l0r=1.8e6, m_tot=240e3, half_width=1.3, zeta=0.02,
+    ... )
+    >>> round(props.resisting_moment)
+    3060720
     """
 
     omega: Float

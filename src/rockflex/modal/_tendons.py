@@ -34,6 +34,13 @@ class Tendon:
     ------
     InputError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tendon = rf.Tendon(initial_force=500e3, stiffness=20e6, yield_force=900e3)
+    >>> round(tendon.initial_force / tendon.yield_force, 3)
+    0.556
     """
 
     initial_force: float

@@ -45,6 +45,17 @@ class UpliftedModes(Value):
         Circular frequency in rad/s of that mode if tendons make it stable, otherwise zero.
     growth_shape : ndarray, shape (n + 1,)
         (θ, D_1 .. D_n) of that mode, with θ = 1 rad.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> modes = rf.uplifted_modes(frame.rocking(2))
+    >>> modes.omega.round(2), modes.damping_ratio.round(3)
+    (array([17.45, 43.9 ]), array([0.024, 0.131]))
     """
 
     omega: Float
@@ -89,6 +100,17 @@ def uplifted_modes(
     References
     ----------
     Silva & Stojadinović 2024, Eq. 23 and Section 3.4 (Fig. 10).
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> modes = rf.uplifted_modes(frame.rocking(2))
+    >>> modes.ratio.round(2)
+    array([2.78, 2.39])
     """
     p = instance("properties", properties, RockingProperties)
     p = p if n_modes is None else p.truncated(n_modes)
@@ -193,6 +215,18 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     References
     ----------
     Silva & Stojadinović 2024, Section 3.4 (Fig. 12).
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> props = frame.rocking(1)
+    >>> omega = rf.uplifted_modes(props).omega
+    >>> bool(abs(rf.frequency_equation(props, omega)[0]) < 1e-6 * props.i_theta * omega[0] ** 2)
+    True
     """
     pivot = _pivot(instance("properties", properties, RockingProperties), side)
     frequencies = float_array(omega)

@@ -27,6 +27,18 @@ class ImpactLaw(Protocol):
     ----------
     keeps, loses : str
         Descriptions of the quantities that the law conserves and of those that it loses.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> class Half:
+    ...     keeps = "half of every modal velocity"
+    ...     loses = "the rotation, and the other half"
+    ...     def after(self, properties, modal_velocity, rotation_velocity):
+    ...         return 0.5 * modal_velocity, 0.0
+    ...
+    >>> isinstance(Half(), rf.ImpactLaw)
+    True
     """
 
     @property
@@ -44,7 +56,18 @@ class ImpactLaw(Protocol):
 
 @dataclass(frozen=True)
 class VVELSimplified:
-    """Vertical velocity energy loss for each mass separately (Silva & Stojadinović 2024, Eqs. 25 and 32)."""
+    """Vertical velocity energy loss for each mass separately (Silva & Stojadinović 2024, Eqs. 25 and 32).
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> column = rf.CantileverWithTipMass(
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ... )
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=1.0)
+    >>> rf.simulate(column, pulse, "2DOF-C", impact=rf.VVELSimplified()).status
+    'rocking'
+    """
 
     keeps = "the horizontal velocity of every mass, as far as the modes can follow"
     loses = "the rotation: its vertical velocities, and what the modes cannot follow"
@@ -62,6 +85,16 @@ class VVELComplete:
 
     Eq. 19 is a single equation for all modes. The modal velocities of Eq. 25 are scaled by a common factor to satisfy
     it. For one mode this is Eq. 29 with the sign of Eq. 25; if all modes are kept, the factor is one.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> column = rf.CantileverWithTipMass(
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ... )
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=1.0)
+    >>> rf.simulate(column, pulse, "2DOF-S", impact=rf.VVELComplete()).status
+    'rocking'
     """
 
     keeps = "the horizontal kinetic energy of all masses together"
@@ -98,6 +131,15 @@ class Restitution:
     ------
     InputError
         If a value is out of range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
+    >>> start = rf.InitialState(rotation=0.1)
+    >>> response = rf.simulate(block, rf.quiet_motion(10.0), "rigid", impact=rf.Restitution(0.9), initial=start)
+    >>> response.n_impacts
+    25
     """
 
     e: float

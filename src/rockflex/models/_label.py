@@ -53,6 +53,15 @@ class Model:
     ------
     InputError
         If a value has the wrong type, or the combination is not a model.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> model = rf.Model(n_modes=1)
+    >>> model.label
+    '2DOF-S'
+    >>> rf.Model(n_modes=2, complete=True, closure="SI").label
+    '3DOF-C-SI'
     """
 
     n_modes: int | None = None

@@ -8,7 +8,6 @@ from rockflex.motion._measure import Measure
 from rockflex.motion._measures import MEASURES, intensities, intensity, record_measures
 from rockflex.motion._pulses import (
     half_sine_pulse,
-    mavroeidis_papageorgiou_pulse,
     one_cosine_pulse,
     one_sine_pulse,
     quiet_motion,
@@ -20,6 +19,7 @@ from rockflex.motion._readers import read_motion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._shaking import Shaking
 from rockflex.motion._suite import Suite
+from rockflex.motion._velocity_pulse import mavroeidis_papageorgiou_pulse
 
 __all__ = [
     "MEASURES",

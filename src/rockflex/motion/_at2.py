@@ -47,6 +47,14 @@ def read_at2(path: str | Path) -> GroundMotion:
     InputError
         If the file is missing, empty or binary, NPTS or DT is not found, there are fewer or more values than
         NPTS, a value is not a finite number, the header states another unit than g, or the peak exceeds 5 g.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import numpy as np
+    >>> np.savetxt("DEMO.AT2", [0.0, 0.1, -0.2, 0.0], header="NPTS= 4, DT= .0100 SEC", comments="")
+    >>> rf.read_at2("DEMO.AT2")
+    GroundMotion('DEMO', 4 samples, dt=0.01 s, duration=0.03 s, pga=1.962 m/s²)
     """
     file = path_of("path", path)
     return parse_at2(file, read_lines(file))

@@ -33,7 +33,14 @@ NAMES = (
 
 
 def suite_names() -> tuple[str, ...]:
-    """Return the names of the embedded suites, for `load_suite`."""
+    """Return the names of the embedded suites, for `load_suite`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.suite_names()[0]
+    'fema-p695-far-field'
+    """
     return NAMES
 
 
@@ -71,6 +78,15 @@ def load_suite(name: str) -> Suite:
     References
     ----------
     FEMA P-695 (2009), Quantification of Building Seismic Performance Factors, Appendix A.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> suite = rf.load_suite("fema-p695-far-field")
+    >>> suite
+    Suite('fema-p695-far-field', 44 motions: 'FF-1-a' ... 'FF-22-b')
+    >>> suite["FF-12-a"]
+    GroundMotion('FF-12-a', 11186 samples, dt=0.0025 s, duration=27.9625 s, pga=2.775 m/s²)
     """
     if not one_of(name, NAMES):
         near = get_close_matches(shown(name), NAMES, n=1)

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import finite, one_of, positive, real_or_nan
+from rockflex._checks import finite, one_of, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
@@ -65,12 +65,18 @@ def ricker_pulse(
     References
     ----------
     Ricker (1943), Geophysics 8(4); Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.ricker_pulse(amplitude=3.0, period=1.0, kind="symmetric")
+    GroundMotion('Ricker symmetric 3 m/s², T=1 s', 601 samples, dt=0.005 s, duration=3 s, pga=3 m/s²)
     """
     if not one_of(kind, ("antisymmetric", "symmetric")):
         raise InputError(f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.')
     positive("period", period, "s")
     periods = 2.0 if kind == "antisymmetric" else 1.5
-    n, step = _intervals("period", periods * period, dt)
+    n, step = intervals("period", periods * period, dt)
     turns = np.arange(-n, n + 1) * (periods / n)
     if kind == "symmetric":
         u2 = 2 * (np.pi * turns) ** 2
@@ -78,7 +84,7 @@ def ricker_pulse(
     else:
         x = 2 * np.pi / math.sqrt(3) * turns
         shape = x * (x**2 - 3) * np.exp(-(x**2) / 2) / _BETA
-    return _pulse(f"Ricker {kind}", amplitude, shape, step, f"T={period:g} s")
+    return named_pulse(f"Ricker {kind}", amplitude, shape, step, f"T={period:g} s")
 
 
 def one_sine_pulse(amplitude: float, period: float, dt: float = 0.005) -> GroundMotion:
@@ -102,9 +108,15 @@ def one_sine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Ground
     ------
     InputError
         If `period` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.one_sine_pulse(amplitude=3.0, period=1.0)
+    GroundMotion('One sine 3 m/s², T=1 s', 201 samples, dt=0.005 s, duration=1 s, pga=3 m/s²)
     """
-    n, step = _intervals("period", period, dt)
-    return _pulse("One sine", amplitude, _sine(n, 1.0), step, f"T={period:g} s")
+    n, step = intervals("period", period, dt)
+    return named_pulse("One sine", amplitude, _sine(n, 1.0), step, f"T={period:g} s")
 
 
 def one_cosine_pulse(amplitude: float, period: float, dt: float = 0.005) -> GroundMotion:
@@ -131,9 +143,15 @@ def one_cosine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Grou
     ------
     InputError
         If `period` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.one_cosine_pulse(amplitude=3.0, period=1.0)
+    GroundMotion('One cosine 3 m/s², T=1 s', 201 samples, dt=0.005 s, duration=1 s, pga=3 m/s²)
     """
-    n, step = _intervals("period", period, dt)
-    return _pulse("One cosine", amplitude, np.cos(2 * np.pi * np.arange(n + 1) / n), step, f"T={period:g} s")
+    n, step = intervals("period", period, dt)
+    return named_pulse("One cosine", amplitude, np.cos(2 * np.pi * np.arange(n + 1) / n), step, f"T={period:g} s")
 
 
 def half_sine_pulse(amplitude: float, duration: float, dt: float = 0.005) -> GroundMotion:
@@ -157,9 +175,15 @@ def half_sine_pulse(amplitude: float, duration: float, dt: float = 0.005) -> Gro
     ------
     InputError
         If `duration` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.half_sine_pulse(amplitude=3.0, duration=0.5)
+    GroundMotion('Half sine 3 m/s², t=0.5 s', 101 samples, dt=0.005 s, duration=0.5 s, pga=3 m/s²)
     """
-    n, step = _intervals("duration", duration, dt)
-    return _pulse("Half sine", amplitude, _sine(n, 0.5), step, f"t={duration:g} s")
+    n, step = intervals("duration", duration, dt)
+    return named_pulse("Half sine", amplitude, _sine(n, 0.5), step, f"t={duration:g} s")
 
 
 def rectangular_pulse(amplitude: float, duration: float, dt: float = 0.005) -> GroundMotion:
@@ -186,59 +210,16 @@ def rectangular_pulse(amplitude: float, duration: float, dt: float = 0.005) -> G
     ------
     InputError
         If `duration` or `dt` is not positive, or `amplitude` not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pulse = rf.rectangular_pulse(amplitude=3.0, duration=0.5)
+    >>> round(pulse.pgv, 3)
+    1.5
     """
-    n, step = _intervals("duration", duration, dt)
-    return _pulse("Rectangle", amplitude, np.ones(n + 1), step, f"t={duration:g} s")
-
-
-def mavroeidis_papageorgiou_pulse(
-    amplitude: float, period: float, gamma: float, nu: float, dt: float = 0.005
-) -> GroundMotion:
-    """Near-fault velocity pulse: a cosine under a raised-cosine envelope, differentiated in closed form.
-
-    With τ from the centre, |τ| <= γ T_p/2, and w = 2π τ/T_p, the velocity is
-    v = (A/2) [1 + cos(w/γ)] cos(w + ν) and the acceleration
-    a = -(π A/(γ T_p)) {sin(w/γ) cos(w + ν) + γ [1 + cos(w/γ)] sin(w + ν)}.
-
-    Parameters
-    ----------
-    amplitude : float
-        Amplitude A of the velocity in m/s.
-    period : float
-        Prevailing period T_p = 1/f_p in s.
-    gamma : float
-        Oscillatory character γ > 1: the length of the pulse in periods.
-    nu : float
-        Phase ν in rad: 0 for a velocity symmetric about the centre, ±π/2 for an antisymmetric one.
-    dt : float
-        Largest allowed sampling step in s.
-
-    Returns
-    -------
-    GroundMotion
-        The sampled acceleration, γ T_p long.
-
-    Raises
-    ------
-    InputError
-        If `period` or `dt` is not positive, `gamma` not above 1, or `amplitude` or `nu` not finite.
-
-    References
-    ----------
-    Mavroeidis & Papageorgiou (2003), Bull. Seism. Soc. Am. 93(3), 1099-1131, Eqs. 3 and 4.
-    """
-    positive("period", period, "s")
-    if not 1 < real_or_nan(gamma) < math.inf:
-        raise InputError(f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3.")
-    finite("nu", nu, "rad")
-    n, step = _intervals("period", gamma * period, dt)
-    envelope = np.pi * np.linspace(-1, 1, n + 1)
-    carrier = gamma * envelope + nu
-    rate = np.sin(envelope) * np.cos(carrier) + gamma * (1 + np.cos(envelope)) * np.sin(carrier)
-    with np.errstate(over="ignore", invalid="ignore"):  # samples that are not finite are rejected later
-        shape = -np.pi / (gamma * period) * rate
-    detail = f"T={period:g} s, gamma={gamma:g}, nu={nu:g}"
-    return _pulse("Mavroeidis-Papageorgiou", amplitude, shape, step, detail, unit="m/s")
+    n, step = intervals("duration", duration, dt)
+    return named_pulse("Rectangle", amplitude, np.ones(n + 1), step, f"t={duration:g} s")
 
 
 def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
@@ -260,12 +241,19 @@ def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
     ------
     InputError
         If `duration` or `dt` is not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.quiet_motion(duration=10.0)
+    GroundMotion('Quiet t=10 s', 2001 samples, dt=0.005 s, duration=10 s, pga=0 m/s²)
     """
-    n, step = _intervals("duration", duration, dt)
+    n, step = intervals("duration", duration, dt)
     return GroundMotion(np.zeros(n + 1), step, name=f"Quiet t={duration:g} s")
 
 
-def _intervals(name: str, length: float, dt: float) -> tuple[int, float]:
+def intervals(name: str, length: float, dt: float) -> tuple[int, float]:
+    """Return the number of intervals of a pulse and the sampling step in s."""
     length, dt = positive(name, length, "s"), positive("dt", dt, "s")
     # Two intervals at least: a motion has three samples or more.
     if length / dt > LONGEST:
@@ -282,7 +270,8 @@ def _sine(n: int, turns: float) -> Float:
     return shape
 
 
-def _pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²") -> GroundMotion:
+def named_pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²") -> GroundMotion:
+    """Return the motion of a shape times an amplitude, named after both."""
     amplitude = finite("amplitude", amplitude, unit)
     with np.errstate(over="ignore"):  # samples that are not finite are rejected later
         samples = amplitude * shape

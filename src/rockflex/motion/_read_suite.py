@@ -16,7 +16,7 @@ from rockflex.motion._suite import Suite
 OnError = Literal["raise", "skip"]
 
 SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
-TOLD = 10  # files whose errors are reported in full; beyond these only the names are listed
+REPORTED = 10  # files whose errors are reported in full; beyond these only the names are listed
 NAMES = 50_000  # most characters of a message that lists every file
 
 
@@ -57,6 +57,15 @@ def read_suite(
     -----
     RecordWarning
         If a vertical component, or a file that cannot be read, is left out.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import numpy as np
+    >>> np.savetxt("a.txt", [0.0, 0.1, 0.0])
+    >>> np.savetxt("b.txt", [0.0, 0.2, 0.0])
+    >>> rf.read_suite(["a.txt", "b.txt"], units="g", dt=0.01).names
+    ('a', 'b')
     """
     if isinstance(paths, str | Path):
         name, files = _folder(path_of("paths", paths))
@@ -89,12 +98,12 @@ def read_files(
     vertical = [file for file, motion in motions.items() if is_vertical(motion)]
     horizontal = {file: motion for file, motion in motions.items() if not is_vertical(motion)}
     if faults:
-        told = _told(faults, len(files))
+        message = _fault_message(faults, len(files))
         if on_error == "raise" or not motions:
-            told += f" {skip} continues with the other files." if motions else ""
-            field = next((name for name in fields[:TOLD] if name in ("units", "dt")), None)
-            raise InputError(told, longest=NAMES, field=field)
-        warnings.warn(f"Left out: {told}", RecordWarning, stacklevel=3)
+            message += f" {skip} continues with the other files." if motions else ""
+            field = next((name for name in fields[:REPORTED] if name in ("units", "dt")), None)
+            raise InputError(message, longest=NAMES, field=field)
+        warnings.warn(f"Left out: {message}", RecordWarning, stacklevel=3)
     if vertical:
         names = ", ".join(file.name for file in vertical)
         components = f"{len(vertical)} vertical component{'s' * (len(vertical) > 1)}"
@@ -129,8 +138,8 @@ def _folder(folder: Path) -> tuple[str, list[Path]]:
     return folder.resolve().name, folder_files(folder)
 
 
-def _told(faults: dict[Path, str], n_files: int) -> str:
+def _fault_message(faults: dict[Path, str], n_files: int) -> str:
     """List every file that cannot be read, with the errors of the first few."""
-    shown, others = list(faults.values())[:TOLD], [str(file) for file in list(faults)[TOLD:]]
-    told = " ".join(shown) if n_files == 1 else f"{len(faults)} of {n_files} files cannot be read. {' '.join(shown)}"
-    return f"{told} The others: {', '.join(others)}." if others else told
+    shown, others = list(faults.values())[:REPORTED], [str(file) for file in list(faults)[REPORTED:]]
+    message = " ".join(shown) if n_files == 1 else f"{len(faults)} of {n_files} files cannot be read. {' '.join(shown)}"
+    return f"{message} The others: {', '.join(others)}." if others else message

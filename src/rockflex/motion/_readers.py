@@ -42,6 +42,14 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
         If the file is missing, empty or binary; `units` or `dt` is missing, contradicts the file or is not
         valid; a value is not a finite number; rows differ in length; time steps are not equal and positive;
         or the peak exceeds 5 g, which indicates a wrong unit. A file is never read in part.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import numpy as np
+    >>> np.savetxt("record.txt", [[0.0, 0.0], [0.01, 0.1], [0.02, 0.0]])  # s, g
+    >>> rf.read_motion("record.txt", units="g")
+    GroundMotion('record', 3 samples, dt=0.01 s, duration=0.02 s, pga=0.981 m/s²)
     """
     if units is not None and not one_of(units, UNITS):
         raise InputError(

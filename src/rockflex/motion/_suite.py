@@ -31,6 +31,14 @@ class Suite(Value, Sequence[GroundMotion]):
     ------
     InputError
         If there is no motion, an element is not a motion, or a name occurs twice.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pulses = [rf.ricker_pulse(2.0, period) for period in (0.5, 1.0)]
+    >>> suite = rf.Suite(pulses, name="pulses")
+    >>> len(suite), suite[0].pga == pulses[0].pga
+    (2, True)
     """
 
     motions: tuple[GroundMotion, ...]

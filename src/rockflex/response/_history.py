@@ -37,6 +37,19 @@ class History(Value):
     ------
     InputError
         If `nodes` has another shape or a value that is not finite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> column = rf.CantileverWithTipMass(
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ... )
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=1.0)
+    >>> history = rf.simulate(column, pulse, "2DOF-S", output="history", free_vibration=5.0).history
+    >>> history.uplift_times.round(3)
+    array([0.342, 1.28 , 3.363, 5.313])
+    >>> float(abs(history.rotation).max().round(4))
+    0.0395
     """
 
     model: RockingModel

@@ -73,6 +73,16 @@ class Beam(Assembled, Value):
     ------
     InputError
         If a value is outside its range, a table does not reach the top, or an argument does not apply to the method.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> beam = rf.Beam(
+    ...     height=20.0, mass=([0.0, 20.0], [800.0, 400.0]), bending_stiffness=2e9, half_width=1.0,
+    ...     damping_ratio=0.02, n_modes=3,
+    ... )
+    >>> beam.modal().period.round(3)
+    array([0.349, 0.06 , 0.022])
     """
 
     height: float

@@ -29,6 +29,13 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
     ------
     InputError
         If a value is out of range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
+    >>> round(block.half_width, 3), round(block.resisting_moment, 3)
+    (0.742, 7.281)
     """
     alpha = within("slenderness", slenderness, 0.5 * math.pi, "rad")
     if alpha <= 0.0:

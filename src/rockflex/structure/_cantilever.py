@@ -46,6 +46,17 @@ class CantileverWithTipMass(Assembled, Value):
     ------
     InputError
         If a value is outside its range, or the structure has fewer modes than `n_modes`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> column = rf.CantileverWithTipMass(
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ... )
+    >>> column.modal().period.round(3)
+    array([1.814])
+    >>> round(column.rocking().resisting_moment)
+    588600
     """
 
     height: float

@@ -31,6 +31,17 @@ class Eccentric:
     ------
     InputError
         If the eccentricity is not a number or not within the base, or `structure` is not a structure.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> props = rf.Eccentric(frame, eccentricity=0.2).rocking()
+    >>> round(props.pivot(1).arm, 3), round(props.pivot(-1).arm, 3)
+    (1.118, 1.518)
     """
 
     structure: Based

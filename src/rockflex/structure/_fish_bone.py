@@ -51,6 +51,18 @@ class FishBone(Assembled, Value):
     -----
     A number in place of an array applies to all stories. With equal stories, EI_i = 2 EI_c and
     beam_stiffness = 12 ρ EI_i/L_i it is the same as `Frame`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.FishBone(
+    ...     story_heights=[4.0, 3.0], masses=[50e3, 40e3], column_stiffness=[2e8, 1.5e8], beam_stiffness=5e8,
+    ...     base_mass=50e3, half_width=1.5, damping_ratio=0.02,
+    ... )
+    >>> frame.height
+    7.0
+    >>> frame.modal().period.round(3)
+    array([0.398, 0.122])
     """
 
     story_heights: Float

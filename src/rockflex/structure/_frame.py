@@ -58,6 +58,18 @@ class Frame(Assembled):
     12 EI_b/L_b = 12 ρ (2 EI_c/L_c). The two columns contribute 2 EI_c/L_c times the usual terms of a clamped bar. In
     units of 2 EI_c/L_c³, with φ L_c for the rotations, the beam enters only through ρ: neither the width of
     the bay nor EI_b matters by itself.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> round(frame.half_width, 3)
+    1.318
+    >>> frame.modal(3).period.round(3)
+    array([1.   , 0.343, 0.217])
     """
 
     n_stories: int

@@ -73,6 +73,16 @@ def from_matrices(
     Paths end in ``.npz`` (an array with the name of the argument), ``.mtx`` or ``.csv``. The matrices are treated as
     dense. Mass that couples a degree of freedom to the base itself, as consistent mass matrices have in the lowest
     elements, is missing from the matrices of a fixed base: use lumped masses, or short elements at the base.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.from_matrices(
+    ...     mass=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0],
+    ...     base_mass=20e3, half_width=0.6, damping_ratio=0.02,
+    ... )
+    >>> structure.modal().period.round(3)
+    array([0.719, 0.275])
     """
     k_given = numbers("stiffness", stiffness)
     size = np.shape(k_given)[0] if dimensions(k_given) == 2 else 1
@@ -124,6 +134,16 @@ def from_modes(
     InputError
         If a file cannot be read, the shapes do not match, the frequencies are not in ascending order, or two mode
         shapes are not orthogonal.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.from_modes(
+    ...     omega=[8.74, 22.88], shapes=[[0.61803, 1.61803], [1.0, -1.0]], mass=[20e3, 20e3], heights=[3.0, 6.0],
+    ...     base_mass=20e3, half_width=0.6, damping_ratio=0.02,
+    ... )
+    >>> structure.modal().effective_mass.round(-1)
+    array([37890.,  2110.])
     """
     w = finite_vector("omega", numbers("omega", omega), "rad/s")
     falls = np.flatnonzero(np.diff(w, prepend=0.0) < 0.0)

@@ -43,6 +43,18 @@ class LumpedStructure(Value):
     InputError
         If the shapes do not match, a value is not finite or outside its range, the heights do not increase, or a
         matrix is not symmetric positive definite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.LumpedStructure(
+    ...     masses=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0],
+    ...     base_mass=20e3, half_width=0.6, damping_ratio=0.02,
+    ... )
+    >>> structure.modal().period.round(3)
+    array([0.719, 0.275])
+    >>> structure.rocking(1).effective_height.round(3)
+    array([4.854])
     """
 
     masses: Float

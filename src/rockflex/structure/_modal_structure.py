@@ -26,6 +26,17 @@ class ModalStructure(Value):
         Half-width B of the base in m.
     damping_ratio : ndarray, shape (n,)
         Damping ratio of each mode.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.from_matrices(
+    ...     mass=[20e3], stiffness=[[4e6]], heights=[3.0], base_mass=20e3, half_width=0.6, damping_ratio=0.02
+    ... )
+    >>> isinstance(structure, rf.ModalStructure)
+    True
+    >>> structure.modes.omega.round(3)
+    array([14.142])
     """
 
     modes: MassNormalisedModes

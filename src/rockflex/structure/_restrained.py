@@ -29,6 +29,18 @@ class Restrained:
     ------
     InputError
         If a tendon is outside the base, or `structure` is not a structure.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> restrained = rf.Restrained(frame, rf.Tendon(initial_force=500e3, stiffness=20e6))
+    >>> ratio = restrained.rocking().resisting_moment / frame.rocking().resisting_moment
+    >>> round(ratio, 3)
+    1.212
     """
 
     structure: Based

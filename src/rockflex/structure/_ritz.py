@@ -34,6 +34,22 @@ class RitzShapes(Value):
     ----------
     value, slope, curvature : callable
         ψ_j, ψ_j' and ψ_j''.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import numpy as np
+    >>> parabola = rf.RitzShapes(
+    ...     value=lambda z: z[:, None] ** 2,
+    ...     slope=lambda z: 2.0 * z[:, None],
+    ...     curvature=lambda z: np.full((z.size, 1), 2.0),
+    ... )
+    >>> beam = rf.Beam(
+    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.0, damping_ratio=0.02,
+    ...     method="ritz", shapes=parabola, n_modes=1,
+    ... )
+    >>> beam.modal().period.round(3)
+    array([0.281])
     """
 
     value: Callable[[Float], ArrayLike]
@@ -123,6 +139,17 @@ def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
     ------
     InputError
         If the height or the number of shapes is not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> shapes = rf.cosine_shapes(height=20.0, n_shapes=3)
+    >>> beam = rf.Beam(
+    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.0, damping_ratio=0.02,
+    ...     method="ritz", shapes=shapes, n_modes=1,
+    ... )
+    >>> beam.modal().period.round(3)
+    array([0.357])
     """
     h = positive("height", height, "m")
     numbers = np.arange(1, whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1, dtype=np.float64)

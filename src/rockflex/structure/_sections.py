@@ -31,6 +31,17 @@ class LumpedMasses(Value):
     ------
     InputError
         If the lengths differ, or a value is not finite or outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tank = rf.LumpedMasses(heights=[20.0], masses=[50e3], rotary=[1e5])
+    >>> tower = rf.Beam(
+    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.5, damping_ratio=0.02,
+    ...     lumped_masses=tank, n_modes=2,
+    ... )
+    >>> tower.modal().period.round(3)
+    array([1.669, 0.12 ])
     """
 
     heights: Float

@@ -52,6 +52,16 @@ class TaperedTower(Assembled, Value):
     Notes
     -----
     The rotary inertia of the sections is included in I_θ (Eq. 33), but not in the modes.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tower = rf.TaperedTower(
+    ...     height=200.0, base_radius=8.0, top_radius=4.0, wall=1.0, density=2400.0, elastic_modulus=25e9,
+    ...     damping_ratio=0.02,
+    ... )
+    >>> tower.modal(3).period.round(2)
+    array([3.79, 0.81, 0.32])
     """
 
     height: float

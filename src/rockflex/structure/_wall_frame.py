@@ -53,6 +53,18 @@ class WallFrame(Assembled, Value):
     ------
     InputError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> building = rf.WallFrame(
+    ...     height=30.0, mass=2e6, stiffness_parameter=2.0, base_mass=2e5, period=1.0, aspect_ratio=6.0,
+    ...     damping_ratio=0.03,
+    ... )
+    >>> building.modal(3).period.round(3)
+    array([1.   , 0.219, 0.084])
+    >>> round(building.half_width, 2)
+    3.56
     """
 
     height: float

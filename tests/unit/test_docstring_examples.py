@@ -1,0 +1,59 @@
+"""The examples in the docstrings of the public names: each runs and prints what it shows, and none is missing."""
+
+import doctest
+import inspect
+import io
+import re
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import pytest
+
+import rockflex
+
+PACKAGES = ("modal", "models", "motion", "response", "structure")
+"""Packages of `rockflex` whose public names must have an example."""
+
+WITHOUT = {
+    "FloorModes": "a part of RockingProperties, as its floors",
+    "FloorPeaks": "a part of Response, as its floors",
+    "equivalent_2hz_long_base": "its example is still to be written",
+    "equivalent_s1": "its example is still to be written",
+    "read_structure": "its example is still to be written",
+}
+"""Public names that need no example, and why: results that users neither build nor look up by name, and what is due."""
+
+NAMES = {name: getattr(rockflex, name) for name in sorted(rockflex.__all__) if not name.startswith("_")}
+FINDER = doctest.DocTestFinder()
+EXAMPLES = {
+    test.name: test
+    for name, thing in NAMES.items()
+    for test in FINDER.find(thing, name, module=False, globs={})
+    if test.examples
+}  # fmt: skip
+SECTION = re.compile(r"^(\w[\w ]*)\n-+$", re.MULTILINE)
+
+
+def needs_an_example(name):
+    thing = NAMES[name]
+    if isinstance(thing, type) and issubclass(thing, BaseException):
+        return False
+    return thing.__module__.startswith(tuple(f"rockflex.{each}." for each in PACKAGES)) and name not in WITHOUT
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_prints_what_it_shows(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mpl.use("Agg")
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
+    report = io.StringIO()
+    runner.run(EXAMPLES[name], out=report.write)
+    plt.close("all")
+    assert runner.failures == 0, report.getvalue()
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if needs_an_example(name)])
+def test_public_name_ends_with_an_example(name):
+    sections = SECTION.findall(inspect.getdoc(NAMES[name]))
+    assert sections[-1:] == ["Examples"], f"rockflex.{name} needs an Examples section, after its other sections"
+    assert name in EXAMPLES
