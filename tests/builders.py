@@ -17,6 +17,19 @@ STRUCTURE_1: dict[str, Any] = {
     "damping_ratio": 0.02,
 }
 
+# What a RockingProperties is made of: two modes of a finite element program.
+PROPERTIES = {
+    "omega": [6.0, 18.0],
+    "effective_mass": [170e3, 20e3],
+    "effective_height": [10.5, -3.6],
+    "top_ordinate": [1.25, -0.36],
+    "i_theta": 20e6,
+    "l0r": 1.8e6,
+    "m_tot": 240e3,
+    "half_width": 1.0,
+    "zeta": 0.02,
+}
+
 
 def frame_values(**changes: Any) -> dict[str, Any]:
     """Arguments of structure #1, changed."""

@@ -41,7 +41,7 @@ def escape(app: Sphinx, what: str, name: str, obj: object, options: object, line
 
 
 def _escaped(text: str) -> str:
-    """Return prose with its symbols escaped; literals may continue on the next line, so the text is split as a whole."""
+    """Return prose with its symbols escaped; literals may continue on the next line, so it is split as a whole."""
     parts = SPANS.split(text)
     parts = [f"`{part}`" if part.startswith("`.") else part for part in parts]  # an attribute of the object just named
     parts[::2] = [MARKUP.sub(r"\\\1", part) for part in parts[::2]]

@@ -1,38 +1,23 @@
 """Energy of the nonlinear models: nothing appears or vanishes but by damping, yielding, input and impact."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from builders import make_frame
-from rockflex import BoucWen, Frame, GroundMotion, InitialState, Restitution, load_suite, quiet_motion, simulate
+from rockflex import BoucWen, Frame, GroundMotion, InitialState, Restitution, quiet_motion, simulate
+from strategies import GRAVITY, frame_arguments, stretches
 
-GRAVITY = 9.81
 settings_ = settings(max_examples=40, deadline=None)
 
-frames = st.fixed_dictionaries(
-    {
-        "n_stories": st.integers(1, 5),
-        "story_height": st.just(3.0),
-        "story_mass": st.just(40e3),
-        "base_mass": st.sampled_from([0.0, 40e3, 200e3]),
-        "stiffness_ratio": st.sampled_from([0.0, 0.125, 1.0, np.inf]),
-        "period": st.floats(0.2, 2.0),
-        "aspect_ratio": st.floats(3.0, 12.0),
-    }
-)
+frames = frame_arguments(5, 2.0)
 dampings = st.floats(0.01, 0.1)
 
 
-@st.composite
-def motions(draw, samples=300):
-    suite = load_suite("fema-p695-far-field")
-    record = suite[draw(st.integers(0, len(suite) - 1))]
-    first = draw(st.integers(0, record.acceleration.size - samples))
-    values = record.acceleration[first : first + samples]
-    peak = GRAVITY / 8.0 * draw(st.floats(0.5, 4.0))
-    return GroundMotion(values * (peak / np.abs(values).max()), record.dt)
+motions = partial(stretches, factors=(0.5, 4.0), suites=["fema-p695-far-field"])
 
 
 def energy_of_the_masses(frame, run):

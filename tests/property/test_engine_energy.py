@@ -6,32 +6,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from builders import make_frame
-from rockflex import Frame, GroundMotion, InitialState, load_suite, quiet_motion, simulate, suite_names
+from rockflex import Frame, InitialState, quiet_motion, simulate
+from strategies import GRAVITY, frame_arguments, stretches
 
-GRAVITY = 9.81
 settings_ = settings(max_examples=60, deadline=None)
 
-frames = st.fixed_dictionaries(
-    {
-        "n_stories": st.integers(1, 8),
-        "story_height": st.just(3.0),
-        "story_mass": st.just(40e3),
-        "base_mass": st.sampled_from([0.0, 40e3, 200e3]),
-        "stiffness_ratio": st.sampled_from([0.0, 0.125, 1.0, np.inf]),
-        "period": st.floats(0.2, 2.5),
-        "aspect_ratio": st.floats(3.0, 12.0),
-    }
-)
-
-
-@st.composite
-def motions(draw, samples=300):
-    suite = load_suite(draw(st.sampled_from(suite_names())))
-    record = suite[draw(st.integers(0, len(suite) - 1))]
-    first = draw(st.integers(0, record.acceleration.size - samples))
-    values = record.acceleration[first : first + samples]
-    peak = GRAVITY / 8.0 * draw(st.floats(0.3, 5.0))
-    return GroundMotion(values * (peak / np.abs(values).max()), record.dt)
+frames = frame_arguments(8, 2.5)
 
 
 @settings_
@@ -57,14 +37,14 @@ def test_free_and_undamped(given_, fraction, left, data):
 
 
 @settings_
-@given(frames, st.floats(0.01, 0.1), motions(), st.sampled_from(["MDOF-S", "2DOF-S", "fixed"]))
+@given(frames, st.floats(0.01, 0.1), stretches(), st.sampled_from(["MDOF-S", "2DOF-S", "fixed"]))
 def test_the_ledger_closes(given_, damping_ratio, motion, model):
     run = simulate(Frame(**given_, damping_ratio=damping_ratio), motion, model, free_vibration=0.5)
     assert run.energy.closing_error < 1e-9
 
 
 @settings_
-@given(frames, st.floats(0.01, 0.1), motions())
+@given(frames, st.floats(0.01, 0.1), stretches())
 def test_after_the_shaking_energy_only_falls(given_, damping_ratio, motion):
     run = simulate(Frame(**given_, damping_ratio=damping_ratio), motion, free_vibration=2.0)
     energy = run.energy

@@ -4,38 +4,18 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rockflex import Frame, GroundMotion, InitialState, load_suite, simulate, suite_names
+from rockflex import Frame, InitialState, simulate
+from strategies import frame_arguments, stretches
 
-GRAVITY = 9.81
 settings_ = settings(max_examples=80, deadline=None)
 
-frames = st.builds(
-    Frame,
-    n_stories=st.integers(1, 8),
-    story_height=st.just(3.0),
-    story_mass=st.just(40e3),
-    base_mass=st.sampled_from([0.0, 40e3, 200e3]),
-    stiffness_ratio=st.sampled_from([0.0, 0.125, 1.0, np.inf]),
-    period=st.floats(0.2, 2.5),
-    aspect_ratio=st.floats(3.0, 12.0),
-    damping_ratio=st.floats(0.0, 0.1),
-)
+frames = frame_arguments(8, 2.5, damping_ratio=st.floats(0.0, 0.1)).map(lambda given: Frame(**given))
 starts = st.one_of(st.none(), st.builds(InitialState, rotation=st.floats(-0.2, 0.2).filter(lambda x: abs(x) > 1e-3)))
 models = st.sampled_from(["MDOF-S", "2DOF-S"])
 
 
-@st.composite
-def motions(draw, samples=300):
-    suite = load_suite(draw(st.sampled_from(suite_names())))
-    record = suite[draw(st.integers(0, len(suite) - 1))]
-    first = draw(st.integers(0, record.acceleration.size - samples))
-    values = record.acceleration[first : first + samples]
-    peak = GRAVITY / 8.0 * draw(st.floats(0.3, 5.0))
-    return GroundMotion(values * (peak / np.abs(values).max()), record.dt)
-
-
 @settings_
-@given(frames, motions(), models, starts)
+@given(frames, stretches(), models, starts)
 def test_peaks_are_those_of_the_history(structure, motion, model, start):
     """No value of the history is above its peak, and the peak is above the samples by no more than their sag."""
     run = simulate(structure, motion, model, initial=start)
@@ -65,7 +45,7 @@ def test_peaks_are_those_of_the_history(structure, motion, model, start):
 
 
 @settings_
-@given(frames, motions(), models, starts)
+@given(frames, stretches(), models, starts)
 def test_floors(structure, motion, model, start):
     run = simulate(structure, motion, model, initial=start)
     assert np.all(np.abs(run.story_drift).max(axis=0) <= run.floors.story_drift * (1.0 + 1e-11))
@@ -79,7 +59,7 @@ def test_floors(structure, motion, model, start):
 
 
 @settings_
-@given(frames, motions(), models, starts, st.floats(0.0, 1.0))
+@given(frames, stretches(), models, starts, st.floats(0.0, 1.0))
 def test_nodes(structure, motion, model, start, free):
     run = simulate(structure, motion, model, initial=start, free_vibration=free)
     assert np.all(np.diff(run.time) > -1e-12)
@@ -115,7 +95,7 @@ def test_nodes(structure, motion, model, start, free):
 
 
 @settings_
-@given(frames, motions(), models, starts)
+@given(frames, stretches(), models, starts)
 def test_peaks_do_not_need_a_history(structure, motion, model, start):
     """Where floors call for closer looks the motion may differ by a rounding, and with it the other peaks."""
     assume(structure.damping_ratio >= 0.01)

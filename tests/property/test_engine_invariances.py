@@ -8,42 +8,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from builders import frame_values
-from rockflex import Frame, GroundMotion, load_suite, simulate, suite_names
+from rockflex import Frame, GroundMotion, load_suite, simulate
+from strategies import GRAVITY, frame_arguments, noises, stretches
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
 
-GRAVITY = 9.81
 TINY = 1e-13  # rad, of a slenderness of about 0.1: rounding, below which a rotation has no digits
 VALUES = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear")
 TIMES = tuple(f"time_of_{name}" for name in VALUES)
 
-frames = st.fixed_dictionaries(
-    {
-        "n_stories": st.integers(1, 8),
-        "story_height": st.just(3.0),
-        "story_mass": st.just(40e3),
-        "base_mass": st.sampled_from([0.0, 40e3, 200e3]),
-        "stiffness_ratio": st.sampled_from([0.0, 0.125, 1.0, np.inf]),
-        "period": st.floats(0.2, 2.5),
-        "aspect_ratio": st.floats(3.0, 12.0),
-        "damping_ratio": st.floats(0.01, 0.1),
-    }
-)
+frames = frame_arguments(8, 2.5, damping_ratio=st.floats(0.01, 0.1))
 
 
-@st.composite
-def motions(draw, samples=400):
-    """Peak accelerations about that which lifts a rigid block of aspect ratio 8."""
-    if draw(st.booleans()):
-        suite = load_suite(draw(st.sampled_from(suite_names())))
-        record = suite[draw(st.integers(0, len(suite) - 1))]
-        first = draw(st.integers(0, record.acceleration.size - samples))
-        values, dt = record.acceleration[first : first + samples], record.dt
-    else:
-        values = np.random.default_rng(draw(st.integers(0, 10**6))).standard_normal(samples // 2)
-        dt = draw(st.sampled_from([0.005, 0.02, 0.05]))
-    peak = GRAVITY / 8.0 * draw(st.floats(0.3, 5.0))
-    return GroundMotion(values * (peak / np.abs(values).max()), dt, name="drawn")
+def motions(samples=400):
+    return stretches(samples, (0.3, 5.0)) | noises(samples // 2, (0.3, 5.0), [0.005, 0.02, 0.05])
 
 
 def examples(count):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from builders import frame_values
+from builders import PROPERTIES, frame_values
 from rockflex import Eccentric, Frame, InputError, LumpedStructure, RockingProperties
 from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
@@ -62,19 +62,6 @@ def test_lumped(write, masses, damping):
     np.testing.assert_array_equal(loaded.properties.zeta, expected.zeta)
     assert loaded.properties.i_theta == expected.i_theta
     assert loaded.reference_mass == 3.0
-
-
-PROPERTIES = {
-    "omega": [6.0, 18.0],
-    "effective_mass": [170e3, 20e3],
-    "effective_height": [10.5, -3.6],
-    "top_ordinate": [1.25, -0.36],
-    "i_theta": 20e6,
-    "l0r": 1.8e6,
-    "m_tot": 240e3,
-    "half_width": 1.0,
-    "zeta": 0.02,
-}
 
 
 @pytest.mark.parametrize("more", [{}, {"translational_inertia": 19.5e6}])

@@ -29,7 +29,7 @@ LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 INDENTED = re.compile(r"(?:^    \S.*\n)+", re.MULTILINE)
 PRIVATE = re.compile(r"\brockflex(?:\.\w+)*\._\w|\brf\._\w|\bimport _\w")
 NOT_RUN = ("reproduce", "serve")  # some minutes, and for ever
-FEW = [f"FF-{number}-*" for number in range(1, 7)]  # of the records of an example
+FEW = [f"FF-{number}-*" for number in (1, 3, 5, 9, 10, 19)]  # of an example's records: some stand still, some fall
 GENERATED = ("gallery/", "../gallery/")
 
 

@@ -8,24 +8,13 @@ import pytest
 from pydantic import ValidationError
 
 import rockflex as rf
-from builders import frame_values
+from builders import PROPERTIES, frame_values
 from rockflex.structure.file import KINDS, StructureEntry, Table, checked, key_of
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
 MASSES, STIFFNESS, HEIGHTS = [20e3, 90e3], [[34e6, -10.5e6], [-10.5e6, 4.2e6]], [8.0, 16.0]
 LUMPED = {"masses": MASSES, "stiffness": STIFFNESS, "heights": HEIGHTS, **BASE}
-PROPERTIES = {
-    "omega": [6.0, 18.0],
-    "effective_mass": [170e3, 20e3],
-    "effective_height": [10.5, -3.6],
-    "top_ordinate": [1.25, -0.36],
-    "i_theta": 20e6,
-    "l0r": 1.8e6,
-    "m_tot": 240e3,
-    "half_width": 1.0,
-    "zeta": 0.02,
-}
 TENDON = {"initial_force": 5e5, "stiffness": 2e7}
 FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)
 BEAM = {"height": 30.0, "half_width": 2.0, "damping_ratio": 0.02, "base_mass": 1e4, "n_elements": 40, "n_modes": 3}
