@@ -9,9 +9,10 @@ import pyarrow as pa
 import pytest
 
 import rockflex as rf
-from rockflex.study.plans import CloudPlan, CloudStudy, record_group, run_cloud, run_plan
-from rockflex.study.plans._bench import bench_of
-from rockflex.study.plans._records import checksums
+from rockflex.study.cloud import CloudPlan, CloudStudy, run_cloud
+from rockflex.study.plan import record_group, run_plan
+from rockflex.study.plan._bench import bench_of
+from rockflex.study.plan._records import checksums
 
 FRAME = {
     "n_stories": 3,

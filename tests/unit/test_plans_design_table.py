@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 
 import rockflex as rf
 from design_case import HAZARD, HEIGHT, WIDTHS
-from rockflex.study.plans._design_resamples import _firth, exceedances, resample_weights
+from rockflex.study.design._resamples import _firth, exceedances, resample_weights
 
 
 @pytest.fixture

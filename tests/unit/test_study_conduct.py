@@ -14,7 +14,7 @@ import pytest
 import rockflex as rf
 from rockflex import InputError
 from rockflex.structure.file import StructureEntry
-from rockflex.study.plans import ChunkedPlan
+from rockflex.study.plan import ChunkedPlan
 
 FRAME = {
     "n_stories": 3,

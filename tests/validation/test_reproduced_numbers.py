@@ -16,7 +16,7 @@ from drawing import drawn
 from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, reproduce
 from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, places
 from rockflex.papers.silva_stojadinovic_2024._number import Interval
-from rockflex.papers.silva_stojadinovic_2024._population import intervals, pool
+from rockflex.papers.silva_stojadinovic_2024._pool import intervals, pool
 
 SLOW = {"sliding"}  # tested with few records
 MISSES = {

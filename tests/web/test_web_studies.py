@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
-from rockflex.study.plans import TendonLevel, smallest_width
+from rockflex.study.design import TendonLevel, smallest_width
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal

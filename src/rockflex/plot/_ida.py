@@ -65,7 +65,7 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, level: float | None 
         If the table lacks a column or has no rows, the measure is unknown, or there are too many structures and models.
     """
     check_columns(runs, (*_NEEDED, measure), _SOURCE)
-    from rockflex.study.plans import incremental_capacities
+    from rockflex.study.incremental import incremental_capacities
 
     capacities = incremental_capacities(runs, measure)
     groups = [(name, model) for name in names_in(runs["structure"]) for model in names_in(runs["model"])]

@@ -17,13 +17,16 @@ from rockflex.fragility import (
     fit_each_cloud,
     fit_outcomes,
 )
-from rockflex.study.plans import CloudPlan, CloudStudy, pivot_lifts
+from rockflex.study.cloud import CloudStudy
+from rockflex.study.plan import pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION, limit_state
 from rockflex.web._packing import plain
+from rockflex.web._refusal import Refusal
+from rockflex.web._script import cloud_script
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import none_solved, planned, progress, runs_of, shared, study_of
+from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,20 +46,9 @@ def cloud_study(state: State) -> CloudStudy:
     Refusal
         If it is not one.
     """
+    build(state.structure)  # for its messages, which are shown next to the fields
     choice = state.cloud
     return study_of(CloudStudy, shared(state, choice, choice.models, "Cloud"), "cloud")
-
-
-def cloud_plan(state: State) -> CloudPlan:
-    """Return the runs of a state's cloud, cut into small chunks.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be made, or has too many runs for a page, or takes too long.
-    """
-    build(state.structure)  # for its messages, which stand beside the fields
-    return planned(cloud_study(state), "cloud")
 
 
 def cloud_view(job: Job, state: State) -> dict[str, Any]:
@@ -161,3 +153,29 @@ def _observed(im: Array, over: NDArray[np.bool_], bins: int = 8) -> list[list[fl
     order = np.argsort(im, kind="stable")
     parts = [part for part in np.array_split(order, bins) if part.size]
     return [[float(np.exp(np.log(im[part]).mean())), float(over[part].mean())] for part in parts]
+
+
+def _runs(job: Job, _: State) -> "pd.DataFrame":
+    return some_runs_of(job)
+
+
+def _figure(job: Job, state: State) -> Any:
+    from rockflex.plot import plot_fragility
+
+    choice = state.cloud
+    fits, reasons = fit_each_cloud(some_runs_of(job), choice.measure, nominal=choice.limit == NOMINAL.name)
+    if not fits:
+        reason = " ".join(f"{model}: {why}" for (_, model), why in reasons.items())
+        raise Refusal(f"There is no curve to draw. {reason}")
+    return plot_fragility(fits, level=choice.level, overturning=True)
+
+
+PAGE = StudyPage(
+    study=cloud_study,
+    view=cloud_view,
+    table=_runs,
+    figure=_figure,
+    script=cloud_script,
+    table_name="runs",
+    figure_name="fragility",
+)

@@ -5,14 +5,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._errors import InputError, SolverError
-from rockflex.study.plans import CloudPlan, DesignStudy, design_table, pivot_lifts, smallest_width
+from rockflex.kinds import KINDS
+from rockflex.study.design import DesignStudy, design_table, smallest_width
+from rockflex.study.plan import pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION
 from rockflex.web._packing import plain
 from rockflex.web._refusal import Refusal
+from rockflex.web._script import design_script
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import none_solved, planned, progress, runs_of, shared, study_of
+from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,28 +59,9 @@ def design_study(state: State) -> DesignStudy:
     return study_of(DesignStudy, content, "design")
 
 
-def design_plan(state: State) -> CloudPlan:
-    """Return the runs of a state's design study, cut into small chunks.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be made, or has too many runs for a page, or takes too long.
-    """
-    return planned(design_study(state), "design")
-
-
-def design_table_of(job: Job, choice: DesignChoice) -> "pd.DataFrame | None":
-    """Return a row a design from the runs so far; None if there are none.
-
-    Raises
-    ------
-    Refusal
-        If the question cannot be answered.
-    """
-    runs = runs_of(job)
-    if runs is None:
-        return None
+def _table(job: Job, state: State) -> "pd.DataFrame":
+    """Table of the designs from the runs so far, one row a design."""
+    runs, choice = some_runs_of(job), state.design
     try:
         resamples = 200 if job.over else RESAMPLES
         return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at, n_resamples=resamples)
@@ -92,16 +76,33 @@ def design_view(job: Job, state: State) -> dict[str, Any]:
     view: dict[str, Any] = progress(job, choice.measure) | {"present": present, "answers": []}
     runs = runs_of(job)
     lost = {} if runs is None else none_solved(job, runs)
-    table = None if lost else design_table_of(job, choice)
-    if table is None:
+    if runs is None or lost:
         return plain(view | lost)
+    table = _table(job, state)
     for tendon, part in table.groupby("tendon", observed=True, sort=False):
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
         view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
-    view["notes"] += [str(each) for each in pivot_lifts(runs) if each.lifting] if runs is not None else []
+    view["notes"] += [str(each) for each in pivot_lifts(KINDS["design"].runs(runs)) if each.lifting]
     answers = smallest_width(table, choice.target)
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
         "records"
     )
     return plain(view)
+
+
+def _figure(job: Job, state: State) -> Any:
+    from rockflex.plot import plot_design
+
+    return plot_design(_table(job, state), state.design.target)
+
+
+PAGE = StudyPage(
+    study=design_study,
+    view=design_view,
+    table=_table,
+    figure=_figure,
+    script=design_script,
+    table_name="design",
+    figure_name="design",
+)

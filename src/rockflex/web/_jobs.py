@@ -11,7 +11,7 @@ from typing import Any
 
 from rockflex._errors import InputError, SolverError
 from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.study.plans import Plan
+from rockflex.study.plan import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
 KEPT = 40  # jobs that are remembered
@@ -23,7 +23,7 @@ FORGOTTEN = 30.0  # s without a look after which a job stops: its page was close
 class Job:
     """A study that is computed by one thread and read by others; `tables` only grows."""
 
-    plan: Plan
+    plan: ChunkedPlan
     kind: str
     status: str = "waiting"
     message: str = ""
@@ -67,7 +67,7 @@ class Jobs:
         self._lock = Lock()
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="study")
 
-    def start(self, plan: Plan, kind: str) -> str:
+    def start(self, plan: ChunkedPlan, kind: str) -> str:
         """Queue a job, and return its token.
 
         Raises

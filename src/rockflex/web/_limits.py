@@ -13,7 +13,7 @@ from rockflex.study import Case
 from rockflex.web._refusal import Refusal
 
 if TYPE_CHECKING:
-    from rockflex.study.plans import CloudPlan
+    from rockflex.study.cloud import CloudPlan
 
 FILE = 5_000_000  # bytes of an upload
 BODY = 6_000_000  # bytes of any request

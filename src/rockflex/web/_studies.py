@@ -1,12 +1,15 @@
-"""What the studies of the page have in common: their structure and assumptions, their limits, and their table."""
+"""What the studies of the page share: structure and assumptions, limits, and the table of their runs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rockflex._errors import InputError
 from rockflex.models import parse_model
 from rockflex.motion import MEASURES
-from rockflex.study.plans import CloudPlan, CloudStudy, DesignStudy, to_frame
+from rockflex.study.cloud import CloudPlan, CloudStudy
+from rockflex.study.design import DesignStudy
+from rockflex.study.plan import to_frame
 from rockflex.web._jobs import Job
 from rockflex.web._limits import RUN, check_runs
 from rockflex.web._refusal import Refusal
@@ -19,6 +22,31 @@ PER_CHUNK = 24  # runs between two looks at whether to go on
 CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
 
 AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudyPage:
+    """How the page shows one kind of study.
+
+    Attributes
+    ----------
+    study : callable
+        Returns the study of a state.
+    view : callable
+        Returns what its tab shows of the runs so far, for the choices of a state.
+    table, figure : callable
+        Return a DataFrame and a Figure of the runs so far. `table_name` and `figure_name` are the names of the files.
+    script : callable
+        Returns a Python program that repeats the study.
+    """
+
+    study: Callable[[State], Any]
+    view: "Callable[[Job, State], dict[str, Any]]"
+    table: "Callable[[Job, State], pd.DataFrame]"
+    figure: "Callable[[Job, State], Any]"
+    script: Callable[[State, Any], str]
+    table_name: str
+    figure_name: str
 
 
 def shared(state: State, choice: CloudChoice | DesignChoice, labels: Sequence[str], name: str) -> dict[str, Any]:
@@ -71,6 +99,20 @@ def runs_of(job: Job) -> "pd.DataFrame | None":
     """Return the table of the runs so far; None if there are none."""
     tables = list(job.tables)
     return to_frame(*tables) if tables else None
+
+
+def some_runs_of(job: Job) -> "pd.DataFrame":
+    """Return the table of the runs so far.
+
+    Raises
+    ------
+    Refusal
+        If there are none.
+    """
+    runs = runs_of(job)
+    if runs is None:
+        raise Refusal("There are no runs yet.")
+    return runs
 
 
 def progress(job: Job, measure: str) -> dict[str, Any]:

@@ -7,9 +7,23 @@ Dyn, doi 10.1002/eqe.4193. A target is a module with a ``TITLE`` and a function 
 
 from rockflex.papers.silva_stojadinovic_2024._beside import Check, Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._catalogue import TARGETS, reproduce, title_of
+from rockflex.papers.silva_stojadinovic_2024._equivalents import equivalent_2hz_long_base, equivalent_s1
 from rockflex.papers.silva_stojadinovic_2024._number import Number
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
-__all__ = ["TARGETS", "Check", "Kind", "Number", "Records", "Remark", "Result", "Verdict", "reproduce", "title_of"]
+__all__ = [
+    "TARGETS",
+    "Check",
+    "Kind",
+    "Number",
+    "Records",
+    "Remark",
+    "Result",
+    "Verdict",
+    "equivalent_2hz_long_base",
+    "equivalent_s1",
+    "reproduce",
+    "title_of",
+]

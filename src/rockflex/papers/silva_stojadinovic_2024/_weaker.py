@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
-from rockflex.papers.silva_stojadinovic_2024._population import PAIRS, SEED, intervals
+from rockflex.papers.silva_stojadinovic_2024._pool import PAIRS, SEED, intervals
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from functools import partial
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, statistic, tendency
-from rockflex.papers.silva_stojadinovic_2024._population import DRAWS, PAIRS, intervals, population
+from rockflex.papers.silva_stojadinovic_2024._pool import DRAWS, PAIRS, intervals, population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker

@@ -2,7 +2,7 @@
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import check
-from rockflex.papers.silva_stojadinovic_2024._population import population
+from rockflex.papers.silva_stojadinovic_2024._pool import population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 

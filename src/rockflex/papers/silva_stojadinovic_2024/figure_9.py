@@ -8,7 +8,7 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
 from rockflex.papers.silva_stojadinovic_2024._number import Number, statistic, tendency
-from rockflex.papers.silva_stojadinovic_2024._population import (
+from rockflex.papers.silva_stojadinovic_2024._pool import (
     DRAWS,
     PAIRS,
     SEED,

@@ -1,0 +1,113 @@
+"""Multiple stripes: every record scaled to each of a few intensities."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Literal
+
+from pydantic import Field
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, beyond
+from rockflex.motion import intensity
+from rockflex.study._arguments import positive_numbers
+from rockflex.study.plan._bench import Bench
+from rockflex.study.plan._cross import CrossPlan
+from rockflex.study.plan._spec import StructuresSpec
+from rockflex.study.plan._tables import Columns, Row
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+COUNTED = (OVERTURNING, NOMINAL, UPLIFT)
+
+
+class StripeStudy(StructuresSpec):
+    """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
+
+    The table has the columns of `run_cloud` with the `level` of the stripe; `stripe_counts` counts it.
+    """
+
+    study: Literal["stripes"] = Field("stripes", description='"stripes"')
+    measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"')
+    levels: list[float] = Field(min_length=1, description="a list of levels of the measure, in SI units")
+
+    def plan(self) -> "StripePlan":
+        """Build the structures, load the records, and cut the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a structure cannot be built, a record cannot be read, the measure is unknown, a level is not positive,
+            or a record cannot be scaled to it.
+        """
+        return StripePlan(self.bench(), self.measure, self.levels, self.runs_per_chunk)
+
+
+class StripePlan(CrossPlan):
+    """The cross product of structures, records, models and levels, cut into chunks."""
+
+    def __init__(self, bench: Bench, measure: str, levels: Sequence[float], per_chunk: int) -> None:
+        asked = intensity(measure)
+        self.measure = measure  # by its name, which a pickle can hold
+        self.levels = positive_numbers("levels", levels, "")
+        for structure, name in enumerate(bench.names):
+            for record, motion in enumerate(bench.motions):
+                if not math.isfinite(asked.factor(bench.measures(structure, record)[measure], 1.0)):
+                    raise InputError(
+                        f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
+                    )
+        super().__init__(bench, len(self.levels), per_chunk)
+
+    def scale(self, structure: int, record: int, level: int) -> float:
+        """Factor that takes a record to a level of the measure."""
+        value = self.bench.measures(structure, record)[self.measure]
+        return intensity(self.measure).factor(value, self.levels[level])
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        return {"level": float, **super().columns}
+
+    def rows(self, unit: int) -> Iterator[Row]:
+        """Simulate one run."""
+        for row in super().rows(unit):
+            yield row | {"level": self.levels[unit % len(self.levels)]}
+
+
+def stripe_counts(
+    runs: "pd.DataFrame", limit: Literal["overturning", "nominal", "uplift"] | float = "overturning"
+) -> "pd.DataFrame":
+    """Count the runs of each stripe that exceed a limit, as fits of fragility take them.
+
+    Parameters
+    ----------
+    runs
+        What the plan of a `StripeStudy` gives.
+    limit
+        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a structure, model and level: `structure`, `model`, `level`, `n_exceeding`, `n_total`; runs that could
+        not be solved are in neither.
+
+    Raises
+    ------
+    InputError
+        If the limit is another word, or not positive.
+    """
+    solved = runs[runs["status"].notna()]
+    if isinstance(limit, str):
+        state = next((each for each in COUNTED if each.name == limit), None)
+    else:
+        state = beyond(positive("limit", limit, "rad"))
+    if state is None:
+        words = ", ".join(f'"{each.name}"' for each in COUNTED)
+        raise InputError(f"limit must be {words} or a rotation in rad, but {shown(limit)} was given.")
+    counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
+        ["structure", "model", "level"], observed=True
+    )
+    return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()
