@@ -1,6 +1,6 @@
-"""Studies: one run, the cross product of many, and spectra of what rocks."""
+"""Studies: one run, the cross product of many, and rocking and overturning spectra."""
 
-from rockflex.study._arguments import WORK_LIMIT, Structure, properties_of
+from rockflex.study._arguments import WORK_LIMIT, RockingStructure, properties_of
 from rockflex.study._case import Case
 from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
@@ -16,8 +16,8 @@ __all__ = [
     "CombinedPeaks",
     "InitialState",
     "OverturningScales",
+    "RockingStructure",
     "SecondMode",
-    "Structure",
     "frequency_ratios",
     "modal_combination",
     "overturning_scales",

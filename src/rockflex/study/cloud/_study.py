@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class CloudStudy(StructuresSpec):
     """Cloud analysis (Silva & Stojadinović 2024, Section 3.2).
 
-    The table has one row a run, structures outermost, then records, models and scales. Its columns are those of
+    The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
     `run_cloud`.
     """
 
@@ -37,7 +37,7 @@ class CloudStudy(StructuresSpec):
         return factors_of(scales, QUIET)
 
     def plan(self) -> "CloudPlan":
-        """Build the structures, load the records, and cut the study into chunks.
+        """Build the structures, load the records, and divide the study into chunks.
 
         Raises
         ------
@@ -51,14 +51,14 @@ QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
 
 
 class CloudPlan(CrossPlan):
-    """The cross product of structures, records, models and scales, cut into chunks."""
+    """The cross product of structures, records, models and scales, divided into chunks."""
 
     def __init__(self, bench: Bench, scales: Sequence[float], per_chunk: int) -> None:
         self.scales = factors_of(scales, max(bench.motions, key=lambda motion: motion.pga))
         super().__init__(bench, len(self.scales), per_chunk)
 
     def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002
-        """Factor on a record's acceleration, the same for all."""
+        """Return the factor on the acceleration of a record, the same for all records."""
         return self.scales[level]
 
 
@@ -79,34 +79,34 @@ def run_cloud(
     Parameters
     ----------
     structures
-        One, a sequence, in which they are called "S1", "S2", ..., or a mapping from their names.
+        One, a sequence (named "S1", "S2", ...), or a mapping from names.
     motions
-        One, a sequence such as a suite, or a mapping from names; their names differ.
+        One, a sequence such as a suite, or a mapping from names. All names must differ.
     models, scales, free_vibration, bouc_wen, impact
         As in `simulate_many`.
     friction
-        Whether to find the friction that keeps the base from sliding (Eqs. 20-22), which needs every run's history.
+        Whether to find the friction that prevents sliding of the base (Eqs. 20-22), which needs the history of every run.
     workers
         Number of threads; None for one a core.
     work_limit
-        Most work of each run, as in `simulate`. A run that is more has its message in `error`.
+        Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
 
     Returns
     -------
     pandas.DataFrame
-        One row a run. `structure`, `motion`, `group` (shared by the components of one recording), `magnitude` and
+        One row per run. `structure`, `motion`, `group` (shared by the components of one recording), `magnitude` and
         `distance_km` where known, `model`, `scale`; measures of the scaled motion: `pga` (m/s²), `pgv` (m/s), `pgd`
         (m), `arias` (m/s), `cav` (m/s), `sd_t1` (m) and `sa_t1` (m/s²) at the structure's first period and damping,
         `relative_pga` = pga/(g tan α) and `relative_pgv` = p pgv/(g tan α) with g tan α = M_r/L_0^r and
         p² = L_0^r g/I_θ; `status` and every scalar of `Response` by its name; `nominal_limit`, the rotation in rad of
-        `nominal_overturning`; `required_friction` where asked for; `error`. A run that cannot be solved has its message
-        there and no results. A run solved whose friction cannot be found has a message and no friction.
+        `nominal_overturning`; `required_friction` if requested; `error`. A run that cannot be solved has a message in
+        `error` and no results; a run whose friction cannot be found has a message and no friction.
 
     Raises
     ------
     InputError
         If a label is unknown, a sequence is empty, two motions have the same name, an argument is out of range, or
-        every run is more work than `work_limit`.
+        every run exceeds `work_limit`.
     """
     given: Any = scales
     bench = bench_of(

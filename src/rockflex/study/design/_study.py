@@ -13,7 +13,7 @@ from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, Table
-from rockflex.study._arguments import WORK_LIMIT, Structure, described, factors_of
+from rockflex.study._arguments import WORK_LIMIT, RockingStructure, described, factors_of
 from rockflex.study._subjects import Models, Motions
 from rockflex.study.cloud._study import QUIET, CloudPlan
 from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
@@ -176,7 +176,7 @@ class DesignPlan(CloudPlan):
 
 
 def run_design(
-    structure: Structure | RockingProperties,
+    structure: RockingStructure | RockingProperties,
     motions: Motions,
     half_widths: ArrayLike,
     tendons: Sequence[TendonLevel] = (),

@@ -1,4 +1,4 @@
-"""The search for the scales at which a motion overturns a structure, which keeps every run."""
+"""The search for the scales at which a motion overturns a structure, with a row for every run."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -9,18 +9,18 @@ from rockflex.study.plan._tables import Row
 
 
 def rungs(smallest: float, largest: float, growth: float) -> list[float]:
-    """Scales from `smallest`, each larger by `growth`, to `largest`, which is the last."""
+    """Return scales from `smallest` to `largest`, each `growth` times the one before; the last step may be smaller."""
     count = math.ceil(math.log(largest / smallest) / math.log(growth) - 1e-9)
     return [*(smallest * growth**step for step in range(count)), largest]
 
 
 def steps_between(growth: float, tolerance: float) -> int:
-    """Most bisections between two neighbouring rungs."""
+    """Return the largest number of bisections between two neighbouring rungs."""
     return max(0, math.ceil(math.log2((growth - 1.0) / tolerance)))
 
 
 def steps_from_rest(tolerance: float) -> int:
-    """Most bisections below the lowest rung, which a thousandth of it ends at the latest."""
+    """Return the largest number of bisections below the lowest rung, down to a thousandth of it."""
     return math.ceil(math.log2(1.0 / tolerance)) + 10
 
 
@@ -28,17 +28,17 @@ def steps_from_rest(tolerance: float) -> int:
 class Ladder:
     """Runs of one structure under one record at rising scales.
 
-    Overturning is not monotone: a structure may fall at a scale and stand at a larger one. All rungs are run, so what
-    they show of it is kept; then bisection narrows the first boundary, and the last.
+    Overturning is not monotone: a structure may overturn at a scale and survive a larger one. Therefore all rungs are
+    run; bisection then narrows the first and the last boundary.
 
     Parameters
     ----------
     run
-        The row of a scale, with its `overturned` True, False, or None where the run could not be solved.
+        Returns the row of a scale; `overturned` is True, False, or None if the run could not be solved.
     scales
-        The rungs, rising.
+        The rungs, in rising order.
     growth, tolerance
-        Of neighbouring rungs, and relative width of the boundaries found.
+        Ratio of neighbouring rungs, and relative width of the boundaries found.
     """
 
     run: Callable[[float], Row]
@@ -48,7 +48,7 @@ class Ladder:
     rows: list[Row] = field(default_factory=list[Row])
 
     def climb(self) -> list[Row]:
-        """Run all, and return the rows in order of their scales, each with what the ladder as a whole says."""
+        """Run the ladder and return its rows, sorted by scale, each with the summary of the whole ladder."""
         for scale in self.scales:
             self._try(scale)
         boundaries = self._boundaries()
@@ -64,7 +64,7 @@ class Ladder:
         return row["overturned"]
 
     def _boundaries(self) -> list[tuple[float, float]]:
-        """Neighbouring scales of which the lower stands and the upper overturns; at zero everything stands."""
+        """Return neighbouring scales of which the lower survives and the upper overturns; zero always survives."""
         known = [(0.0, False), *((row["scale"], row["overturned"]) for row in self._known())]
         return [(lower, upper) for (lower, fell), (upper, falls) in pairwise(known) if falls and not fell]
 

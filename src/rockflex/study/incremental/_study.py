@@ -1,4 +1,4 @@
-"""Incremental dynamic analysis: every record scaled until it overturns, and beyond."""
+"""Incremental dynamic analysis: every record scaled until it overturns the structure, and beyond."""
 
 import math
 from typing import TYPE_CHECKING, Literal, SupportsIndex
@@ -31,7 +31,7 @@ WIDEST = 1e12  # the last scale over the first
 class IncrementalStudy(StructuresSpec):
     """Incremental dynamic analysis (Vamvatsikos & Cornell 2002) of structures that overturn.
 
-    The table has one row a run; its columns are those of `run_incremental`.
+    The table has one row per run; its columns are those of `run_incremental`.
     """
 
     study: Literal["incremental"] = Field("incremental", description='"incremental"')
@@ -50,7 +50,7 @@ class IncrementalStudy(StructuresSpec):
         return self
 
     def plan(self) -> "IncrementalPlan":
-        """Build the structures, load the records, and cut the study into chunks.
+        """Build the structures, load the records, and divide the study into chunks.
 
         Raises
         ------
@@ -69,7 +69,7 @@ class IncrementalStudy(StructuresSpec):
 
 
 class IncrementalPlan(CrossPlan):
-    """A ladder of scales for every structure, record and model, cut into chunks."""
+    """A ladder of scales for every structure, record and model, divided into chunks."""
 
     exact_count = False
 
@@ -96,12 +96,12 @@ class IncrementalPlan(CrossPlan):
         super().__init__(bench, 1, max(1, runs_per_chunk // most))
 
     def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002
-        """The first factor of every ladder."""
+        """Return the first factor of every ladder."""
         return self.scales[0]
 
     @property
     def n_runs(self) -> int:
-        """Upper bound of the number of runs: how many bisections a ladder takes, only running it shows."""
+        """Upper bound of the number of runs: the number of bisections is only known after a ladder was run."""
         return self.n_units * self._most
 
     @property
@@ -127,7 +127,7 @@ class IncrementalPlan(CrossPlan):
 
 
 def check_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
-    """Raise an InputError unless the scales make a ladder."""
+    """Raise an InputError unless the scales form a ladder."""
     positive("smallest_scale", smallest, "times the record")
     positive("largest_scale", largest, "times the record")
     if not smallest < largest:
@@ -156,10 +156,10 @@ def run_incremental(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
-    """Scale every motion until it overturns the structure, and beyond, and keep every run.
+    """Scale every motion until it overturns the structure, and beyond, and return every run.
 
-    All scales of a geometric grid are run, since a rocking structure that a motion overturns may stand when the motion
-    is stronger. Bisection then narrows the first boundary between standing and falling, and the last. An island
+    All scales of a geometric grid are run, because a structure that a motion overturns may survive a stronger one.
+    Bisection then narrows the first and the last boundary between survival and overturning. An island of scales
     narrower than a step of the grid can be missed.
 
     Parameters
@@ -167,7 +167,7 @@ def run_incremental(
     structures, motions, models, free_vibration, bouc_wen, impact, workers, work_limit
         As in `run_cloud`.
     smallest_scale, largest_scale, growth
-        The grid: its ends, and each scale over the one before.
+        First and last scale of the grid, and the ratio of each scale to the one before.
     tolerance
         Relative width of the boundaries.
     limit
@@ -176,16 +176,15 @@ def run_incremental(
     Returns
     -------
     pandas.DataFrame
-        One row a run, rising in scale for every structure, record and model. The columns of `run_cloud`, then
-        `overturned` by the limit, and of the ladder that the run belongs to: `first_overturning_scale` (the least
-        found; missing if none), `last_survival_scale` (the largest found to stand; missing if none),
-        `resurrections` (how often the next larger scale run stands where one overturned) and `right_censored`
-        (nothing up to `largest_scale` overturned).
+        One row per run, with rising scales for every structure, record and model. The columns of `run_cloud`, then
+        `overturned` by the limit, and for the ladder of the run: `first_overturning_scale` (the smallest; missing if
+        none), `last_survival_scale` (the largest; missing if none), `resurrections` (how often a run survives after
+        the next smaller scale overturned) and `right_censored` (no scale up to `largest_scale` overturned).
 
     Raises
     ------
     InputError
-        If the scales make no grid, a model's base cannot lift, or as in `run_cloud`.
+        If the scales do not form a grid, a model's base cannot lift, or as in `run_cloud`.
     """
     bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     if not one_of(limit, ("overturning", "nominal")):
@@ -195,26 +194,26 @@ def run_incremental(
 
 
 def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.DataFrame":
-    """Intensities at which records overturn structures, one row a ladder, as fits of fragility take them.
+    """Intensities at which records overturn structures, one row per ladder, as input of `fit_capacities`.
 
     Parameters
     ----------
     runs
-        What `run_incremental`, or the plan of an `IncrementalStudy`, gives.
+        The table of `run_incremental` or of an `IncrementalStudy`.
     measure
         Name of an intensity measure among its columns.
 
     Returns
     -------
     pandas.DataFrame
-        `structure`, `motion`, `group`, `model`; `capacity`, the measure at the first scale that overturns, or where
-        `censored` the measure at the largest scale that stands; `first_overturning_scale`, `last_survival_scale`,
-        `resurrections`; `failed`, the number of runs that could not be solved. Missing where none could.
+        `structure`, `motion`, `group`, `model`; `capacity`, the measure at the first scale that overturns, or, if
+        `censored`, at the largest scale that survives; `first_overturning_scale`, `last_survival_scale`,
+        `resurrections`; `failed`, the number of runs that could not be solved. `capacity` is missing if all failed.
 
     Raises
     ------
     InputError
-        If there is no such measure.
+        If the measure is unknown.
     """
     intensity(measure)
     import pandas as pd

@@ -1,4 +1,4 @@
-"""Structures, records and models made ready for runs."""
+"""The structures, records and models of a study, prepared for its runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,18 +21,19 @@ from rockflex.study._arguments import (
     work_limit_of,
 )
 from rockflex.study._case import Case
+from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
-from rockflex.study.plan._tables import RESULTS, Columns, Row, kinds_of, peaks_of
+from rockflex.study.plan._tables import Columns, Row, kinds_of
 
 
 @dataclass(frozen=True)
 class Assumptions:
-    """What all runs of a study share.
+    """The options that all runs of a study share.
 
-    None of `free_vibration` is until settled; `bouc_wen` is that of the models whose label ends in "-BW", or of all
-    where none does; `work_limit` is the most work of each run in s, None for no limit.
+    `free_vibration` in s, None until settled. `bouc_wen` applies to the models whose label ends in "-BW", or to all if
+    there are none. `work_limit` is that of each run in s, None for no limit.
     """
 
     models: tuple[Model, ...]
@@ -44,9 +45,9 @@ class Assumptions:
 
 
 class Bench:
-    """Structures, records and models, with their engines as they are needed.
+    """Structures, records and models, with their engines, which are built when needed.
 
-    A pickle holds no engine: it is small, and the engines are made anew where it goes.
+    A pickle holds no engines, so that it is small; they are rebuilt where it is loaded.
     """
 
     def __init__(self, structures: Mapping[str, RockingProperties], motions: Suite, assumptions: Assumptions) -> None:
@@ -68,7 +69,7 @@ class Bench:
         return vars(self) | {"_cases": {}, "_measures": {}}
 
     def limited(self, work_limit: float | None) -> "Bench":
-        """Return the same with another limit of the work of each run."""
+        """Return the same bench with another work limit for each run."""
         given = dict(zip(self.names, self.structures, strict=True))
         return Bench(given, self.motions, replace(self.assumptions, work_limit=work_limit))
 
@@ -79,7 +80,7 @@ class Bench:
         found |= record_columns(self.motions)
         found |= {"model": self.labels, "scale": float}
         found |= dict.fromkeys((measure.name for measure in intensities()), float)
-        found |= {"status": str, **RESULTS, "nominal_limit": float}
+        found |= result_columns() | {"nominal_limit": float}
         if self.assumptions.friction:
             found["required_friction"] = float
         return found | {"error": str}
@@ -93,7 +94,7 @@ class Bench:
         return found
 
     def run(self, structure: int, record: int, model: int, scale: float) -> Row:
-        """Simulate one run; of one that cannot be solved the row holds the message, and no result."""
+        """Simulate one run and return its row; if it cannot be solved, the row has a message and no results."""
         row: Row = {"structure": structure, **self._facts[record], "model": model, "scale": scale}
         row |= scaled_measures(self.measures(structure, record), scale)
         case = self._case(structure, model)
@@ -103,17 +104,17 @@ class Bench:
             response = case.run(self.motions[record], scale)
         except (SolverError, InputError) as error:
             return row | {"error": str(error)}
-        row |= {"status": response.status, **peaks_of(response)}
+        row |= results_of(response)
         row["nominal_limit"] = case.model.properties.nominal_overturning_rotation
         return row | _friction(response) if self.assumptions.friction else row
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
-        """What a run is asked, to estimate its work by; None if there is no such model."""
+        """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
         case = self._case(structure, model)
         return None if isinstance(case, str) else case.task(self.motions[record], scale)
 
     def check_work(self, runs: Iterable[tuple[int, int, int, float]]) -> None:
-        """Raise the error of the first of these runs if every one of them is more work than it may be."""
+        """Raise the error of the first of these runs if every one of them exceeds its work limit."""
         first: WorkLimitError | None = None
         for run in runs:
             task = self.task(*run)
@@ -129,7 +130,7 @@ class Bench:
             raise first
 
     def _case(self, structure: int, model: int) -> Case | str:
-        """The case of a structure and a model, made once, or why there is none."""
+        """Return the case of a structure and a model, which is built once, or the reason why there is none."""
         found = self._cases.get((structure, model))
         if found is None:
             found = self._cases[structure, model] = self._new_case(structure, model)
@@ -159,7 +160,7 @@ def check_different(name: str, values: Sequence[str]) -> None:
 
 
 def record_facts(motions: Suite) -> list[Row]:
-    """What the rows of a table say of each record; the codes of its name and group."""
+    """Return the columns that describe each record; its name and group are codes."""
     groups = list(dict.fromkeys(record_group(motion) for motion in motions))
     facts: list[Row] = []
     for place, motion in enumerate(motions):
@@ -176,7 +177,7 @@ def record_facts(motions: Suite) -> list[Row]:
 
 
 def record_columns(motions: Suite) -> Columns:
-    """Columns for what `record_facts` says."""
+    """Return the columns that `record_facts` fills."""
     groups = list(dict.fromkeys(record_group(motion) for motion in motions))
     return {"motion": motions.names, "group": groups, **kinds_of("magnitude distance_km", float)}
 
@@ -192,7 +193,7 @@ def bench_of(
     friction: bool = False,
     work_limit: float | None = WORK_LIMIT,
 ) -> Bench:
-    """Check the arguments of a study in Python, and make them ready; structures without names are "S1", "S2", ...
+    """Check the arguments of a study in Python and return its bench; structures without names are "S1", "S2", ...
 
     Raises
     ------

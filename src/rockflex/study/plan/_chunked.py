@@ -1,4 +1,4 @@
-"""A study cut into chunks that can be computed anywhere."""
+"""A study divided into chunks that can be computed anywhere."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
@@ -8,14 +8,14 @@ from rockflex._checks import whole_number
 from rockflex.motion import Suite, check_horizontal
 from rockflex.study._runs import map_runs
 from rockflex.study.plan._records import checksums
-from rockflex.study.plan._tables import Columns, Row, Table, tabulate, to_frame
+from rockflex.study.plan._tables import ArrowTable, Columns, Row, tabulate, to_frame
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 class ChunkedPlan(ABC):
-    """A plan of `n_units` units, each some rows of the table, that are computed `per_chunk` at a time.
+    """A plan of `n_units` units, computed `per_chunk` at a time; each unit gives some rows of the table.
 
     A unit depends only on its own number, so the size of the chunks changes no row.
     """
@@ -44,12 +44,12 @@ class ChunkedPlan(ABC):
         """Compute the rows of one unit."""
 
     def check_work(self) -> None:
-        """Refuse a study of which every run is more work than it may be, if its runs are known beforehand.
+        """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none.
 
         Raises
         ------
         InputError
-            If there is no run that may be made.
+            If no run is within its work limit.
         """
         return
 
@@ -63,13 +63,13 @@ class ChunkedPlan(ABC):
         """SHA-256 of each record's step and samples, by its name."""
         return checksums(self.motions)
 
-    def chunk(self, number: SupportsIndex) -> Table:
-        """Compute a chunk: the same table, to the last bit, whenever and wherever it is computed.
+    def chunk(self, number: SupportsIndex) -> ArrowTable:
+        """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed.
 
         Raises
         ------
         InputError
-            If there is no such chunk. A run that cannot be solved is a row with its message in `error`.
+            If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
         """
         first = self.per_chunk * whole_number("number", number, 0, self.n_chunks - 1)
         units = range(first, min(first + self.per_chunk, self.n_units))
@@ -82,7 +82,7 @@ def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.Dat
     Parameters
     ----------
     plan
-        What `.plan()` of a study returns.
+        The plan that `.plan()` of a study returns.
     workers
         Number of threads; None for one a core.
 
@@ -92,7 +92,7 @@ def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.Dat
         The rows of all chunks; see the study for its columns.
     """
     plan.check_work()
-    tables: dict[int, Table] = {}
+    tables: dict[int, ArrowTable] = {}
 
     def work(number: int) -> None:
         tables[number] = plan.chunk(number)

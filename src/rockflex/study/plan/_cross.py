@@ -9,7 +9,7 @@ from rockflex.study.plan._tables import Columns, Row
 
 
 class CrossPlan(ChunkedPlan):
-    """The cross product of structures, records, models and `n_levels` levels, a unit each, cut into chunks."""
+    """The cross product of structures, records, models and `n_levels` levels, one unit each, divided into chunks."""
 
     def __init__(self, bench: Bench, n_levels: int, per_chunk: int) -> None:
         self.bench, self._n_levels = bench, n_levels
@@ -35,17 +35,17 @@ class CrossPlan(ChunkedPlan):
         yield self.bench.run(*self.run_of(unit))
 
     def check_work(self) -> None:
-        """Refuse a study of which every run is more work than it may be.
+        """Refuse a study if every run exceeds its work limit.
 
         Raises
         ------
         InputError
-            If there is no run that may be made.
+            If no run is within its work limit.
         """
         self.bench.check_work(map(self.run_of, range(self.n_units)))
 
     def run_of(self, unit: int) -> tuple[int, int, int, float]:
-        """Structure, record and model of a unit by their places, and the scale of its run, or of its first."""
+        """Return the places of the structure, record and model of a unit, and the scale of its (first) run."""
         rest, level = divmod(unit, self._n_levels)
         rest, model = divmod(rest, len(self.bench.labels))
         structure, record = divmod(rest, len(self.bench.motions))

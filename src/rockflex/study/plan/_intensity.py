@@ -1,4 +1,4 @@
-"""Intensity measures of a scaled motion, seen from a structure."""
+"""Intensity measures of a scaled motion for a structure."""
 
 import math
 
@@ -8,7 +8,7 @@ from rockflex.motion import MEASURES, GroundMotion, Shaking, intensities
 
 
 def intensity_measures(properties: RockingProperties, motion: GroundMotion) -> dict[str, float]:
-    """Measures of a motion that shakes a structure, by their names; those of a mode are NaN for a rigid block."""
+    """Return the measures of a motion for a structure, by name; those of a mode are NaN for a rigid block."""
     omega, zeta = math.nan, math.nan
     if properties.n_modes:
         omega, zeta = float(properties.omega[0]), float(properties.zeta[0])
@@ -19,5 +19,5 @@ def intensity_measures(properties: RockingProperties, motion: GroundMotion) -> d
 
 
 def scaled_measures(measures: dict[str, float], scale: float) -> dict[str, float]:
-    """Measures of the motion multiplied by `scale`, of either sign."""
+    """Return the measures of the motion multiplied by `scale`, which may be negative."""
     return {name: MEASURES[name].scaled(value, scale) for name, value in measures.items()}

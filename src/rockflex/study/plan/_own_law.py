@@ -1,4 +1,4 @@
-"""What the folder of a study says of a user's own impact law, so that no other law goes on in it."""
+"""The record of a user-defined impact law in the folder of a study, which must not be resumed with another law."""
 
 import hashlib
 import inspect
@@ -13,12 +13,12 @@ from rockflex.models import ImpactLaw
 
 
 def law_document(law: ImpactLaw) -> dict[str, Any]:
-    """Return the law's class, its words and the values that it holds, as plain JSON.
+    """Return the class of a law, the names of what it keeps and loses, and its values, as plain JSON.
 
     Raises
     ------
     InputError
-        If it holds something else than numbers, texts, arrays, and lists, tuples or dictionaries of them.
+        If a value is not a number, text, array, or a list, tuple or dictionary of them.
     """
     kind = type(law)
     state = cast("Any", law).__getstate__()
@@ -28,12 +28,12 @@ def law_document(law: ImpactLaw) -> dict[str, Any]:
 
 
 def law_checksum(law: ImpactLaw) -> dict[str, str]:
-    """Return the SHA-256 of the module that defines the law's class; nothing of a law of this package.
+    """Return the SHA-256 of the module that defines the class of a law; an empty dictionary for laws of rockflex.
 
     Raises
     ------
     InputError
-        If the class stands in no file.
+        If the class is not defined in a file.
     """
     kind = type(law)
     if kind.__module__.partition(".")[0] == __name__.partition(".")[0]:
@@ -42,8 +42,8 @@ def law_checksum(law: ImpactLaw) -> dict[str, str]:
         source = inspect.getsource(sys.modules[kind.__module__])
     except (OSError, TypeError, KeyError) as error:
         raise InputError(
-            f"The impact law {kind.__qualname__} stands in no file, so a study's folder cannot tell later whether it "
-            "is still the same law. Put it into a module (a .py file) and import it, or run the study without a folder."
+            f"The impact law {kind.__qualname__} is not defined in a file, so a study that is resumed cannot check that "
+            "it is the same law. Put it into a module (a .py file) and import it, or run the study without a folder."
         ) from error
     return {f"impact, {kind.__module__}": hashlib.sha256(source.encode()).hexdigest()}
 

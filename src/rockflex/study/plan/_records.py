@@ -1,4 +1,4 @@
-"""Which records a study runs through."""
+"""The records of a study."""
 
 import hashlib
 from collections.abc import Iterable
@@ -32,13 +32,13 @@ class Records(Table):
         return self
 
     def load(self, base: Path) -> Suite:
-        """Load the records, those of the suites first; a path that is not absolute starts from `base`.
+        """Load the records, first those of the suites; relative paths start from `base`.
 
         Raises
         ------
         InputError
             If a suite is unknown, the folder or, unless `on_error` is "skip", a file in it cannot be read, two records
-            have the same name, or a pattern of `include` fits none.
+            have the same name, or a pattern of `include` matches no record.
         """
         motions = [motion for name in self.suites for motion in load_suite(name)]
         if self.folder is not None:
@@ -54,9 +54,9 @@ class Records(Table):
 
 
 def record_group(motion: GroundMotion) -> str:
-    """Name that the components of one recording share: they are not independent of each other.
+    """Return the name that the components of one recording share, because they are not independent.
 
-    It is the record sequence number where that is known, else the earthquake and station, else the record's own name.
+    It is the record sequence number if known, else earthquake and station, else the name of the record.
     """
     info = motion.metadata
     if info is not None and info.rsn is not None:

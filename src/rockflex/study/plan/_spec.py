@@ -1,4 +1,4 @@
-"""What every study's specification shares."""
+"""The specification of a study: the keys that all kinds share."""
 
 import math
 from pathlib import Path
@@ -20,12 +20,12 @@ from rockflex.study.plan._records import Records
 
 
 class Spec(Table):
-    """A study, as it stands in a file or is written in Python; tables within it are given as dictionaries.
+    """A study as a file or Python describes it; in Python, its tables are dictionaries.
 
     Raises
     ------
     InputError
-        If a key is unknown or missing, or a value is not what its key takes; the message says it of each.
+        If a key is unknown or missing, or a value is wrong; the message lists them all.
     """
 
     name: str = Field("", description="a name, in quotes")
@@ -61,21 +61,21 @@ class Spec(Table):
         raise NotImplementedError
 
     def document(self) -> dict[str, Any]:
-        """Everything that determines the study, as JSON has it: infinite numbers as "inf", what is None left out."""
+        """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out."""
         return _plain(self.model_dump(exclude_none=True))
 
     def checksums(self) -> dict[str, str]:
-        """SHA-256 of the numbers in each file that a structure names, by its place in the document."""
+        """Return the SHA-256 of the numbers in each file that a structure names, by its key in the document."""
         return {}
 
     def read_from(self, folder: Path) -> Self:
-        """Take the paths in it from a folder, in place of the working directory; return it."""
+        """Let relative paths start from a folder instead of the working directory, and return the study."""
         self._folder = folder
         return self
 
 
 class StructuresSpec(Assumed, Spec):
-    """A study of given structures: what it simulates, and how."""
+    """A study of given structures: the structures, the models, and the options of the runs."""
 
     structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
     models: list[str] = Field(["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
@@ -97,24 +97,24 @@ class StructuresSpec(Assumed, Spec):
         return value
 
     def document(self) -> dict[str, Any]:
-        """Everything that determines the study, as JSON has it: infinite numbers as "inf", what is None left out.
+        """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out.
 
         Raises
         ------
         InputError
-            If `impact` is a law of the user's own whose values JSON does not know.
+            If `impact` is a user-defined law with a value that is not plain JSON.
         """
         if self.impact is None or isinstance(self.impact, str):
             return super().document()
         return self.model_copy(update={"impact": None}).document() | {"impact": _plain(law_document(self.impact))}
 
     def checksums(self) -> dict[str, str]:
-        """SHA-256 of the numbers in each file that a structure names, and of the module of the user's own impact law.
+        """Return the SHA-256 of the numbers in each file that a structure names, and of a user-defined impact law.
 
         Raises
         ------
         InputError
-            If that law stands in no file.
+            If that law is not defined in a file.
         """
         files = {
             f"structures[{place}].{key}": value
@@ -129,7 +129,7 @@ class StructuresSpec(Assumed, Spec):
         Raises
         ------
         InputError
-            If one of either cannot be had, or the options contradict each other.
+            If a structure or a record is not available, or the options contradict each other.
         """
         names = [entry.name or f"S{place}" for place, entry in enumerate(self.structures, start=1)]
         check_different("the names of the structures", names)

@@ -26,7 +26,7 @@ COUNTED = (OVERTURNING, NOMINAL, UPLIFT)
 class StripeStudy(StructuresSpec):
     """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
 
-    The table has the columns of `run_cloud` with the `level` of the stripe; `stripe_counts` counts it.
+    The table has the columns of `run_cloud` and the `level` of the stripe; `stripe_counts` counts its runs.
     """
 
     study: Literal["stripes"] = Field("stripes", description='"stripes"')
@@ -34,7 +34,7 @@ class StripeStudy(StructuresSpec):
     levels: list[float] = Field(min_length=1, description="a list of levels of the measure, in SI units")
 
     def plan(self) -> "StripePlan":
-        """Build the structures, load the records, and cut the study into chunks.
+        """Build the structures, load the records, and divide the study into chunks.
 
         Raises
         ------
@@ -46,22 +46,22 @@ class StripeStudy(StructuresSpec):
 
 
 class StripePlan(CrossPlan):
-    """The cross product of structures, records, models and levels, cut into chunks."""
+    """The cross product of structures, records, models and levels, divided into chunks."""
 
     def __init__(self, bench: Bench, measure: str, levels: Sequence[float], per_chunk: int) -> None:
-        asked = intensity(measure)
-        self.measure = measure  # by its name, which a pickle can hold
+        chosen = intensity(measure)
+        self.measure = measure  # the name, because a pickle cannot hold the measure
         self.levels = positive_numbers("levels", levels, "")
         for structure, name in enumerate(bench.names):
             for record, motion in enumerate(bench.motions):
-                if not math.isfinite(asked.factor(bench.measures(structure, record)[measure], 1.0)):
+                if not math.isfinite(chosen.factor(bench.measures(structure, record)[measure], 1.0)):
                     raise InputError(
                         f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
                     )
         super().__init__(bench, len(self.levels), per_chunk)
 
     def scale(self, structure: int, record: int, level: int) -> float:
-        """Factor that takes a record to a level of the measure."""
+        """Return the factor that scales a record to a level of the measure."""
         value = self.bench.measures(structure, record)[self.measure]
         return intensity(self.measure).factor(value, self.levels[level])
 
@@ -79,20 +79,20 @@ class StripePlan(CrossPlan):
 def stripe_counts(
     runs: "pd.DataFrame", limit: Literal["overturning", "nominal", "uplift"] | float = "overturning"
 ) -> "pd.DataFrame":
-    """Count the runs of each stripe that exceed a limit, as fits of fragility take them.
+    """Count the runs of each stripe that exceed a limit, as input of `fit_stripes`.
 
     Parameters
     ----------
     runs
-        What the plan of a `StripeStudy` gives.
+        The table of a `StripeStudy`.
     limit
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
 
     Returns
     -------
     pandas.DataFrame
-        One row a structure, model and level: `structure`, `model`, `level`, `n_exceeding`, `n_total`; runs that could
-        not be solved are in neither.
+        One row per structure, model and level: `structure`, `model`, `level`, `n_exceeding`, `n_total`. Runs that could
+        not be solved are not counted.
 
     Raises
     ------

@@ -10,6 +10,7 @@ from rockflex._checks import in_range, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
+from rockflex.study._results import STATUSES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 FEWEST = 3  # pairs, below which nothing is said
-STATUSES = ("no_uplift", "rocking", "overturned")
 SUMS = 6  # per comparison, from which slope and R² follow
 SHOWN = (
     *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion", "pga", "pgv"),

@@ -16,11 +16,12 @@ from rockflex.response import Response, respond
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
 from rockflex.study._case import Case
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
+from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Motions, motions_of
 from rockflex.study.plan._bench import record_columns, record_facts
 from rockflex.study.plan._chunked import ChunkedPlan, run_plan
 from rockflex.study.plan._spec import Spec
-from rockflex.study.plan._tables import RESULTS, Columns, Row, kinds_of, peaks_of
+from rockflex.study.plan._tables import Columns, Row, kinds_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,8 +106,7 @@ class PopulationPlan(ChunkedPlan):
         found: dict[str, Any] = {"pair": int, "n_stories": int, "behaviour": BEHAVIOURS, **kinds_of(DRAWN, float)}
         found |= record_columns(self.motions)
         found |= kinds_of("pga pgv", float) | kinds_of(STRUCTURE, float) | kinds_of(SECOND, float)
-        for suffix in ("_mdof", "_2dof"):
-            found |= {"status" + suffix: str} | {name + suffix: kind for name, kind in RESULTS.items()}
+        found |= result_columns("_mdof") | result_columns("_2dof")
         return found | kinds_of(COMBINED, float) | {"error": str}
 
     def rows(self, unit: int) -> list[Row]:
@@ -122,9 +122,9 @@ class PopulationPlan(ChunkedPlan):
             one_mode, _ = self._run(LinearModel("2DOF-S", properties.truncated(1)), motion)
         except (SolverError, InputError) as error:
             return [row | {"error": str(error)}]
-        row |= {"status_mdof": all_modes.status, **peaks_of(all_modes, "_mdof")}
+        row |= results_of(all_modes, "_mdof")
         row["max_second_displacement_mdof"] = second_peak
-        row |= {"status_2dof": one_mode.status, **peaks_of(one_mode, "_2dof")}
+        row |= results_of(one_mode, "_2dof")
         return [row | _combined(one_mode, second)]
 
     def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
