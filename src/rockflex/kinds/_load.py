@@ -30,6 +30,23 @@ def load_study(path: str | Path) -> Spec:
     ------
     InputError
         If the file cannot be read, a key is unknown or missing, or a value is wrong; the message names file and key.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import rockflex as rf
+    >>> text = '''
+    ... study = "population"
+    ... pairs = 5
+    ... records.suites = ["el-centro-1940"]
+    ... '''
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "study.toml")
+    ...     _ = file.write_text(text)
+    ...     study = rf.load_study(file)
+    >>> study.plan().n_runs
+    10
     """
     file = path_of("path", path)
     content = read_toml(file, "study")

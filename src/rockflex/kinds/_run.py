@@ -31,7 +31,17 @@ PATIENCE = 2.0  # s that it takes at most, the compilation aside
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study has come; of its parts some may have been `kept` from an earlier call."""
+    """How far a study has come; of its parts some may have been `kept` from an earlier call.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> study = rf.PopulationStudy(pairs=3, seed=1, runs_per_chunk=2, records={"suites": ["el-centro-1940"]})
+    >>> seen = []
+    >>> table = rf.run_study(study, progress=seen.append)
+    >>> seen[-1]
+    Progress(parts=3, done=3, kept=0, runs=3)
+    """
 
     parts: int
     done: int
@@ -78,6 +88,16 @@ def run_study(
         If the specification is wrong, the folder holds another study or cannot be written, or no cluster answers.
     ClusterError
         If the cluster is lost. What was stored is kept.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> study = rf.PopulationStudy(pairs=3, seed=1, records={"suites": ["el-centro-1940"]})
+    >>> rf.run_study(study)[["pair", "n_stories", "status_mdof"]]
+       pair  n_stories status_mdof
+    0     0          4     rocking
+    1     1          4     rocking
+    2     2          3     rocking
     """
     from rockflex.kinds._load import load_study
     from rockflex.study.plan import to_frame
@@ -145,6 +165,13 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     -------
     float
         Time in s, the compilation of a first call aside.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> study = rf.PopulationStudy(pairs=3, seed=1, records={"suites": ["el-centro-1940"]})
+    >>> rf.estimate_time(study) < 60.0
+    True
     """
     plan = study.plan()
     plan.check_work()

@@ -53,6 +53,15 @@ def frequency_ratios(
     References
     ----------
     Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> rf.frequency_ratios(frame, [2.0, 10.0], n_modes=1)[["model", "aspect_ratio", "ratio"]].round(2)
+        model  aspect_ratio  ratio
+    0  2DOF-S           2.0   1.85
+    1  2DOF-S          10.0   7.67
     """
     ratios = positive_numbers("aspect_ratios", aspect_ratios, "")
     properties = properties_of(structure)

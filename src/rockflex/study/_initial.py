@@ -38,6 +38,15 @@ class InitialState(Value):
     ------
     InputError
         If a value is not a finite number, |θ| is not below π/2, or another value is not below 1e9 in magnitude.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=2.0)
+    >>> start = rf.InitialState(rotation=0.1)
+    >>> response = rf.simulate(block, rf.quiet_motion(5.0), "rigid", initial=start)
+    >>> round(response.max_rotation, 3)
+    0.1
     """
 
     rotation: float

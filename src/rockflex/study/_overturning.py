@@ -48,6 +48,15 @@ class OverturningScales(Value):
         the scan stands although a smaller one overturned; `lowest`, within the tolerance, if there is one boundary.
     impacts
         Number of impacts before overturning at `lowest`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0), "2DOF-S")
+    >>> found.impacts
+    0
     """
 
     lowest: float
@@ -90,6 +99,15 @@ def overturning_scales(
         If the scales do not rise, a value is out of range, or the model has a base that cannot lift.
     SolverError
         If a run cannot be solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0))
+    >>> round(found.lowest, 3), found.impacts
+    (2.372, 1)
     """
     tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
@@ -146,6 +164,15 @@ def overturning_spectrum(
         If a value is out of range, or `pulse` does not return a ground motion.
     SolverError
         If a run cannot be solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=2.0)
+    >>> table = rf.overturning_spectrum(block, rf.one_sine_pulse, [3.0], relative_amplitudes=(1.0, 10.0))
+    >>> table[["frequency_ratio", "lowest"]].round(3)
+       frequency_ratio  lowest
+    0              3.0   1.387
     """
     ratios = positive_numbers("frequency_ratios", frequency_ratios, "")
     tried = _scan("relative_amplitudes", relative_amplitudes)

@@ -64,6 +64,15 @@ def rocking_spectrum(
     ------
     InputError
         If a value is out of range, the model has modes, or a block is too squat for Housner's coefficient.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> rf.rocking_spectrum(pulse, [0.2], [2.0, 4.0])[["period", "status", "relative_rotation"]].round(3)
+       period      status  relative_rotation
+    0     2.0  overturned              7.854
+    1     4.0     rocking              0.272
     """
     alphas, times = positive_numbers("slendernesses", slendernesses, "rad"), positive_numbers("periods", periods, "s")
     chosen = parse_model(model)

@@ -83,6 +83,15 @@ def simulate(
         vertical component; if the run is more work than `work_limit`, or its history more than memory holds.
     SolverError
         If the run cannot be solved, or has done the work of `work_limit`; the message names the time and the state.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> response = rf.simulate(frame, pulse, "2DOF-S")
+    >>> response.status, round(response.max_rotation, 4)
+    ('rocking', 0.0198)
     """
     check_output(output)
     check_options(bouc_wen, impact)

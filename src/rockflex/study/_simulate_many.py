@@ -82,6 +82,19 @@ def simulate_many(
     InputError
         If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, a motion is a
         vertical component, a scaled motion would overflow, or every run exceeds `work_limit`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> table = rf.simulate_many(frame, pulse, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0))
+    >>> table[["model", "scale", "status"]]
+        model  scale   status
+    0  2DOF-S    0.5  rocking
+    1  2DOF-S    1.0  rocking
+    2  MDOF-S    0.5  rocking
+    3  MDOF-S    1.0  rocking
     """
     check_output(output)
     check_options(bouc_wen, impact)

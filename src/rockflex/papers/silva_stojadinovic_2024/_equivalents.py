@@ -1,7 +1,7 @@
 """Equivalents of two tested specimens, built from published ratios (docs/design/0007-specimen-equivalents.md).
 
-They are not the specimens: masses, lengths and damping of those are not in the publication. What the ratios leave free
-is an argument, and the mass above the base is 1 kg, since the response does not depend on it.
+They are not the specimens, whose masses, lengths and damping are not published. The parameters that the ratios do not
+fix are arguments. The mass above the base is 1 kg, because the response does not depend on it.
 """
 
 import math
@@ -19,24 +19,24 @@ from rockflex.structure import LumpedStructure
 
 Float = NDArray[np.float64]
 
-_SPACING = (1.25, 1.7)  # beyond, no positive masses meet both ratios of S1 with room to spare
+_SPACING = (1.25, 1.7)  # outside, positive masses barely meet both ratios of S1, or do not exist
 
 
 def equivalent_2hz_long_base(base_mass_ratio: float, damping_ratio: float, n_modes: int = 2) -> RockingProperties:
     """Equivalent of specimen 2Hz-Long Base(14): a uniform cantilever with a mass at its tip.
 
-    It meets T_1 = 0.5 s, m*_1/m_s = 0.92, B/h*_1 = 0.16 and, to two digits, m*_1 h*_1/L_0^r = 0.98 (Silva &
-    Stojadinović 2024, Section 3.1). Its size follows from the 7 % by which the simplified resisting moment exceeds the
-    complete one: m*_1 D_1 / (m_tot B) = g / (ω_1² h*_1) when the base lifts, so h*_1 = 0.888 m.
+    It has T_1 = 0.5 s, m*_1/m_s = 0.92, B/h*_1 = 0.16 and, to two digits, m*_1 h*_1/L_0^r = 0.98 (Silva & Stojadinović
+    2024, Section 3.1). Its size follows from the 7 % by which the simplified resisting moment exceeds the complete one:
+    m*_1 D_1 / (m_tot B) = g / (ω_1² h*_1) when the base lifts, so h*_1 = 0.888 m.
 
     Parameters
     ----------
     base_mass_ratio
-        Mass m_0 of the base over that above it, zero or positive. Not published.
+        Mass m_0 of the base over the mass above it, zero or positive. Not published.
     damping_ratio
         Damping ratio of every mode in [0, 1). Not published.
     n_modes
-        Modes of the cantilever to keep, from 1 to 5; the paper keeps two.
+        Number of modes of the cantilever, from 1 to 5; the paper uses two.
 
     Returns
     -------
@@ -47,6 +47,12 @@ def equivalent_2hz_long_base(base_mass_ratio: float, damping_ratio: float, n_mod
     ------
     InputError
         If a value is out of range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.equivalent_2hz_long_base(base_mass_ratio=0.1, damping_ratio=0.01).effective_height.round(3).tolist()
+    [0.887, 0.228]
     """
     heavy = positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True)
     zeta = damping_ratios("damping_ratio", damping_ratio, 1)[0]
@@ -82,22 +88,22 @@ def equivalent_s1(
 ) -> RockingProperties:
     """Equivalent of specimen S1: five masses, irregularly spaced, on a uniform column without mass.
 
-    It meets T_1 = 0.11 s, m*_1/m_s = 0.48 and m*_1 h*_1/L_0^r = 0.87 (Silva & Stojadinović 2024, Section 3.1), which
-    do not fix it: the masses stand at the heights H (i/5)^a, the three in the middle are equal, and the lowest and
-    the highest are found from the two ratios. All five modes are kept.
+    It has T_1 = 0.11 s, m*_1/m_s = 0.48 and m*_1 h*_1/L_0^r = 0.87 (Silva & Stojadinović 2024, Section 3.1). These do
+    not determine it uniquely, so the masses are placed at the heights H (i/5)^a and the middle three are equal; the two
+    ratios give the lowest and the highest. All five modes are included.
 
     Parameters
     ----------
     base_mass_ratio
-        Mass m_0 of the base over that above it, zero or positive. Not published.
+        Mass m_0 of the base over the mass above it, zero or positive. Not published.
     damping_ratio
         Damping ratio of every mode in [0, 1). Not published.
     width_ratio
         B/h*_1, positive. Not published.
     effective_height
-        h*_1 in m, positive. Not published, and no ratio gives it.
+        h*_1 in m, positive. Not published, and not determined by the ratios.
     spacing
-        a in [1.25, 1.7); 1 would be equal spacing, for which no positive masses were found.
+        Exponent a in [1.25, 1.7). For equal spacing, a = 1, no positive masses were found.
 
     Returns
     -------
@@ -108,6 +114,13 @@ def equivalent_s1(
     ------
     InputError
         If a value is out of range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> p = rf.equivalent_s1(base_mass_ratio=0.3, damping_ratio=0.02, width_ratio=0.2, effective_height=1.0)
+    >>> p.n_modes, round(6.2832 / float(p.omega[0]), 3)
+    (5, 0.11)
     """
     height = positive("effective_height", effective_height, "m")
     exponent = in_range("spacing", spacing, *_SPACING, hint="Elsewhere no masses meet both ratios well.")
@@ -127,7 +140,7 @@ def equivalent_s1(
 
 
 def tipped_cantilever(tip: float, n_modes: int) -> tuple[Float, Float, Float, Float]:
-    """Modes of a uniform Euler-Bernoulli cantilever of unit length with `tip` times its mass at the tip.
+    """Return the modes of a uniform Euler-Bernoulli cantilever of unit length with `tip` times its mass at the tip.
 
     Returns
     -------
@@ -157,13 +170,13 @@ def tipped_cantilever(tip: float, n_modes: int) -> tuple[Float, Float, Float, Fl
 
 @lru_cache(maxsize=4)
 def _tip_mass_ratio(share: float) -> float:
-    """Tip mass, in masses of the column, at which m*_1 is `share` of both."""
+    """Return the tip mass, over that of the column, for which m*_1 is `share` of their sum."""
     return float(brentq(lambda tip: float(tipped_cantilever(tip, 1)[1][0]) - share, 0.0, 100.0, xtol=1e-12))
 
 
 @lru_cache(maxsize=32)
 def _five_masses(spacing: float) -> tuple[Float, Float]:
-    """Heights and masses, both with a largest or a sum of 1, that meet the two ratios of S1."""
+    """Return heights (largest 1) and masses (sum 1) that meet the two ratios of S1."""
     x = (np.arange(1, 6) / 5.0) ** spacing
 
     stiffness = _cantilever_stiffness(x)
@@ -190,7 +203,7 @@ def _five_masses(spacing: float) -> tuple[Float, Float]:
 
 
 def _cantilever_stiffness(x: Float) -> Float:
-    """Stiffness of a uniform cantilever with EI = 1, condensed to the heights `x`."""
+    """Return the stiffness of a uniform cantilever with EI = 1, condensed to the heights `x`."""
     low, high = np.minimum.outer(x, x), np.maximum.outer(x, x)
     stiffness = np.linalg.inv(low**2 * (3.0 * high - low) / 6.0)
     return 0.5 * (stiffness + stiffness.T)

@@ -1,8 +1,8 @@
 """The random pairs of Sections 3.3 and 3.4, which Figures 8, 9 and 13 share.
 
-The paper drew a thousand pairs once. A few outliers among them rule what it prints, so what comes of one draw says
-little, and resampling that draw cannot show the outliers that it did not meet. Here some ten thousands of pairs are
-run, and a thousand are drawn from them, without replacement, some hundred times: as other seeds would have.
+The paper drew a thousand pairs once. A few outliers dominate its numbers, so one draw says little, and resampling it
+cannot show the outliers that it missed. Here tens of thousands of pairs are run, and several hundred samples of a
+thousand are drawn from them without replacement, as if with other seeds.
 """
 
 from functools import lru_cache
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 PAIRS, SEED = 1000, 2024
 DRAWS = 400
-KNOWN = 0.95  # of the draws, for which a measure must exist
+KNOWN = 0.95  # share of the draws in which a measure must exist
 
 
 @lru_cache(maxsize=1)
@@ -33,15 +33,15 @@ def pool(records: Records) -> "pd.DataFrame":
 
 
 def population(records: Records) -> "pd.DataFrame":
-    """The first thousand, which the figures show."""
+    """Return the first thousand pairs, which the figures show."""
     return pool(records).iloc[:PAIRS]
 
 
 @lru_cache(maxsize=1)
 def intervals(records: Records) -> dict[str, Interval]:
-    """Median of each `measure` over draws of a thousand pairs, and its quantiles of 5 and 95 %.
+    """Return the median of each `measure` over draws of a thousand pairs, and its 5 and 95 % quantiles.
 
-    What does not exist in one draw out of twenty, such as a slope without enough pairs, is NaN.
+    A measure that is missing in more than one draw out of twenty, such as a slope without enough pairs, is NaN.
     """
     pairs, generator = pool(records), np.random.default_rng(SEED)
     drawn = [
@@ -53,7 +53,7 @@ def intervals(records: Records) -> dict[str, Interval]:
         values = np.array([each[name] for each in drawn])
         known = values[~np.isnan(values)]
         enough = known.size >= KNOWN * DRAWS
-        # Quantiles that occur, so that counts stay whole numbers.
+        # Quantiles are values that occur, so that counts remain integers.
         quantiles = np.quantile(known, (0.5, 0.05, 0.95), method="inverted_cdf") if enough else np.full(3, np.nan)
         found[name] = Interval(*quantiles.tolist())
     return found

@@ -1,4 +1,4 @@
-"""What a verdict on a printed number can be, and what each one means."""
+"""The verdicts on a printed number, and their meanings."""
 
 from enum import StrEnum
 
@@ -6,7 +6,7 @@ WIDEST = 0.5  # of the printed value: the width of an interval, above which it t
 
 
 class Verdict(StrEnum):
-    """How a number of ours stands to the printed one; `_number` has the rules."""
+    """How our number compares with the printed one; `_number` has the rules."""
 
     REPRODUCED = "reproduced"
     COMPATIBLE = "compatible"

@@ -1,4 +1,4 @@
-"""The random pairs of Sections 3.3 and 3.4 once more, under weaker records."""
+"""The random pairs of Sections 3.3 and 3.4 under weaker records."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -13,11 +13,11 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 if TYPE_CHECKING:
     import pandas as pd
 
-FACTOR = 0.6  # times the records' acceleration
+FACTOR = 0.6  # on the acceleration of the records
 
 
 def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remark:
-    """Show some measures, each with its name and its printed value, with records as they are and with weaker ones."""
+    """Compare some measures, with their printed values, for unscaled and for weaker records."""
     as_they_are, weaker = intervals(records), measure(_pairs(records))
     return Remark(
         Kind.AFTERWARDS,
@@ -34,6 +34,6 @@ def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remar
 
 @lru_cache(maxsize=1)
 def _pairs(records: Records) -> "pd.DataFrame":
-    """The same structures as the first thousand of the population."""
+    """Return the measures of the first thousand structures of the population under weaker records."""
     suite = rf.Suite([motion.scaled(FACTOR) for motion in records.suite])
     return rf.run_population(suite, PAIRS, SEED)

@@ -23,6 +23,17 @@ class CloudStudy(StructuresSpec):
 
     The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
     `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> study = rf.CloudStudy(
+    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, scales=[1.0, 2.0]
+    ... )
+    >>> study.plan().n_runs
+    2
     """
 
     study: Literal["cloud"] = Field("cloud", description='"cloud"')
@@ -85,7 +96,7 @@ def run_cloud(
     models, scales, free_vibration, bouc_wen, impact
         As in `simulate_many`.
     friction
-        Whether to find the friction that prevents sliding of the base (Eqs. 20-22), which needs the history of every run.
+        Whether to find the friction that prevents sliding (Eqs. 20-22), which needs the history of every run.
     workers
         Number of threads; None for one a core.
     work_limit
@@ -107,6 +118,16 @@ def run_cloud(
     InputError
         If a label is unknown, a sequence is empty, two motions have the same name, an argument is out of range, or
         every run exceeds `work_limit`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> rf.run_cloud(frame, pulse, "2DOF-S", scales=(0.5, 1.0))[["structure", "scale", "pga", "status"]]
+      structure  scale  pga   status
+    0        S1    0.5  1.5  rocking
+    1        S1    1.0  3.0  rocking
     """
     given: Any = scales
     bench = bench_of(

@@ -32,6 +32,17 @@ class IncrementalStudy(StructuresSpec):
     """Incremental dynamic analysis (Vamvatsikos & Cornell 2002) of structures that overturn.
 
     The table has one row per run; its columns are those of `run_incremental`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> study = rf.IncrementalStudy(
+    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, largest_scale=5.0
+    ... )
+    >>> round(study.plan().scales[1], 3)
+    0.115
     """
 
     study: Literal["incremental"] = Field("incremental", description='"incremental"')
@@ -185,6 +196,15 @@ def run_incremental(
     ------
     InputError
         If the scales do not form a grid, a model's base cannot lift, or as in `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> runs = rf.run_incremental(frame, pulse, "2DOF-S", growth=1.5, tolerance=0.05)
+    >>> round(float(runs["first_overturning_scale"].iloc[0]), 2)
+    2.56
     """
     bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     if not one_of(limit, ("overturning", "nominal")):
@@ -214,6 +234,16 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
     ------
     InputError
         If the measure is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> runs = rf.run_incremental({"A": frame}, pulse, "2DOF-S", growth=1.5, tolerance=0.05)
+    >>> rf.incremental_capacities(runs, "pga")[["structure", "model", "capacity", "censored"]].round(2)
+      structure   model  capacity  censored
+    0         A  2DOF-S      7.69     False
     """
     intensity(measure)
     import pandas as pd

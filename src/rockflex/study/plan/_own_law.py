@@ -42,8 +42,8 @@ def law_checksum(law: ImpactLaw) -> dict[str, str]:
         source = inspect.getsource(sys.modules[kind.__module__])
     except (OSError, TypeError, KeyError) as error:
         raise InputError(
-            f"The impact law {kind.__qualname__} is not defined in a file, so a study that is resumed cannot check that "
-            "it is the same law. Put it into a module (a .py file) and import it, or run the study without a folder."
+            f"The impact law {kind.__qualname__} is not defined in a file, so a study that is resumed cannot check "
+            "that it is the same. Put it into a module (a .py file) and import it, or run the study without a folder."
         ) from error
     return {f"impact, {kind.__module__}": hashlib.sha256(source.encode()).hexdigest()}
 

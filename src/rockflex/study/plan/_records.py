@@ -14,7 +14,15 @@ from rockflex.structure.file import Table
 
 
 class Records(Table):
-    """Records by the names of embedded suites, from a folder, or both."""
+    """Records by the names of embedded suites, from a folder, or both.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> records = rf.Records(suites=["fema-p695-far-field"], include=["FF-1-*"])
+    >>> rf.PopulationStudy(records=records.model_dump()).records.include
+    ['FF-1-*']
+    """
 
     suites: list[str] = Field(default_factory=list, description='a list of suites, such as "fema-p695-far-field"')
     folder: str | None = Field(None, description="the path of a folder of records, in quotes")

@@ -27,6 +27,19 @@ class StripeStudy(StructuresSpec):
     """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
 
     The table has the columns of `run_cloud` and the `level` of the stripe; `stripe_counts` counts its runs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> study = rf.StripeStudy(
+    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
+    ... )
+    >>> rf.run_study(study)[["level", "pgv"]].round(3)
+       level  pgv
+    0    0.2  0.2
+    1    0.4  0.4
     """
 
     study: Literal["stripes"] = Field("stripes", description='"stripes"')
@@ -98,6 +111,19 @@ def stripe_counts(
     ------
     InputError
         If the limit is another word, or not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> study = rf.StripeStudy(
+    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
+    ... )
+    >>> rf.stripe_counts(rf.run_study(study), "uplift")[["level", "n_exceeding", "n_total"]]
+       level  n_exceeding  n_total
+    0    0.2            1        1
+    1    0.4            1        1
     """
     solved = runs[runs["status"].notna()]
     if isinstance(limit, str):

@@ -1,4 +1,4 @@
-"""Random structures of Section 3.3."""
+"""The random structures of Section 3.3."""
 
 import math
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ STORY_HEIGHT, STORY_MASS, DAMPING_RATIO = 3.0, 40e3, 0.02  # m, kg
 
 @dataclass(frozen=True)
 class Prototype:
-    """A random frame and the record that it meets (Silva & Stojadinović 2024, Section 3.3).
+    """A random frame and its record (Silva & Stojadinović 2024, Section 3.3).
 
     Attributes
     ----------
@@ -27,14 +27,14 @@ class Prototype:
     aspect_ratio
         h*_1/B, a whole number from 5 to 10.
     base_mass_ratio
-        Mass of the base over that of a story: 1, 1.5, 2, 2.5 or 3.
+        Mass of the base over the mass of a story: 1, 1.5, 2, 2.5 or 3.
     stiffness_ratio
-        ρ: infinite for a shear building, 0 for one that bends.
+        ρ: infinite for a shear building, 0 for a flexural one.
     coefficient
-        a1 in T_1 = a1 H^0.85 of a shear building, from 0.06 to 0.095, or a2 in T_1 = a2 H of one that bends, from
+        a1 in T_1 = a1 H^0.85 of a shear building, from 0.06 to 0.095, or a2 in T_1 = a2 H of a flexural one, from
         0.0125 to 0.05; s and m.
     record
-        Place of the record in its suite.
+        Index of the record in its suite.
     """
 
     n_stories: int
@@ -69,14 +69,21 @@ class Prototype:
 
 
 def draw_prototype(seed: int, number: int, n_records: int) -> Prototype:
-    """Draw the prototype of a number: it depends on seed, number and the count of records alone.
+    """Draw the prototype of a number. It depends only on the seed, the number and the count of records.
 
     Every property is uniformly distributed and independent of the others.
 
     Raises
     ------
     InputError
-        If one of the three is no whole number, or negative.
+        If an argument is not an integer in its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> drawn = rf.draw_prototype(seed=0, number=3, n_records=44)
+    >>> drawn.n_stories, drawn.aspect_ratio, drawn.record
+    (14, 10, 35)
     """
     start, place = whole_number("seed", seed, 0), whole_number("number", number, 0, 2**32 - 1)
     records = whole_number("n_records", n_records, 1, 10**9)

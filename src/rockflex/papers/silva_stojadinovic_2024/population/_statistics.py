@@ -1,4 +1,4 @@
-"""How well one mode stands for all of them (Section 3.3), and what the second one adds (Section 3.4)."""
+"""How well one mode represents all modes (Section 3.3), and what the second mode adds (Section 3.4)."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, SupportsIndex
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-FEWEST = 3  # pairs, below which nothing is said
+FEWEST = 3  # pairs for a comparison
 SUMS = 6  # per comparison, from which slope and R² follow
 SHOWN = (
     *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion", "pga", "pgv"),
@@ -28,34 +28,41 @@ SHOWN = (
 
 @dataclass(frozen=True, eq=False)
 class PopulationStatistics(Value):
-    """Agreement of MDOF-S with what one mode, or one and the second on a fixed base, say of it.
+    """Agreement of MDOF-S with 2DOF-S, and with 2DOF-S combined with the second mode on a fixed base.
 
-    The tables `agreement` and `combination` have one row a comparison of y, from MDOF-S, with x, an estimate of it:
+    The tables `agreement` and `combination` have one row per comparison of y, from MDOF-S, with an estimate x of it:
     `group`, `quantity`, `behaviour` ("all", "shear" or "flexure"), `estimate`, the number `n` of pairs, and
 
     - `r2` = 1 - Σ(y - x)²/Σ(y - ȳ)², the coefficient of determination of the line y = x, with `r2_low`, `r2_high`;
     - `slope`, c1 of y = c1 x by least squares, with `slope_low`, `slope_high`;
     - `r2_line`, the coefficient of determination of that line.
 
-    The intervals are bootstrap percentiles; pairs are resampled. Of fewer than three pairs nothing is said.
+    The intervals are bootstrap percentiles over resampled pairs. With fewer than three pairs all values are NaN.
 
     Attributes
     ----------
     outcomes : pandas.DataFrame
         Number of pairs by the status of MDOF-S (rows) and 2DOF-S (columns).
     n_failed : int
-        Pairs of which a run could not be solved, which are in no table.
+        Number of pairs with a run that could not be solved. They are not in the tables.
     n_nominal_mdof, n_nominal_2dof : int
-        Pairs whose rotation passed 0.7 atan(B/h*_1).
+        Number of pairs whose rotation exceeded 0.7 atan(B/h*_1).
     agreement : pandas.DataFrame
-        Section 3.3, Fig. 9: the top displacement of pairs without uplift, and top displacement and rotation of those
+        Section 3.3, Fig. 9: the top displacement of pairs without uplift, and top displacement and rotation of pairs
         in which MDOF-S rocks and neither model overturns.
     combination : pandas.DataFrame
         Section 3.4, Fig. 13, of the same rocking pairs: D_2 against S_d(ω_2); top displacement (m), base shear over
-        m_s g and base moment over L_0^r g against 2DOF-S alone ("2DOF-S") and combined with the second mode ("SRSS").
+        m_s g and base moment over L_0^r g against 2DOF-S ("2DOF-S") and its combination with the second mode ("SRSS").
     outliers : pandas.DataFrame
-        Pairs of the largest difference of rotation, with what they are; `share` is their part of Σ(y - x)² over the
-        rocking pairs, missing of pairs that are not among them.
+        Pairs with the largest difference in rotation, and their properties. `share` is their part of Σ(y - x)² over
+        the rocking pairs; it is missing for other pairs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> rf.population_statistics(pairs, n_resamples=50).n_failed
+    0
     """
 
     outcomes: "pd.DataFrame"
@@ -90,13 +97,13 @@ def population_statistics(
     Parameters
     ----------
     pairs
-        What `run_population`, or the plan of a `PopulationStudy`, gives.
+        The table of `run_population` or of a `PopulationStudy`.
     level
-        Of the bootstrap intervals, between 0 and 1.
+        Confidence of the bootstrap intervals, between 0 and 1.
     n_resamples, seed
-        Of the bootstrap.
+        Number of bootstrap samples, and seed of the bootstrap.
     n_outliers
-        Rows of the table of outliers.
+        Number of rows in the table of outliers.
 
     Returns
     -------
@@ -106,7 +113,15 @@ def population_statistics(
     Raises
     ------
     InputError
-        If an argument is out of range, or no pair was solved.
+        If an argument is out of range, or no pair could be solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> found = rf.population_statistics(pairs, n_resamples=50)
+    >>> int(found.outcomes.loc["rocking", "rocking"])
+    10
     """
     in_range("level", level, 1e-9, 1.0)
     resamples, start = whole_number("n_resamples", n_resamples, 1), whole_number("seed", seed, 0)
@@ -172,7 +187,7 @@ def _combination(frame: "pd.DataFrame") -> list[_Comparison]:
 
 
 def _compare(comparisons: list[_Comparison], level: float, resamples: int, seed: int) -> list[dict[str, object]]:
-    """Rows of a table, of comparisons over the same pairs, which are resampled together."""
+    """Return the rows of comparisons over the same pairs, which are resampled together."""
     terms = np.column_stack([_terms(each) for each in comparisons])
     n = terms.shape[0]
     rng = np.random.Generator(np.random.Philox(seed))
@@ -210,14 +225,14 @@ def _compare(comparisons: list[_Comparison], level: float, resamples: int, seed:
 
 
 def _terms(each: _Comparison) -> Array:
-    """Terms of the sums, one row a pair: x², xy, (y - x)², and 1, y, y² about the mean y of all."""
+    """Return the terms of the sums, one row per pair: x², xy, (y - x)², and y, y² about the mean of all y, and 1."""
     x, y, kept = each.x, each.y, each.kept.astype(float)
     away = y - (float(y[each.kept].mean()) if each.kept.any() else 0.0)
     return np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x))) * kept[:, None]
 
 
 def _estimates(sums: Array) -> Array:
-    """Slope of y = c1 x, and R² of y = x, one row a comparison."""
+    """Return the slope of y = c1 x and R² of y = x, one row per comparison."""
     xx, xy, misses, away, square, count = sums.T
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.column_stack((xy / xx, 1.0 - misses / (square - away**2 / count)))

@@ -1,4 +1,4 @@
-"""Random structures under random records: one mode against all of them (Sections 3.3 and 3.4)."""
+"""Random structures under random records, with one mode and with all modes (Sections 3.3 and 3.4)."""
 
 import math
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
@@ -33,13 +33,19 @@ SECOND = "period_2 sd_2 sa_2 top_ordinate_2 effective_mass_2 effective_height_2"
 COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear srss_base_moment"
 
 
-MOST = 2**32 - 1  # pairs that have random numbers of their own
+MOST = 2**32 - 1  # pairs with different random numbers
 
 
 class PopulationStudy(Spec):
     """Random structures under random records, each with MDOF-S and 2DOF-S (Section 3.3).
 
-    The table has one row a pair; its columns are those of `run_population`.
+    The table has one row per pair; its columns are those of `run_population`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.PopulationStudy(pairs=1000, records={"suites": ["el-centro-1940"]}).plan().n_runs
+    2000
     """
 
     study: Literal["population"] = Field("population", description='"population"')
@@ -58,7 +64,7 @@ class PopulationStudy(Spec):
         return value
 
     def plan(self) -> "PopulationPlan":
-        """Load the records, and cut the study into chunks.
+        """Load the records, and divide the study into chunks.
 
         Raises
         ------
@@ -77,9 +83,9 @@ class PopulationStudy(Spec):
 
 
 class PopulationPlan(ChunkedPlan):
-    """Pairs of runs, MDOF-S and 2DOF-S of the same random structure and record, cut into chunks.
+    """Pairs of runs, MDOF-S and 2DOF-S of the same random structure and record, divided into chunks.
 
-    Nothing is kept from pair to pair, so a study of any size fits in memory.
+    Pairs share no data, so a study of any size fits in memory.
     """
 
     def __init__(
@@ -97,7 +103,7 @@ class PopulationPlan(ChunkedPlan):
 
     @property
     def n_runs(self) -> int:
-        """Number of runs, two a pair."""
+        """Number of runs, two for each pair."""
         return 2 * self.n_units
 
     @property
@@ -128,7 +134,7 @@ class PopulationPlan(ChunkedPlan):
         return [row | _combined(one_mode, second)]
 
     def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
-        """Response, and the peak of the last of the model's first two modes."""
+        """Return the response, and the peak of the second mode (of the first, if there is only one)."""
         mode = min(model.properties.n_modes, 2) - 1
         extra = modal_displacement(model, mode)
         solution = Case(model, self.free_vibration, work_limit=self.work_limit, extra=extra).solve(motion)
@@ -167,7 +173,7 @@ def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
 
 
 def _combined(rocking: Response, second: SecondMode) -> Row:
-    """Peaks of 2DOF-S and of the second mode on a fixed base, combined (Section 3.4)."""
+    """Return the combined peaks of 2DOF-S and the second mode on a fixed base (Section 3.4)."""
     peaks = combine(rocking, second)
     return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
 
@@ -184,35 +190,45 @@ def run_population(
 
     Single-bay frames of 2 to 15 stories of 3 m and 40 t, with h*_1/B a whole number from 5 to 10, a base of 1, 1.5, 2,
     2.5 or 3 story masses, ρ infinite or 0, T_1 = a1 H^0.85 or a2 H, and 2 % damping; see `draw_prototype`. A pair
-    depends on `seed`, its own number and the suite alone.
+    depends only on `seed`, its number and the suite.
 
     Parameters
     ----------
     motions
-        The records to draw from, evenly; as in `run_cloud`.
+        The records to draw from, with equal probability; as in `run_cloud`.
     pairs
         Number of structures.
     seed
-        Zero or a positive whole number.
+        Seed of the draws, an integer of at least zero.
     free_vibration, workers, work_limit
         As in `run_cloud`.
 
     Returns
     -------
     pandas.DataFrame
-        One row a pair. What was drawn: `pair`, `n_stories`, `behaviour` ("shear" or "flexure"), `height` (m), `period`
+        One row per pair. Drawn values: `pair`, `n_stories`, `behaviour` ("shear" or "flexure"), `height` (m), `period`
         (s), `coefficient`, `aspect_ratio`, `base_mass_ratio`, `stiffness_ratio`, `damping_ratio`, `motion`, `group`,
         `magnitude`, `distance_km`, `pga`, `pgv`; of the structure `nominal_limit` (rad), `structure_mass` and
         `total_mass` (kg), `l0r_g` = L_0^r g (N m), `uplift_acceleration` = M_r/L_0^r (m/s²); of its second mode on a
         fixed base `period_2`, `sd_2`, `sa_2`, `top_ordinate_2` = Γ_2 φ_top,2, `effective_mass_2`, `effective_height_2`;
         the status and every scalar of both models' `Response` with the suffixes `_mdof` and `_2dof`;
         `max_second_displacement_mdof`, the peak of D_2; the estimates `srss_top_displacement`, `srss_base_shear` and
-        `srss_base_moment` of Section 3.4; `error`, with no results where a run could not be solved.
+        `srss_base_moment` of Section 3.4; `error`, a message if a run could not be solved, without results.
 
     Raises
     ------
     InputError
         If a value is out of range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=3, seed=1)
+    >>> pairs[["pair", "n_stories", "behaviour", "status_mdof", "status_2dof"]]
+       pair  n_stories behaviour status_mdof status_2dof
+    0     0          4   flexure     rocking     rocking
+    1     1          4   flexure     rocking     rocking
+    2     2          3   flexure     rocking     rocking
     """
     count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))

@@ -1,4 +1,4 @@
-"""MDOF-S over 2DOF-S, pair by pair."""
+"""MDOF-S against 2DOF-S, pair by pair."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -43,11 +43,11 @@ _EDGE = "#303030"
 
 
 def plot_agreement(pairs: "pd.DataFrame") -> Figure:
-    """Plot peaks of MDOF-S over those of 2DOF-S, a symbol a pair.
+    """Plot peaks of MDOF-S against those of 2DOF-S, one symbol per pair.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 9. Symbols tell the aspect ratio, their size the stories,
-    reds (shear) and blues (flexure) the period. R² is of the line of equality, c1 the slope of y = c1 x by least
-    squares, as in `population_statistics`. Pairs of which a model overturned are left out, and their number is said.
+    This is Fig. 9 of Silva & Stojadinović 2024. Symbols show the aspect ratio, their size the number of stories, and
+    reds (shear) and blues (flexure) the period. R² refers to the line of equality; c1 is the slope of y = c1 x by least
+    squares, as in `population_statistics`. Pairs with a model that overturned are left out; their number is given.
 
     Parameters
     ----------
@@ -57,13 +57,21 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Three axes, then one of keys and two scales: A, u_top,max in m of pairs without uplift; B and C, u_top,max in m
-        and θ_max in rad of those that rock.
+        Three axes, and a fourth with the legend and two color scales: A, u_top,max in m of pairs without uplift; B and
+        C, u_top,max in m and θ_max in rad of pairs that rock.
 
     Raises
     ------
     InputError
         If the table lacks a column, no pair was solved, or there are more aspect ratios than symbols.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> figure = rf.plot_agreement(pairs)
+    >>> [axes.get_title() for axes in figure.axes[:3]]
+    ['no uplift', 'rocking', 'rocking']
     """
     groups = groups_of(pairs, _NEEDED)
     markers = _markers(pairs)
@@ -111,14 +119,14 @@ def _draw(axes: Axes, rows: "pd.DataFrame", quantity: str, markers: dict[float, 
 
 
 def _size(stories: Array) -> Array:
-    """Area of the symbols in points squared."""
+    """Return the area of the symbols in points squared."""
     return 3.0 + 2.2 * stories
 
 
 def _write_keys(
     figure: Figure, axes: Axes, pairs: "pd.DataFrame", markers: dict[float, str], scale: Normalize, left_out: str
 ) -> None:
-    """Keys of symbols and sizes, the two scales of period, and which pairs are left out."""
+    """Draw the legends of symbols and sizes, the two scales of the period, and the number of pairs left out."""
     axes.axis("off")
     plain: dict[str, Any] = {"linestyle": "", "color": "white", "markeredgecolor": _EDGE, "markeredgewidth": 0.6}
     symbols = [Line2D([], [], marker=marker, markersize=5.0, label=f"{r:g}", **plain) for r, marker in markers.items()]

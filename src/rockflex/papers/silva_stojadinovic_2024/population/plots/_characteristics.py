@@ -1,4 +1,4 @@
-"""What was drawn for a population of random structures."""
+"""The characteristics of a population of random structures."""
 
 from typing import TYPE_CHECKING
 
@@ -22,14 +22,14 @@ _PANELS = {
     "pgv": measure_name("pgv"),
 }
 _COLORS = {"shear": RED, "flexure": BLUE}
-_FEW = 20  # different values, up to which each has its own bar
+_FEW = 20  # largest number of values for which each has a bar
 _BINS = 20
 
 
 def plot_population(pairs: "pd.DataFrame") -> Figure:
     """Plot how the characteristics of random structures and the PGV of their records are distributed.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 8: bars of the number of pairs, flexure stacked on shear.
+    This is Fig. 8 of Silva & Stojadinović 2024: bars of the number of pairs, flexure stacked on shear.
 
     Parameters
     ----------
@@ -46,6 +46,13 @@ def plot_population(pairs: "pd.DataFrame") -> Figure:
     ------
     InputError
         If the table lacks a column or has no rows.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> len(rf.plot_population(pairs).axes)
+    6
     """
     check_columns(pairs, ("behaviour", *_PANELS), "what run_population returned")
     with styled():
@@ -84,7 +91,7 @@ def _draw(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
 
 
 def _bars(values: Array) -> tuple[Array, Array]:
-    """Centres and edges of the bars: one a value where there are few, as many as suffice otherwise."""
+    """Return centres and edges of the bars: one for each value if there are few, a fixed number otherwise."""
     different = np.unique(values)
     if different.size > _FEW:
         edges = np.linspace(different[0], different[-1], _BINS + 1)

@@ -1,4 +1,4 @@
-"""What the second mode adds: MDOF-S over 2DOF-S combined with the second mode on a fixed base."""
+"""What the second mode adds: MDOF-S against 2DOF-S combined with the second mode on a fixed base."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -29,7 +29,7 @@ _SYMBOLS = {"shear": ("o", ORANGE), "flexure": ("^", GREEN)}
 
 @dataclass(frozen=True)
 class _Panel:
-    """Columns of y, its estimate x, and the estimate by 2DOF-S alone; what all are divided by; names of the axes."""
+    """Columns of y, of its estimate x, of the estimate by 2DOF-S, and of their common divisor; labels of the axes."""
 
     y: str
     x: str
@@ -59,11 +59,11 @@ _PANELS = (
 
 
 def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
-    """Plot peaks of MDOF-S over what 2DOF-S and the second mode on a fixed base say of them, a symbol a rocking pair.
+    """Plot peaks of MDOF-S against 2DOF-S combined with the second mode on a fixed base, one symbol per rocking pair.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 13; the estimates are the square root of the sum of squares
-    (SRSS, Section 3.4). R² is of the line of equality, for the estimate and for 2DOF-S alone; the blue line is
-    y = c1 x by least squares, as in `population_statistics`. Pairs of which a model overturned are left out.
+    This is Fig. 13 of Silva & Stojadinović 2024; the estimates are the square root of the sum of squares (SRSS, Section
+    3.4). R² refers to the line of equality, for the estimate and for 2DOF-S only; the blue line is y = c1 x by least
+    squares, as in `population_statistics`. Pairs with a model that overturned are left out.
 
     Parameters
     ----------
@@ -79,6 +79,13 @@ def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
     ------
     InputError
         If the table lacks a column, or no pair was solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> len(rf.plot_modal_combination(pairs).axes)
+    4
     """
     needed = {name for panel in _PANELS for name in (panel.y, panel.x, panel.alone, panel.unit) if name}
     groups = groups_of(pairs, tuple(sorted(needed)))

@@ -1,4 +1,4 @@
-"""What the figures of a population share: which pairs they show, and panels of one model over another."""
+"""The parts that the figures of a population share: the pairs shown, and panels of one model against another."""
 
 import math
 from dataclasses import dataclass
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 BEHAVIOURS = {"shear": r"shear, $ρ=\infty$", "flexure": r"flexure, $ρ=0$"}
-_FEWEST = 3  # pairs, below which nothing is said, as in `population_statistics`
+_FEWEST = 3  # pairs for a comparison, as in `population_statistics`
 _NEEDED = ("behaviour", "status_mdof", "status_2dof")
 
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """Pairs by their outcome, as `population_statistics` parts them; `left_out` says what is in neither, and why."""
+    """Pairs by outcome, as in `population_statistics`; `left_out` gives the number of other pairs, and the reason."""
 
     resting: "pd.DataFrame"
     rocking: "pd.DataFrame"
@@ -32,7 +32,7 @@ class Groups:
 
 
 def groups_of(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> Groups:
-    """Part the pairs into those without uplift and those that rock, as MDOF-S has it.
+    """Divide the pairs into those without uplift and those that rock, according to MDOF-S.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def groups_of(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> Groups:
 
 
 def square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
-    """Equal axes with the line of equality, and what is to be written in the lower right corner; return their end."""
+    """Draw equal axes with the line of equality, and lines of text in the lower right corner; return their end."""
     limit = 1.06 * float(max(x.max(initial=0.0), y.max(initial=0.0))) or 1.0
     axes.plot([0.0, limit], [0.0, limit], color=GRAY, linestyle="--", linewidth=0.8, zorder=1.5, label="_equal")
     axes.set_xlim(0.0, limit)
@@ -66,16 +66,16 @@ def square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
 
 
 def slope(x: Array, y: Array) -> float:
-    """c1 of y = c1 x by least squares; NaN of too few pairs."""
+    """Return c1 of y = c1 x by least squares; NaN for too few pairs."""
     return float(x @ y / (x @ x)) if x.size >= _FEWEST and x.any() else math.nan
 
 
 def determination(x: Array, y: Array) -> float:
-    """R² = 1 - Σ(y - x)²/Σ(y - ȳ)², of the line y = x; NaN of too few pairs."""
+    """Return R² = 1 - Σ(y - x)²/Σ(y - ȳ)² of the line y = x; NaN for too few pairs."""
     spread = float(np.sum((y - y.mean()) ** 2)) if y.size >= _FEWEST else 0.0
     return 1.0 - float(np.sum((y - x) ** 2)) / spread if spread > 0.0 else math.nan
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A number with so many decimals; a dash where there is none."""
+    """Write a number with a number of decimals; a dash if it is not finite."""
     return f"{value:.{digits}f}".replace("-", "−") if np.isfinite(value) else "–"
