@@ -1,24 +1,14 @@
 """The cloud: its outcomes and regressions, its fragility curves and its page."""
 
-from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from rockflex.kinds._kind import Draw, Findings, StudyKind
+from rockflex.kinds._kind import Document, Figures, Findings, Remark, Runs, StudyKind
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rockflex.fragility import CloudFit
-    from rockflex.study.plan import Spec
 
 
-def _spec() -> "type[Spec]":
-    from rockflex.study.cloud import CloudStudy
-
-    return CloudStudy
-
-
-def _report(_: Any, runs: "pd.DataFrame", found: Findings) -> None:
+def _report(_: Any, runs: Runs, found: Findings) -> None:
     from rockflex._cases import cases
     from rockflex.fragility import OVERTURNING, ROCKED, ROCKING, LogisticFit, fit_each_cloud
     from rockflex.motion import MEASURES
@@ -59,9 +49,7 @@ def _line(fit: "CloudFit | None") -> dict[str, Any]:
     return {"c1": fit and fit.c1, "c2": fit and fit.c2, "spread": fit and fit.dispersion, "R²": fit and fit.r2}
 
 
-def _figures(
-    _: Mapping[str, Any], runs: "pd.DataFrame", measure: str, remark: Callable[[str], None]
-) -> Iterator[tuple[str, Draw]]:
+def _figures(_: Document, runs: Runs, measure: str, remark: Remark) -> Figures:
     from rockflex import plot
     from rockflex.fragility import fit_each_cloud
 
@@ -84,7 +72,7 @@ CLOUD = StudyKind(
     name="cloud",
     command="cloud",
     summary="Run every structure under every record at every scale, and fit regressions and fragility curves.",
-    spec=_spec,
+    described_by="rockflex.study.cloud.CloudStudy",
     report=_report,
     figures=_figures,
     measured=True,

@@ -1,23 +1,11 @@
 """The design of a base: the probability of each design, the least width, and its page."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rockflex.kinds._kind import Draw, Findings, StudyKind
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockflex.study.plan import Spec
+from rockflex.kinds._kind import Document, Figures, Findings, Remark, Runs, StudyKind
 
 
-def _spec() -> "type[Spec]":
-    from rockflex.study.design import DesignStudy
-
-    return DesignStudy
-
-
-def _report(study: Any, runs: "pd.DataFrame", found: Findings) -> None:
+def _report(study: Any, runs: Runs, found: Findings) -> None:
     from rockflex.fragility import limit_label
     from rockflex.study.design import design_tables, smallest_width
 
@@ -56,9 +44,7 @@ def _report(study: Any, runs: "pd.DataFrame", found: Findings) -> None:
         found.tables[f"Least half width from which on the {asked} is at most {study.target:g}"] = widths
 
 
-def _figures(
-    spec: Mapping[str, Any], runs: "pd.DataFrame", _: str, __: Callable[[str], None]
-) -> Iterator[tuple[str, Draw]]:
+def _figures(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
     from rockflex import plot
     from rockflex.fragility import limit_label
     from rockflex.study.design import design_tables
@@ -69,7 +55,7 @@ def _figures(
         yield stem, lambda table=table: plot.plot_design(table, target)
 
 
-def _runs(table: "pd.DataFrame") -> "pd.DataFrame":
+def _runs(table: Runs) -> Runs:
     # The widths of a design are counted together.
     return table.assign(structure=[f"Designs, tendons: {tendon}" for tendon in table["tendon"]])
 
@@ -78,7 +64,7 @@ DESIGN = StudyKind(
     name="design",
     command="design",
     summary="Run a structure on bases of many widths and with several tendons, and find how wide the base must be.",
-    spec=_spec,
+    described_by="rockflex.study.design.DesignStudy",
     report=_report,
     figures=_figures,
     runs=_runs,

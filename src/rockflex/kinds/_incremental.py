@@ -1,23 +1,11 @@
 """The incremental dynamic analysis: its capacities."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rockflex.kinds._kind import Draw, Findings, StudyKind
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockflex.study.plan import Spec
+from rockflex.kinds._kind import Document, Figures, Findings, Remark, Runs, StudyKind
 
 
-def _spec() -> "type[Spec]":
-    from rockflex.study.incremental import IncrementalStudy
-
-    return IncrementalStudy
-
-
-def _report(study: Any, runs: "pd.DataFrame", found: Findings) -> None:
+def _report(study: Any, runs: Runs, found: Findings) -> None:
     from rockflex._cases import cases
     from rockflex.fragility import LIMIT_STATES, fit_capacities
     from rockflex.motion import MEASURES
@@ -44,9 +32,7 @@ def _report(study: Any, runs: "pd.DataFrame", found: Findings) -> None:
     found.tables[f"Capacities to {LIMIT_STATES[study.limit].rotation}, lognormal"] = rows
 
 
-def _figures(
-    _: Mapping[str, Any], runs: "pd.DataFrame", measure: str, __: Callable[[str], None]
-) -> Iterator[tuple[str, Draw]]:
+def _figures(_: Document, runs: Runs, measure: str, __: Remark) -> Figures:
     from rockflex import plot
 
     yield "capacities", lambda: plot.plot_ida(runs, measure)
@@ -56,7 +42,7 @@ INCREMENTAL = StudyKind(
     name="incremental",
     command="ida",
     summary="Scale every record until the structure overturns, and fit the capacities (incremental dynamic analysis).",
-    spec=_spec,
+    described_by="rockflex.study.incremental.IncrementalStudy",
     report=_report,
     figures=_figures,
     measured=True,

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rockflex._errors import InputError, SolverError
@@ -12,7 +13,10 @@ if TYPE_CHECKING:
     from rockflex.study.plan import Spec
 
 Row: TypeAlias = dict[str, Any]
-Draw: TypeAlias = Callable[[], Any]  # returns a matplotlib Figure
+Runs: TypeAlias = "pd.DataFrame"
+Document: TypeAlias = Mapping[str, Any]
+Remark: TypeAlias = Callable[[str], None]
+Figures: TypeAlias = Iterator[tuple[str, Callable[[], Any]]]  # name of the file, and what returns the matplotlib Figure
 
 
 @dataclass
@@ -32,7 +36,7 @@ class Findings:
             return None
 
 
-def _as_they_are(table: "pd.DataFrame") -> "pd.DataFrame":
+def _as_they_are(table: Runs) -> Runs:
     return table
 
 
@@ -48,8 +52,8 @@ class StudyKind:
         The command of ``rockflex`` that runs it.
     summary : str
         What the command does, for its help.
-    spec : callable
-        Returns the class that describes such a study.
+    described_by : str
+        The class of such a study, with its package.
     report : callable
         Takes a study, its table and the `Findings` to fill.
     figures : callable
@@ -66,9 +70,14 @@ class StudyKind:
     name: str
     command: str
     summary: str
-    spec: "Callable[[], type[Spec]]"
-    report: "Callable[[Any, pd.DataFrame, Findings], None]"
-    figures: "Callable[[Mapping[str, Any], pd.DataFrame, str, Callable[[str], None]], Iterator[tuple[str, Draw]]]"
+    described_by: str
+    report: Callable[[Any, Runs, Findings], None]
+    figures: Callable[[Document, Runs, str, Remark], Figures]
     measured: bool = False
-    runs: "Callable[[pd.DataFrame], pd.DataFrame]" = _as_they_are
+    runs: Callable[[Runs], Runs] = _as_they_are
     page: str = ""
+
+    def spec(self) -> "type[Spec]":
+        """Return the class of such a study."""
+        package, _, name = self.described_by.rpartition(".")
+        return getattr(import_module(package), name)

@@ -1,14 +1,8 @@
 """The random population of Silva & Stojadinović (2024): how far its two models agree."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rockflex.kinds._kind import Draw, Findings, StudyKind
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockflex.study.plan import Spec
+from rockflex.kinds._kind import Document, Figures, Findings, Remark, Runs, StudyKind
 
 INTERVALS = ["n", "r2", "r2_low", "r2_high", "slope", "slope_low", "slope_high", "r2_line"]
 OUTLIER = [
@@ -17,13 +11,7 @@ OUTLIER = [
 ]
 
 
-def _spec() -> "type[Spec]":
-    from rockflex.papers.silva_stojadinovic_2024.population import PopulationStudy
-
-    return PopulationStudy
-
-
-def _report(_: Any, pairs: "pd.DataFrame", found: Findings) -> None:
+def _report(_: Any, pairs: Runs, found: Findings) -> None:
     from rockflex.papers.silva_stojadinovic_2024.population import population_statistics
 
     said = population_statistics(pairs)
@@ -39,9 +27,7 @@ def _report(_: Any, pairs: "pd.DataFrame", found: Findings) -> None:
         found.tables[title] = table.to_dict("records")  # pyright: ignore[reportArgumentType]
 
 
-def _figures(
-    _: Mapping[str, Any], pairs: "pd.DataFrame", __: str, ___: Callable[[str], None]
-) -> Iterator[tuple[str, Draw]]:
+def _figures(_: Document, pairs: Runs, __: str, ___: Remark) -> Figures:
     from rockflex.papers.silva_stojadinovic_2024.population import plots
 
     yield "population", lambda: plots.plot_population(pairs)
@@ -49,7 +35,7 @@ def _figures(
     yield "modal_combination", lambda: plots.plot_modal_combination(pairs)
 
 
-def _runs(pairs: "pd.DataFrame") -> "pd.DataFrame":
+def _runs(pairs: Runs) -> Runs:
     import pandas as pd
 
     models = []
@@ -63,7 +49,7 @@ POPULATION = StudyKind(
     name="population",
     command="population",
     summary="Run random structures under random records with MDOF-S and 2DOF-S, and compare the two.",
-    spec=_spec,
+    described_by="rockflex.papers.silva_stojadinovic_2024.population.PopulationStudy",
     report=_report,
     figures=_figures,
     runs=_runs,

@@ -1,4 +1,4 @@
-"""A study from its specification to its table: here or on a cluster, in memory or in a folder that it resumes from."""
+"""Running a study: here or on a cluster, in memory or in a folder from which it can be resumed."""
 # pyright: reportUnknownParameterType=false, reportUnknownLambdaType=false
 # (pyarrow comes without types)
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
     from rockflex.study.plan import ChunkedPlan, Spec
 
-LIBRARIES = ("rockflex", "numpy", "scipy", "numba")  # that the numbers depend on
-SAMPLE = 48  # units of a study at most that an estimate runs
-PATIENCE = 2.0  # s that it takes at most, the compilation aside
+LIBRARIES = ("rockflex", "numpy", "scipy", "numba")  # those that affect the numbers
+SAMPLE = 48  # largest number of units that an estimate runs
+PATIENCE = 2.0  # s after which an estimate stops, without compilation
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study has come; of its parts some may have been `kept` from an earlier call.
+    """Progress of a study, in parts; `kept` of them were stored by an earlier call.
 
     Examples
     --------
@@ -59,19 +59,19 @@ def run_study(
     any_version: bool = False,
     progress: Callable[[Progress], None] | None = None,
 ) -> "pd.DataFrame":
-    """Run a study, or what is left of it, and return its table.
+    """Run a study, or the rest of one that was stopped, and return its table.
 
     Parameters
     ----------
     study
-        A `CloudStudy`, an `IncrementalStudy` or another, or the path of its TOML file.
+        A `CloudStudy`, an `IncrementalStudy` or another kind, or the path of its TOML file.
     folder
         Where the study is stored, as ``spec.json``, ``manifest.json`` and ``parts/*.parquet``. An existing folder of
         this study is resumed; completed parts are skipped. With None nothing is stored.
     workers
         Number of threads here; None for one a core.
     dask
-        Address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``, whose workers are to do the runs.
+        Address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``, whose workers do the runs.
     any_version
         Resume a study that was started with other versions of the libraries.
     progress
@@ -80,14 +80,14 @@ def run_study(
     Returns
     -------
     pandas.DataFrame
-        All rows in the order of the study; its docstring names the columns.
+        All rows in the order of the study; the docstring of the study names the columns.
 
     Raises
     ------
     InputError
-        If the specification is wrong, the folder holds another study or cannot be written, or no cluster answers.
+        If the specification is wrong, the folder holds another study or is not writable, or no cluster answers.
     ClusterError
-        If the cluster is lost. What was stored is kept.
+        If the connection to the cluster is lost. Completed parts remain stored.
 
     Examples
     --------
@@ -129,11 +129,11 @@ def _compute(
     dask: str | None,
     progress: Callable[[Progress], None] | None,
 ) -> None:
-    """Compute these chunks and keep each as it comes."""
+    """Compute these chunks and store each one when it is complete."""
     kept, runs = plan.n_chunks - len(numbers), 0
     tell = progress or (lambda _: None)
     tell(Progress(plan.n_chunks, kept, kept, runs))
-    # Closed at once where keeping a part fails: a cluster would hold the plan until this process ends.
+    # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
     with closing(_here(plan, numbers, workers) if dask is None else map_dask(plan, numbers, dask)) as coming:
         for done, (number, table) in enumerate(coming, start=kept + 1):
             keep(number, table)
@@ -152,7 +152,7 @@ def _versions() -> dict[str, str]:
 
 
 def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
-    """Estimate how long a study takes here, in s, from a sample of its runs.
+    """Estimate from a sample of its runs how long a study takes on this machine.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     Returns
     -------
     float
-        Time in s, the compilation of a first call aside.
+        Time in s, without the compilation of a first call.
 
     Examples
     --------
@@ -177,12 +177,12 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     plan.check_work()
     threads = core_count() if workers is None else whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_units - 1) / max(SAMPLE - 1, 1)) for place in range(SAMPLE)})
-    for unit in sample[:: max(len(sample) // 6, 1)]:  # compile, and fill caches that the study will fill once
+    for unit in sample[:: max(len(sample) // 6, 1)]:  # compile, and fill the caches that the study fills once
         list(plan.rows(unit))
-    begun, tried = perf_counter(), 0
+    start, tried = perf_counter(), 0
     for unit in sample:
         list(plan.rows(unit))
         tried += 1
-        if perf_counter() - begun > PATIENCE:
+        if perf_counter() - start > PATIENCE:
             break
-    return (perf_counter() - begun) / tried * plan.n_units / min(threads, plan.n_chunks)
+    return (perf_counter() - start) / tried * plan.n_units / min(threads, plan.n_chunks)

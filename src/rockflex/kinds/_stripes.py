@@ -1,23 +1,11 @@
 """The multiple-stripe analysis: its counts and its fragility curves."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rockflex.kinds._kind import Draw, Findings, StudyKind
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockflex.study.plan import Spec
+from rockflex.kinds._kind import Document, Figures, Findings, Remark, Runs, StudyKind
 
 
-def _spec() -> "type[Spec]":
-    from rockflex.study.stripes import StripeStudy
-
-    return StripeStudy
-
-
-def _report(study: Any, runs: "pd.DataFrame", found: Findings) -> None:
+def _report(study: Any, runs: Runs, found: Findings) -> None:
     from rockflex._cases import cases
     from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, fit_stripes
     from rockflex.study.stripes import stripe_counts
@@ -34,9 +22,7 @@ def _report(study: Any, runs: "pd.DataFrame", found: Findings) -> None:
             counts.append({**name, **{f"{level:g}": f"{n}/{total}" for level, n, total in zip(*stripes, strict=True)}})
 
 
-def _figures(
-    spec: Mapping[str, Any], runs: "pd.DataFrame", _: str, __: Callable[[str], None]
-) -> Iterator[tuple[str, Draw]]:
+def _figures(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
     from rockflex import plot
 
     yield "stripes", lambda: plot.plot_stripes(runs, measure=spec["measure"])
@@ -46,7 +32,7 @@ STRIPES = StudyKind(
     name="stripes",
     command="stripes",
     summary="Scale the records to levels of an intensity measure, and fit how many exceed a limit.",
-    spec=_spec,
+    described_by="rockflex.study.stripes.StripeStudy",
     report=_report,
     figures=_figures,
 )

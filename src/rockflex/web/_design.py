@@ -1,4 +1,4 @@
-"""The Design tab: how wide the base must be, with tendons and without."""
+"""The Design tab: the required width of the base, with and without tendons."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -20,11 +20,11 @@ from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, sha
 if TYPE_CHECKING:
     import pandas as pd
 
-RESAMPLES = 60  # while runs still come; then 200
+RESAMPLES = 60  # while the study is running; 200 when it has ended
 
 
 def limit_of(choice: DesignChoice) -> float | str:
-    """Return the limit as the library takes it."""
+    """Return the limit in the form that the library expects."""
     return choice.rotation if choice.limit == ROTATION else choice.limit
 
 
@@ -34,7 +34,7 @@ def design_study(state: State) -> DesignStudy:
     Raises
     ------
     Refusal
-        If it is not one.
+        If the state does not describe a valid study.
     """
     choice = state.design
     present = build(state.structure).properties
@@ -43,7 +43,7 @@ def design_study(state: State) -> DesignStudy:
         raise Refusal({"design.widest": message})
     widths = np.linspace(choice.narrowest, choice.widest, choice.widths) * present.half_width
     levels: list[dict[str, Any]] = []
-    if not present.tendons:  # else it keeps its own
+    if not present.tendons:  # else the structure keeps its own tendons
         for force in dict.fromkeys(choice.tendons):
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0
@@ -60,7 +60,7 @@ def design_study(state: State) -> DesignStudy:
 
 
 def _table(job: Job, state: State) -> "pd.DataFrame":
-    """Table of the designs from the runs so far, one row a design."""
+    """Return the table of designs from the runs so far, one row per design."""
     runs, choice = some_runs_of(job), state.design
     try:
         resamples = 200 if job.over else RESAMPLES
@@ -70,7 +70,7 @@ def _table(job: Job, state: State) -> "pd.DataFrame":
 
 
 def design_view(job: Job, state: State) -> dict[str, Any]:
-    """Return progress, the probability over the half width for every tendon, and the answer."""
+    """Return progress, the probability against the half width for every tendon, and the smallest width."""
     choice = state.design
     present = build(state.structure).properties.half_width
     view: dict[str, Any] = progress(job, choice.measure) | {"present": present, "answers": []}

@@ -18,8 +18,8 @@ from rockflex.web._state import CloudChoice, DesignChoice, State
 if TYPE_CHECKING:
     import pandas as pd
 
-PER_CHUNK = 24  # runs between two looks at whether to go on
-CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
+PER_CHUNK = 24  # runs between two checks whether to continue
+CALM = 10.0  # s of free vibration of yielding models: when a hysteretic spring is at rest is not known
 
 AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
 
@@ -50,7 +50,7 @@ class StudyPage:
 
 
 def shared(state: State, choice: CloudChoice | DesignChoice, labels: Sequence[str], name: str) -> dict[str, Any]:
-    """Return the content that both kinds of study have; `name` is for a nameless structure."""
+    """Return the content that both kinds of study share; `name` is used for a structure without a name."""
     yields = any(parse_model(label).yields for label in labels)
     return {
         "name": state.structure.name or name,
@@ -70,7 +70,7 @@ def study_of(kind: type[AnyStudy], content: dict[str, Any], path: str) -> AnyStu
     Raises
     ------
     Refusal
-        If it is not one.
+        If the content is not a valid study.
     """
     try:
         return kind(**content)
@@ -79,12 +79,12 @@ def study_of(kind: type[AnyStudy], content: dict[str, Any], path: str) -> AnyStu
 
 
 def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
-    """Return the runs of a study, cut into small chunks.
+    """Return the runs of a study, divided into small chunks.
 
     Raises
     ------
     Refusal
-        If they cannot be made, are too many for a page, or take too long.
+        If they cannot be prepared, are too many for the page, or take too long.
     """
     try:
         plan = study.plan()
@@ -116,7 +116,7 @@ def some_runs_of(job: Job) -> "pd.DataFrame":
 
 
 def progress(job: Job, measure: str) -> dict[str, Any]:
-    """Return how far a study is, and room for what follows from its runs."""
+    """Return the progress of a study, with empty lists for the curves and notes."""
     return {
         "status": job.status,
         "message": job.message,
@@ -129,7 +129,7 @@ def progress(job: Job, measure: str) -> dict[str, Any]:
 
 
 def none_solved(job: Job, runs: "pd.DataFrame") -> dict[str, str]:
-    """Return what the page is to say of a study that is over and none of whose runs was solved."""
+    """Return the message for a study that has ended without a solved run; an empty dictionary otherwise."""
     if not job.over or runs["status"].notna().any():
         return {}
     return {"status": "failed", "message": f"no run could be solved. {runs['error'].dropna().iloc[0]}"}

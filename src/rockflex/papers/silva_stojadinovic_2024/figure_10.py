@@ -1,4 +1,4 @@
-"""Figure 10: uplifted over fixed-base frequencies of two 15-story buildings, over the aspect ratio."""
+"""Figure 10: ratio of uplifted to fixed-base frequencies of two 15-story buildings, against the aspect ratio."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ NOTE = (
 
 
 def reproduce(_: Records) -> Result:
-    """Compare the models at low aspect ratios, at the figure's gray line and at its end."""
+    """Compare the models at low aspect ratios, at the gray line of the figure and at its right end."""
 
     def figure() -> object:
         tables = {b: rf.frequency_ratios(tall_frame(b), SHOWN) for b in BEHAVIOURS}
@@ -70,7 +70,7 @@ def _of(behaviour: str) -> list[Number]:
 
 
 def _low(behaviour: str) -> list[Number]:
-    """What the text says of lower aspect ratios, at 1 and 2: no building has a lower one."""
+    """Check the text on lower aspect ratios at 1 and 2, since buildings do not have lower ones."""
     rise = {
         n: [max(abs(ratio(behaviour, m, n, x) - 1.0) for m, modes in MODES.items() if n in modes) for x in LOW]
         for n in (1, 2)

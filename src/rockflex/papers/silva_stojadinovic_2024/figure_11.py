@@ -1,4 +1,4 @@
-"""Figure 11: base moment over rotation of a pinned beam and of a rocking base."""
+"""Figure 11: base moment against rotation of a pinned beam and of a rocking base."""
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import check

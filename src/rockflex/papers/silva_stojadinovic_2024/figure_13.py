@@ -18,7 +18,7 @@ PRINTED = {
     "r2, base_moment, SRSS": ("R² of M_b,max, SRSS", "0.93"),
     "r2, base_moment, 2DOF-S": ("R² of M_b,max, 2DOF-S", "0.93"),
 }
-"""That of u_top,max with 2DOF-S alone is a number of Figure 9."""
+"""The value of u_top,max for 2DOF-S is a number of Figure 9."""
 
 STATED = {
     "slope, second_displacement, S_d(ω_2)": ("D_2,max over S_d(ω_2), slope", "underestimated by the fixed base", "> 1"),
@@ -53,7 +53,7 @@ def reproduce(records: Records) -> Result:
 
 
 def _size(slope: Interval) -> Interval:
-    """Magnitude of a slope less 1."""
+    """Return the magnitude of a slope minus 1."""
     estimate, *ends = (value - 1.0 for value in slope)
     low, high = sorted(map(abs, ends))
     return Interval(abs(estimate), 0.0 if min(ends) < 0.0 < max(ends) else low, high)

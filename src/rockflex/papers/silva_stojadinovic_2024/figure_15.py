@@ -1,4 +1,4 @@
-"""Figure 15: the chimney under El Centro times 2."""
+"""Figure 15: the chimney under El Centro at the scale 2."""
 
 from functools import partial
 
@@ -71,7 +71,7 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
 
 
 def _missing_mass(motion: rf.GroundMotion) -> Remark:
-    """What the ground must hold, and base shear and moment with the mass that few modes leave out."""
+    """Compute the reaction of the ground, and base shear and moment with the mass of the modes left out."""
     quantities = {"base_shear": "V_b,max", "base_moment": "M_b,max", "horizontal_reaction": "ΣF_x,max"}
     models = ("2DOF-S", "2DOF-S-R", "3DOF-S", "3DOF-S-R", "6DOF-S-R")
     reference, *runs = (rf.simulate(TOWER, motion, model, "peaks") for model in ("6DOF-S", *models))
@@ -93,7 +93,7 @@ def _missing_mass(motion: rf.GroundMotion) -> Remark:
 
 
 def _at_samples(runs: dict[str, rf.Response], dt: float) -> Remark:
-    """Errors by the largest sample, in place of the peak between samples."""
+    """Compute the errors from the largest sample instead of the peak between samples."""
 
     def peak(model: str, quantity: str) -> float:
         run = runs[model]

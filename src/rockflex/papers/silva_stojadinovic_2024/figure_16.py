@@ -1,4 +1,4 @@
-"""Figure 16: structure #1 that yields and barely rocks."""
+"""Figure 16: structure #1, which yields and barely rocks."""
 
 from functools import partial
 
@@ -50,7 +50,7 @@ def reproduce(records: Records) -> Result:
 
 
 def _yield_displacements(records: Records) -> Remark:
-    """Which of the four statements on this figure hold, by the yield displacement that the paper does not give."""
+    """Find which of four statements on this figure hold, depending on the yield displacement (not in the paper)."""
     wanted = [range_of(text) for text in (YIELDS, BARELY, TOP, SAME)]
     elastic, strong = run(records, "2DOF-S"), run(records, "2DOF-S-BW", STRONG)
 

@@ -100,7 +100,7 @@ def _checks(p: rf.RockingProperties, complete: rf.Response) -> tuple[Check, ...]
 
 
 def _both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark:
-    """Friction with either sign of the weight."""
+    """Compute the required friction with both signs of the weight."""
     rows = [
         (model, f"{_as_printed(run):.3f}", f"{run.required_friction:.3f}", f"{_slenderness(p):.3f}")
         for model, run in runs.items()
@@ -116,7 +116,7 @@ def _both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark
 
 
 def _as_printed(run: rf.Response) -> float:
-    """Friction that a run needs by Eq. 22 as printed."""
+    """Return the friction that a run requires by Eq. 22 as printed."""
     return run.required_friction_excluding_impacts(0.0, printed=True)
 
 

@@ -1,4 +1,4 @@
-"""Figure 4: an equivalent of specimen S1, let go at 0.11 rad."""
+"""Figure 4: an equivalent of specimen S1, released at 0.11 rad."""
 
 from functools import partial
 from typing import Any
@@ -27,7 +27,7 @@ NOTE = (
 
 
 def run(properties: rf.RockingProperties, model: str) -> rf.Response:
-    """Let a structure go."""
+    """Run the free motion of a structure after its release."""
     start = rf.InitialState(rotation=RELEASE)
     return rf.simulate(properties, rf.quiet_motion(3.0, 0.001), model, initial=start)
 
@@ -91,7 +91,7 @@ def _checks(p: rf.RockingProperties) -> tuple[Check, ...]:
 
 
 def _changes() -> "np.ndarray[Any, np.dtype[np.float64]]":
-    """Difference of u_top,max, MDOF-S against 2DOF-S, in per cent, over all combinations."""
+    """Compare u_top,max of MDOF-S and 2DOF-S, in per cent, over all combinations."""
     start, quiet = rf.InitialState(rotation=RELEASE), rf.quiet_motion(3.0, 0.001)
     found: list[float] = []
     for case in combinations(S1):

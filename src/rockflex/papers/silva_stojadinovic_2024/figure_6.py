@@ -47,7 +47,7 @@ def reproduce(records: Records) -> Result:
 
 
 def _readings(records: Records) -> Remark:
-    """The differences where they are largest in rad, and where they are relatively largest."""
+    """Show the differences where they are largest, absolutely and relatively."""
     at = places(records, QUANTITY)
     largest = {part: str(place) for part, place in at.idxmax().items()}
     reasons = {

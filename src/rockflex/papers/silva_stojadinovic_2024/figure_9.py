@@ -1,4 +1,4 @@
-"""Figure 9: MDOF-S over 2DOF-S, for a thousand random prototypes."""
+"""Figure 9: MDOF-S against 2DOF-S, for a thousand random prototypes."""
 
 from functools import partial
 
@@ -95,7 +95,7 @@ def _discrepancies(records: Records) -> list[Number]:
 
 
 def _seeds(records: Records) -> Remark:
-    """What each seed by itself would have given."""
+    """Show the result of each seed by itself."""
     pairs = pool(records)
     found = [measure(pairs.iloc[i : i + PAIRS].reset_index(drop=True)) for i in range(0, len(pairs), PAIRS)]
     rows: list[tuple[str, ...]] = []

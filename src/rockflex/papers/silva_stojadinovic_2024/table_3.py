@@ -71,7 +71,7 @@ def _elements() -> list[Number]:
 
 
 def _thin_slices() -> Remark:
-    """How many entries of the table a Ritz solution over slices meets by rounding."""
+    """Count the entries of the table that a Ritz solution with slices meets by rounding."""
     rows: list[tuple[str, ...]] = []
     for slices in SLICES:
         ours = ritz_of_slices(slices)
@@ -94,7 +94,7 @@ def _thin_slices() -> Remark:
 
 
 def _rounding() -> Remark:
-    """How far ω_1 of finite elements strays by rounding alone."""
+    """Show how much rounding errors change ω_1 of finite elements."""
     found = {n: [first_frequency(n, place) for place in PLACES.values()] for n in ELEMENTS}
     robust = float(replace(TOWER, method="fe").rocking().omega[0])
     low, high = min(found[ELEMENTS[-1]]), max(found[ELEMENTS[-1]])
