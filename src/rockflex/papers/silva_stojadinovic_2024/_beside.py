@@ -71,10 +71,10 @@ class Kind(StrEnum):
 
 _MEANINGS = {
     Kind.AFTERWARDS: (
-        "A reading, or a value, that was chosen with the printed one in view. It shows what would have to be so, and "
-        "is no evidence that the authors did so."
+        "An interpretation or a value that was chosen to match the printed one. It shows what would have to be the "
+        "case, but is not evidence that the authors did this."
     ),
-    Kind.BESIDE: "Computed beside what the paper prints, to tell what a number of it rests on.",
+    Kind.BESIDE: "Computed in addition to the printed numbers, to show what one of them depends on.",
 }
 
 

@@ -22,8 +22,8 @@ def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remar
     return Remark(
         Kind.AFTERWARDS,
         f"All records times {FACTOR}",
-        "The factor is chosen so that about as many pairs uplift as in the paper, whose records cannot be had. It is "
-        f"one thousand pairs (seed {SEED}); a count of 300 of them has a standard deviation of 14 from draw to draw.",
+        "The factor is chosen so that about as many pairs uplift as in the paper, whose records are not available. "
+        f"The sample is one thousand pairs (seed {SEED}); a count of 300 of them has a standard deviation of 14.",
         ("quantity", "paper", "records as they are, median", f"times {FACTOR}"),
         [
             (name, printed, f"{as_they_are[key].estimate:.4g}", f"{weaker[key]:.4g}")

@@ -16,8 +16,8 @@ NARROW = 1000.0
 SHOWN: list[float] = np.geomspace(0.1, NARROW, 201).tolist()
 MODES = {"2DOF-S": (1,), "3DOF-S": (1, 2), "MDOF-S": (1, 2)}
 NOTE = (
-    "15 stories of 3 m and 40 t, T_1 = 1 s, a base of 40 t: the paper gives neither period nor base mass. The pinned "
-    "beam has its mass and stiffness spread evenly and feels no gravity."
+    "15 stories of 3 m and 40 t, T_1 = 1 s, a base of 40 t: the paper does not give period or base mass. The "
+    "pinned beam has uniform mass and stiffness and is not subject to gravity."
 )
 
 
@@ -98,7 +98,7 @@ def _low(behaviour: str) -> list[Number]:
 
 def _why(behaviour: str, model: str) -> str:
     if model != "MDOF-S":
-        return "the highest mode kept stands for all above it, and is too stiff"
-    return "masses lumped at 15 floors are not spread evenly; the excess falls with more floors" * (
+        return "the highest mode included represents all modes above it, and is too stiff"
+    return "masses lumped at 15 floors are not uniform; the excess decreases with more floors" * (
         behaviour == "flexure"
     )

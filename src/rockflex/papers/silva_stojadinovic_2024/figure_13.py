@@ -43,8 +43,8 @@ def reproduce(records: Records) -> Result:
         ),
     )  # fmt: skip
     note = (
-        "R² is that of the line of equality, as in the paper; the blue line is y = c_1 x. Ours is the median, and the "
-        f"90 % interval that of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
+        "R² refers to the line of equality, as in the paper; the blue line is y = c_1 x. Our value is the median, with "
+        f"the 90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
     )
     return Result(
         "figure-13", TITLE, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note,

@@ -32,8 +32,8 @@ def reproduce(records: Records) -> Result:
     panels = ("rotation", "top_displacement", "base_moment", "base_shear")
     figures = {"figure-15": lambda: rf.plot_history(shown, panels=panels, title="Chimney, El Centro times 2")}
     note = (
-        "Errors are against 6DOF-S. Where the text does not tell their direction, magnitudes are compared. The text "
-        f"calls the number of uplift events small without a number; here 6DOF-S lifts {runs['6DOF-S'].n_uplifts} times."
+        "Errors are relative to 6DOF-S. If the text does not give their sign, magnitudes are compared. The text calls "
+        f"the number of uplift events small without giving it; here 6DOF-S lifts {runs['6DOF-S'].n_uplifts} times."
     )
     remarking = (partial(_at_samples, runs, motion.dt), partial(_missing_mass, motion))
     return Result("figure-15", TITLE, tuple(_numbers(runs)), figures, note, remarking=remarking)
@@ -83,10 +83,10 @@ def _missing_mass(motion: rf.GroundMotion) -> Remark:
     return Remark(
         Kind.BESIDE,
         "The mass that few modes leave out",
-        "V_b and M_b are the elastic forces of the modes kept. Models that end in -R count the mass of the others too, "
-        f"as if it moved with the base, and so does ΣF_x, what the ground must hold ({held} MN with 6DOF-S). The base "
-        "shear of one mode is then of the right size. Its moment is no better for it, since a static share "
-        "cannot tell what the second mode does. Five modes leave out 13 % of the mass, which 6DOF-S-R counts.",
+        "V_b and M_b are the elastic forces of the modes included. Models that end in -R add the mass of the other "
+        f"modes, as if it moved with the base; so does ΣF_x, the reaction of the ground ({held} MN with 6DOF-S). The "
+        "base shear of one mode is then of the right size. Its moment does not improve, because a static share does "
+        "not represent the second mode. Five modes leave out 13 % of the mass, which 6DOF-S-R adds.",
         ("error against 6DOF-S", *quantities.values()),
         rows,
     )

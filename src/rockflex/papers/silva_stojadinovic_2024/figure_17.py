@@ -24,7 +24,7 @@ def reproduce(records: Records) -> Result:
         stated("largest |z|, fixed", PLACE, "the fixed base yields", largest_yielding(fixed), "> 0.99"),
         stated(
             "u_top,max of Fig. 16's weak structure over Fig. 17's", PLACE, "approximately the same",
-            weak.max_top_displacement / top, SAME, note=f"with D_1,y = {WEAK} m for Fig. 16; 1.1 is our reading",
+            weak.max_top_displacement / top, SAME, note=f"with D_1,y = {WEAK} m for Fig. 16; 1.1 is our interpretation",
         ),
     )  # fmt: skip
     names = [f"fixed base, $D_y$ = {STRONG} m", f"2DOF-S-BW, $D_y$ = {STRONG} m"]

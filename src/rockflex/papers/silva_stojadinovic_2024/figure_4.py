@@ -20,7 +20,7 @@ PLACE = "Section 3.1"
 RELEASE = 0.11  # rad
 BOUNDLESS = 1e6  # friction that rounding alone keeps from being infinite
 NOTE = (
-    "The paper gives ratios of the specimen, and no mass, length or damping. This is a structure that meets the "
+    "The paper gives ratios of the specimen, but not its mass, length or damping. This structure meets the "
     "ratios, with m_0/m_s = 0.3, ζ = 2 %, B/h*_1 = 0.2, h*_1 = 1 m and a spacing of the masses assumed; the second "
     "figure varies all five. The test itself is not shown."
 )
@@ -58,7 +58,7 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
     change = 100.0 * (runs["MDOF-S"].max_top_displacement / runs["2DOF-S"].max_top_displacement - 1.0)
     changes = _changes()
     swept = (
-        f"over {changes.size} combinations of what is not published it is from {changes.min():+.0f} % to "
+        f"over {changes.size} combinations of the unpublished values it is from {changes.min():+.0f} % to "
         f"{changes.max():+.0f} %, {np.median(changes):+.1f} % in the median"
     ).replace("-", "−")
     return [
@@ -74,7 +74,7 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
         ),
         holds(
             "friction that MDOF-S needs, Eq. 22 as printed", PLACE, "force ratios higher than 2", friction, "> 2",
-            note="∞: the vertical sum passes through zero; with the sign of the weight mended "
+            note="∞: the vertical sum passes through zero; with the corrected sign of the weight "
             f"{shown(every.required_friction, 1)}",
         ),
     ]  # fmt: skip

@@ -43,8 +43,8 @@ def reproduce(records: Records) -> Result:
         ),
     )  # fmt: skip
     note = (
-        "P(θ_max > 10⁻⁴ rad) by logistic regression on log PGV, over the PGV of the records. The records here are "
-        "stronger than the paper's: where all runs, or all but a few, rock, a curve is flat or rests on these few. "
+        "P(θ_max > 10⁻⁴ rad) by logistic regression on log PGV, up to the PGV of the records. These records are "
+        "stronger than those of the paper: if (almost) all runs rock, a curve is flat or depends on a few runs. "
         "Intervals are over resampled records."
     )
     return Result("figure-5", TITLE, numbers, {"figure-5": lambda: rf.plot_fragility(runs)}, note)
@@ -86,4 +86,4 @@ def _few(runs: "pd.DataFrame") -> str:
     counts = still["model"].astype(str).value_counts()
     of = len(runs[(runs["structure"] == "#2") & (runs["model"] == "MDOF-S")])
     each = ", ".join(f"{counts.get(model, 0)} with {model}" for model in MODELS)
-    return f"the curves of #2 rest on the runs that do not rock: {each}, of {of}"
+    return f"the curves of #2 depend on the runs that do not rock: {each}, of {of}"

@@ -56,10 +56,10 @@ def reproduce(records: Records) -> Result:
     numbers += [statistic(*row, found[key]) for key, row in AGREEMENT.items()]
     numbers += _discrepancies(records)
     note = (
-        "A thousand pairs; what overturns with either model is in no R² and no slope. Ours is the median, and the 90 % "
-        f"interval that of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {SEED} to "
-        f"{SEED + records.seeds - 1}), under the same records throughout: what other records would change is "
-        "in no interval. The figure shows the first thousand."
+        "A thousand pairs; R² and slopes exclude pairs in which a model overturns. Our value is the median, with the "
+        f"90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {SEED} to "
+        f"{SEED + records.seeds - 1}). All draws use the same records, so the intervals do not include the effect of "
+        "other records. The figure shows the first thousand."
     )
     pairs = population(records)
     return Result(

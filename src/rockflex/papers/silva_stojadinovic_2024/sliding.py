@@ -109,10 +109,10 @@ def _both_signs(records: Records) -> Remark:
     return Remark(
         Kind.BESIDE,
         "Both signs of the weight in Eq. 22",
-        "Eq. 22 is printed with −g + z''_i, of which one sign is wrong. As printed, shear-dominant buildings are more "
-        f"prone to sliding than flexural ones with {_listed(above['printed'])}; with the sign mended, with "
+        "Eq. 22 is printed with −g + z''_i, in which one sign is wrong. As printed, shear-dominant buildings are more "
+        f"prone to sliding than flexural ones with {_listed(above['printed'])}; with the corrected sign, with "
         f"{_listed(above['mended'])}."
-        + " The paper's conclusion hangs on this misprint."
+        + " The conclusion of the paper depends on this misprint."
         * (MODEL in above["printed"] and not above["mended"]),
         ("Eq. 22", "model", *(f"least ratio, {name}" for name in PAIRS), ABOVE),
         rows,
@@ -137,8 +137,8 @@ def _lifts(records: Records) -> Remark:
         Kind.BESIDE,
         "Runs in which the pivot would lift",
         "Of the runs that rock and stand under every third record, those in which the vertical reaction falls below "
-        "zero: the model pulls the base down there, which no ground can, and no friction is enough. The paper does not "
-        "mention them. They are in its clouds, and in ours.",
+        "zero: the model pulls the base down, but the ground cannot, and no friction is enough. The paper does not "
+        "mention them. They are in its clouds and in ours.",
         ("structure", *(f"{model}, × {scale:g}" for model in MODELS for scale in SCALES)),
         rows,
     )

@@ -29,8 +29,8 @@ def reproduce(_: Records) -> Result:
         for names, text in row.items()
     ]
     note = (
-        "T_1 and h*_1/B are given to the frames and so are not among the numbers. A value that the table repeats, as "
-        "it does not depend on them, is one number; ours is that of the structure that is farthest from it."
+        "T_1 and h*_1/B are input, so they are not among the numbers. A value that the table repeats, because it does "
+        "not depend on them, is one number; ours is the value of the structure that differs most from it."
     )
     return Result("table-1", TITLE, tuple(numbers), note=note)
 
