@@ -20,7 +20,7 @@ MANY = (2_000, 10_000)  # population runs whose memory is measured
 MEMORY = """
 import json, resource, sys, tempfile, time
 import rockflex as rf
-from rockflex.study.plans import PopulationStudy
+from rockflex.papers.silva_stojadinovic_2024.population import PopulationStudy
 pairs = int(sys.argv[1]) // 2
 study = PopulationStudy(pairs=pairs, records={"suites": ["fema-p695-far-field", "fema-p695-near-field-no-pulse"]})
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

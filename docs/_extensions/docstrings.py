@@ -5,6 +5,7 @@ for markup. Names in single backticks become links where there is a target.
 """
 
 import re
+from importlib import import_module
 from typing import Any
 
 from docutils import nodes
@@ -12,10 +13,13 @@ from pydantic import BaseModel
 from sphinx.application import Sphinx
 from sphinx.util.nodes import make_refnode
 
-import rockflex
 from rockflex.structure.file import expected
-from rockflex.study import plans
 
+PLACES = (
+    "rockflex",
+    "rockflex.study.plan",
+    "rockflex.papers.silva_stojadinovic_2024.population",
+)  # packages whose names the reference has
 SPANS = re.compile(r"(``.*?``|`[^`]*`|\*[A-Z][A-Za-z ]+\*)", re.DOTALL)  # literals, links, titles of books
 PRIVATE = re.compile(r"rockflex\..*\._|rockflex\._")
 EXAMPLE = re.compile(r"(^>>> .*(?:\n.+)*)", re.MULTILINE)  # code and its output, up to a blank line
@@ -62,9 +66,9 @@ def link(app: Sphinx, env: Any, node: Any, content: nodes.Node) -> nodes.Node | 
     if PRIVATE.match(target):
         target = target.rpartition(".")[2]
     head = target.split(".")[0]
-    place = "rockflex." if head in rockflex.__all__ else "rockflex.study.plans." if head in plans.__all__ else None
+    place = next((package for package in PLACES if head in import_module(package).__all__), None)
     if place is not None:
-        found = env.domains.python_domain.find_obj(env, None, None, place + target, None, 0)
+        found = env.domains.python_domain.find_obj(env, None, None, f"{place}.{target}", None, 0)
         if len(found) == 1:
             name, entry = found[0]
             return make_refnode(app.builder, node["refdoc"], entry.docname, entry.node_id, content, name)

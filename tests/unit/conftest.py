@@ -7,7 +7,9 @@ import pytest
 import rockflex as rf
 from design_case import LEVELS, STRUCTURE, WIDTHS
 from drawn_studies import FRAMES, MODELS, SUITE
-from rockflex.study.plans import run_cloud, run_incremental, run_population
+from rockflex.papers.silva_stojadinovic_2024.population import run_population
+from rockflex.study.cloud import run_cloud
+from rockflex.study.incremental import run_incremental
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from rockflex.cli import app
-from rockflex.study.plans import load_study
+from rockflex.kinds import load_study
 
 FRAME = """
 [[structures]]
@@ -81,7 +81,8 @@ def test_figures_replace_nothing_unless_told_to(tmp_path):
         (("--format", "jpg"), "--format must be one of png, svg, pdf, but 'jpg' was given."),
         (
             ("--measure", "pga"),
-            f"--measure is for cloud and incremental studies, but {folder} holds one of stripes. Leave it out.",
+            f"--measure is for cloud and incremental studies, but the study in {folder} is of kind stripes. "
+            "Leave it out.",
         ),
     ):
         refused = invoke(folder, *arguments)

@@ -6,6 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
+import rockflex.kinds._run
 from rockflex.cli import _study, app
 
 FRAME = """
@@ -59,11 +60,11 @@ def test_every_kind_is_run_kept_and_told(study, tmp_path, kind, words):
     assert done.exit_code == 0, done.stderr
     for word in words:
         assert word in done.stdout
-    assert f"Kept in {folder}; rockflex figures {folder} draws it" in done.stderr
+    assert f"Stored in {folder}; rockflex figures {folder} draws it" in done.stderr
     table = rf.run_study(file)
     assert len(rf.StudyFolder.load(folder).frame()) == len(table)
     again = invoke(COMMANDS[kind], file, "--out", folder)
-    assert "1 of 1 parts are in" in again.stderr
+    assert "1 of 1 parts are already in" in again.stderr
     body = [line for line in done.stdout.splitlines() if " rows in " not in line]
     assert [line for line in again.stdout.splitlines() if " rows in " not in line] == body
 
@@ -134,7 +135,7 @@ def test_the_wrong_command_names_the_right_one(study):
     file = study("incremental")
     done = invoke("cloud", file)
     assert done.exit_code == 2
-    assert f'{file} says study = "incremental". Use rockflex ida {file}.' in done.stderr
+    assert f'The file {file} has study = "incremental". Use rockflex ida {file}.' in done.stderr
 
 
 def test_rows_with_errors_are_told_and_strict_says_so(study):
@@ -173,7 +174,7 @@ def test_a_study_is_kept_and_told_where_nothing_can_be_fitted(tmp_path, kind, he
     command = COMMANDS.get(kind, kind)
     done = invoke(command, file, "--out", folder)
     assert done.exit_code == 0, done.stderr
-    assert f"Kept in {folder}" in done.stderr
+    assert f"Stored in {folder}" in done.stderr
     assert f"{len(rf.StudyFolder.load(folder).frame())} rows in" in done.stdout
     for reason in reasons:
         assert f"No fit: {reason}" in done.stderr
@@ -253,21 +254,21 @@ def test_a_cluster_that_does_not_answer(study, monkeypatch):
 
 
 def test_ctrl_c_says_what_is_kept(study, tmp_path, monkeypatch):
-    real = rf.study._conduct._here
+    real = rockflex.kinds._run._here
 
     def interrupted(plan, numbers, workers):
         yield next(iter(real(plan, numbers, 1)))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(rf.study._conduct, "_here", interrupted)
+    monkeypatch.setattr(rockflex.kinds._run, "_here", interrupted)
     file = study("cloud", HEADS["cloud"] + "runs_per_chunk = 8\n")
     done = invoke("cloud", file, "--out", tmp_path / "kept")
     assert done.exit_code == 130
-    assert f"Stopped. 1 of 5 parts are kept in {tmp_path / 'kept'}; the same command goes on." in done.stderr
-    assert "Stopped. Nothing is kept, as no --out was given." in invoke("cloud", file).stderr
+    assert f"Stopped. 1 of 5 parts are stored in {tmp_path / 'kept'}; the same command resumes it." in done.stderr
+    assert "Stopped. Nothing was stored, because no --out was given." in invoke("cloud", file).stderr
     monkeypatch.undo()
     done = invoke("cloud", file, "--out", tmp_path / "kept")
-    assert f"1 of 5 parts are in {tmp_path / 'kept'} already" in done.stderr
+    assert f"1 of 5 parts are already in {tmp_path / 'kept'}" in done.stderr
     assert done.exit_code == 0
 
 
@@ -276,7 +277,7 @@ def test_a_lost_cluster_exits_with_one(study, monkeypatch):
         message = "The Dask scheduler at tcp://x was lost"
         raise rf.ClusterError(message)
 
-    monkeypatch.setattr(rf.study._conduct, "map_dask", lost)
+    monkeypatch.setattr(rockflex.kinds._run, "map_dask", lost)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://x")
     assert done.exit_code == 1
     assert "Error: The Dask scheduler at tcp://x was lost" in done.stderr

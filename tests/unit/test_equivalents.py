@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import rockflex as rf
-from rockflex.structure._equivalents import _five_masses, tipped_cantilever
+from rockflex.papers.silva_stojadinovic_2024._equivalents import _five_masses, tipped_cantilever
 
 G = 9.81
 RATIO = "base_mass_ratio must be a zero or positive, finite number in kg of base a kg above it"

@@ -9,9 +9,11 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from rockflex.cli import app
+from rockflex.kinds import load_study
 from rockflex.motion import MEASURES, Measure, Shaking, intensities, intensity, record_measures
 from rockflex.plot import plot_clouds
-from rockflex.study.plans import StripeStudy, load_study, run_plan
+from rockflex.study.plan import run_plan
+from rockflex.study.stripes import StripeStudy
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 BLOCK = rf.rigid_block(0.2, 1.5)

@@ -10,9 +10,10 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.study.plans import CloudPlan, CloudStudy, record_group, run_cloud, run_plan
-from rockflex.study.plans._bench import bench_of
-from rockflex.study.plans._records import checksums
+from rockflex.study.cloud import CloudPlan, CloudStudy, run_cloud
+from rockflex.study.plan import record_group, run_plan
+from rockflex.study.plan._bench import bench_of
+from rockflex.study.plan._records import checksums
 
 FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)
 STRUCTURES = [{"name": "stiff", "frame": FRAME}, {"frame": {**FRAME, "period": 1.0, "stiffness_ratio": 0.0}}]

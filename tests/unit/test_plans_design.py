@@ -9,9 +9,10 @@ import pytest
 
 import rockflex as rf
 from design_case import CONTENT, FRAME, HEIGHT, LEVELS, PROPERTIES, STRUCTURE, SUITE, WIDTHS
-from rockflex.study.plans import ChunkedPlan, DesignStudy
-from rockflex.study.plans._design_levels import designs_of, half_widths_of
-from rockflex.study.plans._design_limits import rotation_of
+from rockflex.study.design import DesignStudy
+from rockflex.study.design._levels import designs_of, half_widths_of
+from rockflex.study.design._limits import rotation_of
+from rockflex.study.plan import ChunkedPlan
 
 
 @pytest.fixture

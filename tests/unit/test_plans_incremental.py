@@ -9,17 +9,11 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.study.plans import (
-    IncrementalStudy,
-    StripePlan,
-    StripeStudy,
-    incremental_capacities,
-    run_incremental,
-    run_plan,
-    stripe_counts,
-)
-from rockflex.study.plans._bench import bench_of
-from rockflex.study.plans._ladder import Ladder, rungs, steps_between, steps_from_rest
+from rockflex.study.incremental import IncrementalStudy, incremental_capacities, run_incremental
+from rockflex.study.incremental._ladder import Ladder, rungs, steps_between, steps_from_rest
+from rockflex.study.plan import run_plan
+from rockflex.study.plan._bench import bench_of
+from rockflex.study.stripes import StripePlan, StripeStudy, stripe_counts
 
 BLOCK = rf.rigid_block(0.2, 1.5)
 PULSE = rf.one_sine_pulse(2.0, 1.0, dt=0.01)

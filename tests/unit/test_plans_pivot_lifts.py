@@ -5,7 +5,8 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.study.plans import PivotLifts, pivot_lifts
+from rockflex.kinds import KINDS
+from rockflex.study.plan import PivotLifts, pivot_lifts
 
 RUNS = pd.DataFrame(
     {
@@ -22,11 +23,14 @@ def test_only_runs_that_rock_and_stand_count() -> None:
 
 
 def test_widths_of_a_design_are_counted_together_and_pairs_by_model() -> None:
-    assert pivot_lifts(RUNS.assign(tendon="none")) == [PivotLifts("Designs, tendons: none", "MDOF-S", 3, 1)]
+    assert pivot_lifts(KINDS["design"].runs(RUNS.assign(tendon="none"))) == [
+        PivotLifts("Designs, tendons: none", "MDOF-S", 3, 1)
+    ]
     names = {"status": "status_mdof", "min_vertical_reaction": "min_vertical_reaction_mdof"}
     pairs = RUNS.rename(columns=names).drop(columns=["structure", "model"])
     pairs = pairs.assign(status_2dof="rocking", min_vertical_reaction_2dof=-1.0)
-    assert pivot_lifts(pairs) == [PivotLifts("Population", "MDOF-S", 3, 1), PivotLifts("Population", "2DOF-S", 6, 6)]
+    lifts = pivot_lifts(KINDS["population"].runs(pairs))
+    assert lifts == [PivotLifts("Population", "MDOF-S", 3, 1), PivotLifts("Population", "2DOF-S", 6, 6)]
 
 
 def test_the_sentence() -> None:

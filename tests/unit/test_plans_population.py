@@ -12,7 +12,13 @@ from scipy import stats
 
 import rockflex as rf
 from rockflex.motion import Suite
-from rockflex.study.plans import PopulationStudy, draw_prototype, population_statistics, run_plan, run_population
+from rockflex.papers.silva_stojadinovic_2024.population import (
+    PopulationStudy,
+    draw_prototype,
+    population_statistics,
+    run_population,
+)
+from rockflex.study.plan import run_plan
 
 RECORDS = {"suites": ["fema-p695-near-field-no-pulse"], "include": ["NFNP-15-*", "NFNP-16-*"]}
 PAIRS = 24

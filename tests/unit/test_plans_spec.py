@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex.study.plans import (
-    CloudStudy,
-    IncrementalStudy,
-    PopulationStudy,
-    StripeStudy,
-    load_study,
-    run_plan,
-)
+from rockflex.kinds import load_study
+from rockflex.papers.silva_stojadinovic_2024.population import PopulationStudy
+from rockflex.study.cloud import CloudStudy
+from rockflex.study.incremental import IncrementalStudy
+from rockflex.study.plan import run_plan
+from rockflex.study.stripes import StripeStudy
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STRUCTURE = """
@@ -114,7 +112,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
     [
         (
             RECORDS + STRUCTURE,
-            'study must be one of "cloud", "population", "incremental", "stripes", "design", but it is',
+            'study must be one of "cloud", "incremental", "stripes", "population", "design", but it is',
         ),
         (CLOUD.replace('"cloud"', '"clod"'), "study must be one of "),
         (CLOUD.replace('"cloud"', "7"), "study must be one of "),

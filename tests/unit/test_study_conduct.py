@@ -14,7 +14,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError
 from rockflex.structure.file import StructureEntry
-from rockflex.study.plans import ChunkedPlan
+from rockflex.study.plan import ChunkedPlan
 
 FRAME = frame_values(n_stories=3, stiffness_ratio=0.0, period=0.6, aspect_ratio=8.0)
 RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-2-*"]}

@@ -147,7 +147,7 @@ def test_a_law_that_stands_in_no_file(tmp_path):
     exec("class Typed(Lossy):\n    pass", space)
     study = cloud(impact=space["Typed"](0.5))
     assert len(rf.run_study(study)) == 2
-    with pytest.raises(rf.InputError, match=r"law Typed stands in no file, so .* Put it into a module"):
+    with pytest.raises(rf.InputError, match=r"law Typed is not defined in a file, so .* Put it into a module"):
         rf.run_study(study, tmp_path / "kept")
 
 

@@ -16,7 +16,7 @@ from drawing import drawn
 from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _population, reproduce
 from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, places
 from rockflex.papers.silva_stojadinovic_2024._number import Interval
-from rockflex.papers.silva_stojadinovic_2024._population import intervals, pool
+from rockflex.papers.silva_stojadinovic_2024._pool import intervals, pool
 
 PAIRS = 300  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records

@@ -9,7 +9,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.study.plans import TendonLevel, smallest_width
+from rockflex.study.design import TendonLevel, smallest_width
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
@@ -199,14 +199,14 @@ def test_a_failure_is_told_without_a_traceback(caplog) -> None:
     assert (job.status, job.message) == ("failed", "The record is wrong.")
     job = Job(Plan(ZeroDivisionError("secret")), "cloud")
     job.compute()
-    assert (job.status, job.message) == ("failed", "The server met an error of its own; its log has the details.")
+    assert (job.status, job.message) == ("failed", "An internal error occurred; the log of the server has the details.")
     assert "ZeroDivisionError" in caplog.text
 
 
 def test_jobs_are_many_but_limited() -> None:
     jobs = Jobs()
     tokens = [jobs.start(Plan(), "cloud") for _ in range(12)]
-    with pytest.raises(Refusal, match="busy with the studies of others"):
+    with pytest.raises(Refusal, match="busy with other studies"):
         jobs.start(Plan(), "cloud")
     jobs.cancel(tokens[-1])
     assert jobs.get(tokens[-1]).status == "cancelled"

@@ -11,6 +11,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study
 from rockflex.cli._console import complain, note, remarks
 from rockflex.cli._flags import FrameCommand, RunCommand
+from rockflex.kinds import KINDS
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -61,8 +62,8 @@ app = typer.Typer(
 app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
-for command in (_study.cloud, _study.ida, _study.stripes, _study.population, _study.design):
-    app.command(command.__name__, epilog=_study.epilog(command.__name__), no_args_is_help=True)(command)
+for kind in KINDS.values():
+    app.command(kind.command, epilog=_study.epilog(kind.command), no_args_is_help=True)(_study.command_of(kind))
 app.command("figures", epilog=_figures.EPILOG, no_args_is_help=True)(_figures.figures)
 app.command("serve", epilog=_serve.EPILOG)(_serve.serve)
 app.command("reproduce", epilog=_reproduce.EPILOG)(_reproduce.reproduce)

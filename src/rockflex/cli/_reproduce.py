@@ -1,4 +1,4 @@
-"""``rockflex reproduce``: every table and figure of the paper, each number beside the printed one."""
+"""``rockflex reproduce``: every table and figure of the paper, with our numbers next to the printed ones."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -22,9 +22,9 @@ rockflex reproduce table-3 figure-15
 
 rockflex reproduce figure-5 figure-9 --records peer --out mine
 
-What a verdict means stands at the head of the report."""
+The report starts with the meaning of each verdict."""
 
-TITLE = "Silva & Stojadinović (2024), computed anew"
+TITLE = "Silva & Stojadinović (2024), reproduced"
 SOURCE = (
     "Surrogate models for seismic response analysis of flexible rocking structures. Earthquake Engineering & "
     "Structural Dynamics, doi 10.1002/eqe.4193."
@@ -39,26 +39,31 @@ def reproduce(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="DIR", help="Write report.html, report.md, numbers.csv and the figures there."
+            "--out",
+            "-o",
+            metavar="DIR",
+            help="Write report.html, report.md, numbers.csv and the figures to this folder.",
         ),
     ] = None,
     records: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Folder of records, such as PEER's AT2 files, in place of those embedded."),
+        typer.Option(
+            metavar="DIR", help="Folder of records, such as PEER's AT2 files, to use instead of the embedded records."
+        ),
     ] = None,
     seeds: Annotated[
         int | None,
         typer.Option(
             metavar="N",
-            help="Random populations of 1000 pairs, at least 10, over which Figs. 9 and 13 are judged: fewer are "
-            "quicker and tell less. Default: 40.",
+            help="Number of random populations of 1000 pairs, at least 10, by which Figs. 9 and 13 are judged: fewer "
+            "are quicker but less conclusive. Default: 40.",
             show_default=False,
         ),
     ] = None,
     names: Annotated[bool, typer.Option("--list", help="List the targets and run nothing.")] = False,
     force: options.Force = False,
 ) -> None:
-    """Compute the tables and figures of the paper anew, and say of every printed number whether it reproduces."""
+    """Recompute the tables and figures of the paper, and report which printed numbers reproduce."""
     from rockflex.papers import silva_stojadinovic_2024 as paper
 
     if names:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._cases import cases
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -142,8 +143,7 @@ def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.
     lacking = [name for name in needed if name not in runs]
     if lacking:
         raise InputError(f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}.")
-    for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
-        yield str(structure), str(model), group
+    return cases(runs)
 
 
 def _fits(

@@ -1,1 +1,1 @@
-"""Publications whose numbers and figures the library computes anew, one package each."""
+"""Publications whose numbers and figures the library reproduces, one package each."""

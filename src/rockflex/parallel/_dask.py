@@ -28,14 +28,14 @@ class ClusterError(RuntimeError):
     """A cluster failed during the map; earlier chunks are valid, and the rest can be requested again."""
 
 
-class Plan(Protocol):
+class Chunks(Protocol):
     """Work in numbered chunks; pure, deterministic and picklable."""
 
     def chunk(self, number: int, /) -> "pa.Table": ...
 
 
 def map_dask(
-    plan: Plan,
+    plan: Chunks,
     numbers: Iterable[int],
     address: str,
     *,
@@ -105,7 +105,7 @@ def map_dask(
                 )
             for number, table, error in finished:
                 if error is not None:
-                    raise _named(error, number, _count(done, len(asked)))
+                    raise _explained(error, number, _count(done, len(asked)))
                 done += 1
                 yield number, table
             finished.clear()
@@ -134,7 +134,7 @@ def _leave(client: Any, name: str) -> None:
         client.close(timeout=2)
 
 
-def _pickled(plan: Plan) -> bytes:
+def _pickled(plan: Chunks) -> bytes:
     try:
         return pickle.dumps(plan, protocol=5)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
@@ -188,7 +188,7 @@ def _outcome(future: Any) -> tuple[Any, BaseException | None]:
     return future.result(), None
 
 
-def _named(error: BaseException, number: int, count: str) -> BaseException:
+def _explained(error: BaseException, number: int, count: str) -> BaseException:
     from distributed import KilledWorker
 
     if isinstance(error, KilledWorker):

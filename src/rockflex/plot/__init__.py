@@ -1,8 +1,6 @@
 """Figures of results; matplotlib is imported here and nowhere else."""
 
-from rockflex.plot._agreement import plot_agreement
 from rockflex.plot._clouds import plot_clouds
-from rockflex.plot._combination import plot_modal_combination
 from rockflex.plot._design import plot_design
 from rockflex.plot._energy import plot_energy
 from rockflex.plot._fragility import plot_fragility
@@ -14,7 +12,6 @@ from rockflex.plot._mode_shapes import plot_mode_shapes
 from rockflex.plot._moment_rotation import plot_moment_rotation
 from rockflex.plot._moment_rotation_laws import plot_moment_rotation_laws
 from rockflex.plot._motion import plot_motion
-from rockflex.plot._population import plot_population
 from rockflex.plot._rocking_spectra import plot_overturning_spectrum, plot_rocking_spectrum
 from rockflex.plot._save import save_figure
 from rockflex.plot._spread import plot_spread
@@ -23,7 +20,6 @@ from rockflex.plot._tower import plot_tower
 from rockflex.plot._yielding import plot_hysteresis, plot_yielding
 
 __all__ = [
-    "plot_agreement",
     "plot_clouds",
     "plot_design",
     "plot_energy",
@@ -33,13 +29,11 @@ __all__ = [
     "plot_history",
     "plot_hysteresis",
     "plot_ida",
-    "plot_modal_combination",
     "plot_mode_shapes",
     "plot_moment_rotation",
     "plot_moment_rotation_laws",
     "plot_motion",
     "plot_overturning_spectrum",
-    "plot_population",
     "plot_rocking_spectrum",
     "plot_spread",
     "plot_stripes",

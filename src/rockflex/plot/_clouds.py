@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from rockflex._cases import cases
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFits, fit_each_cloud
@@ -144,14 +145,14 @@ def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float,
     fit_of = {(fit.structure, fit.model): fit for fit in fits}
     _check_solved(runs[runs["status"].notna()], measure)
     clouds: list[_Cloud] = []
-    for (structure, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
+    for structure, model, group in cases(runs):
         solved = group[group["status"].notna()]
         fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
         rocked = ~fell & (solved["max_rotation"].to_numpy(dtype=float) > threshold)
-        fit = fit_of.get((str(structure), str(model)))
+        fit = fit_of.get((structure, model))
         line = fit and _LINES[quantity](fit)
         failed = len(group) - len(solved)
-        clouds.append(_Cloud(str(structure), str(model), solved[rocked], solved[fell], failed, line, fit is not None))
+        clouds.append(_Cloud(structure, model, solved[rocked], solved[fell], failed, line, fit is not None))
     return clouds
 
 

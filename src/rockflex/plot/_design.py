@@ -111,7 +111,7 @@ def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithm
 
 
 def _least(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
-    from rockflex.study.plans import smallest_width
+    from rockflex.study.design import smallest_width
 
     return smallest_width(table, target)
 

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from rockflex._cases import rows_of
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex.fragility import CloudFits, LogisticFit, fit_clouds
@@ -85,7 +86,7 @@ def plot_fragility(
                 look, marker = looks[fit.model]
                 _draw(axes, fit, look, limit, confidence, overturning=overturning)
                 if runs is not None and groups:
-                    _mark(axes, _of(runs, fit), fit, marker, look.color, groups)
+                    _mark(axes, rows_of(runs, fit.structure, fit.model), fit, marker, look.color, groups)
             if runs is not None:
                 axes.axvspan(0.0, float(runs[fits[0].measure].min()), color=SHADE, linewidth=0.0, label="_no runs")
             failed = sum(fit.n_failed for fit in fits if fit.structure == name)
@@ -128,10 +129,6 @@ def _fits(
     if groups:
         raise InputError("bins counts runs, but only fits were given. Give the table of the study.")
     return fits, None
-
-
-def _of(runs: "pd.DataFrame", fit: CloudFits) -> "pd.DataFrame":
-    return runs[(runs["structure"].astype(str) == fit.structure) & (runs["model"].astype(str) == fit.model)]
 
 
 def _limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:

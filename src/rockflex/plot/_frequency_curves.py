@@ -16,7 +16,7 @@ from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, frequency_equation, uplifted_modes
 from rockflex.plot._style import GRAY, SMALL, Look, letter, literal, new_figure, styled
 from rockflex.plot._surrogates import surrogate_looks
-from rockflex.study import Structure, properties_of
+from rockflex.study import RockingStructure, properties_of
 
 if TYPE_CHECKING:
     from rockflex.modal import UpliftedModes
@@ -30,7 +30,7 @@ _SHARE = 75.0  # per cent of the curves' points that the panel holds
 
 
 def plot_frequency_equation(
-    structures: "Structure | RockingProperties | Mapping[str, Structure | RockingProperties]",
+    structures: "RockingStructure | RockingProperties | Mapping[str, RockingStructure | RockingProperties]",
     n_modes: Sequence[SupportsIndex | None] = (1, 2, None),
     *,
     highest: float | None = None,
@@ -99,7 +99,7 @@ def plot_frequency_equation(
 
 
 def _models_of(
-    structure: "Structure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
+    structure: "RockingStructure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
 ) -> "dict[str, tuple[RockingProperties, UpliftedModes]]":
     """Truncated properties and uplifted modes by the models' labels."""
     full = properties_of(structure)

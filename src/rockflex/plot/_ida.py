@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from rockflex._cases import rows_of
 from rockflex._errors import InputError
 from rockflex.fragility import LognormalFragility, fit_capacities
 from rockflex.plot._study_tables import check_columns, measure_name, names_in
@@ -77,11 +78,11 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
     ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
     check_columns(runs, (*_NEEDED, measure), _SOURCE)
-    from rockflex.study.plans import incremental_capacities
+    from rockflex.study.incremental import incremental_capacities
 
     capacities = incremental_capacities(runs, measure)
     groups = [(name, model) for name in names_in(runs["structure"]) for model in names_in(runs["model"])]
-    groups = [group for group in groups if len(_of(runs, *group))]
+    groups = [group for group in groups if len(rows_of(runs, *group))]
     if len(groups) > _MOST:
         raise InputError(
             f"{len(groups)} structures and models are too many for one figure; {_MOST} fit. Plot fewer at a time."
@@ -91,8 +92,8 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
         grid = figure.subplots(len(groups), 2, sharex=True, squeeze=False)
         for row, (structure, model) in enumerate(groups):
             left, right = grid[row]
-            found = _capacities(_of(capacities, structure, model))
-            failed = _draw_curves(left, _of(runs, structure, model), measure)
+            found = _capacities(rows_of(capacities, structure, model))
+            failed = _draw_curves(left, rows_of(runs, structure, model), measure)
             _draw_capacities(right, found, confidence, failed)
             left.set_title(literal(f"{structure}, {model}"))
             left.set_ylabel(r"$θ_{\mathrm{max}}$ [rad]")
@@ -104,10 +105,6 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
             axes.set_xlabel(measure_name(measure))
         figure.legend(handles=_handles(), loc="outside upper center", ncols=5, columnspacing=1.2, handlelength=1.6)
     return figure
-
-
-def _of(table: "pd.DataFrame", structure: str, model: str) -> "pd.DataFrame":
-    return table[(table["structure"].astype(str) == structure) & (table["model"].astype(str) == model)]
 
 
 def _capacities(rows: "pd.DataFrame") -> _Capacities:

@@ -10,13 +10,13 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import Pivot, RockingProperties
 from rockflex.plot._style import BLACK, GRAY, SMALL, letter, new_figure, styled
 from rockflex.plot._units import readable, short
-from rockflex.study import Structure, properties_of
+from rockflex.study import RockingStructure, properties_of
 
 _ROOM = 1.18
 
 
 def plot_moment_rotation_laws(
-    structure: "Structure | RockingProperties", spring: float | None = None, *, rotation: float | None = None
+    structure: "RockingStructure | RockingProperties", spring: float | None = None, *, rotation: float | None = None
 ) -> Figure:
     """Plot the static base moment over the rotation: of a pinned beam on a spring, and of the rocking structure.
 

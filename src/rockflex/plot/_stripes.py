@@ -68,7 +68,7 @@ def plot_stripes(
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
     check_columns(runs, needed, "the table of a stripe study")
-    from rockflex.study.plans import stripe_counts
+    from rockflex.study.stripes import stripe_counts
 
     counts = stripe_counts(runs, limit)
     if not len(counts):

@@ -4,7 +4,6 @@ from rockflex.structure._beam import Beam
 from rockflex.structure._block import rigid_block
 from rockflex.structure._cantilever import CantileverWithTipMass
 from rockflex.structure._eccentric import Eccentric
-from rockflex.structure._equivalents import equivalent_2hz_long_base, equivalent_s1
 from rockflex.structure._fish_bone import FishBone
 from rockflex.structure._frame import Frame
 from rockflex.structure._from_matrices import from_matrices, from_modes
@@ -30,8 +29,6 @@ __all__ = [
     "TaperedTower",
     "WallFrame",
     "cosine_shapes",
-    "equivalent_2hz_long_base",
-    "equivalent_s1",
     "from_matrices",
     "from_modes",
     "rigid_block",

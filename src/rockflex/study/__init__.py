@@ -1,8 +1,7 @@
-"""Studies: one run, the cross product of many, and spectra of what rocks."""
+"""Studies: one run, the cross product of many, and rocking and overturning spectra."""
 
-from rockflex.study._arguments import WORK_LIMIT, Structure, properties_of
+from rockflex.study._arguments import WORK_LIMIT, RockingStructure, properties_of
 from rockflex.study._case import Case
-from rockflex.study._conduct import Progress, estimate_time, run_study
 from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
 from rockflex.study._modal_combination import CombinedPeaks, SecondMode, modal_combination
@@ -17,17 +16,14 @@ __all__ = [
     "CombinedPeaks",
     "InitialState",
     "OverturningScales",
-    "Progress",
+    "RockingStructure",
     "SecondMode",
-    "Structure",
-    "estimate_time",
     "frequency_ratios",
     "modal_combination",
     "overturning_scales",
     "overturning_spectrum",
     "properties_of",
     "rocking_spectrum",
-    "run_study",
     "simulate",
     "simulate_many",
 ]

@@ -18,14 +18,14 @@ Output = Literal["history", "peaks"]
 LONGEST = 1e9  # s of free vibration
 
 WORK_LIMIT = 30.0
-"""Most work of one run, in s of computing on one core, unless another limit is given."""
+"""Default limit of the work of one run, in s of computing on one core."""
 
 
-class Structure(Protocol):
-    """Anything that knows its rocking properties, such as a `Frame` or a `LumpedStructure`."""
+class RockingStructure(Protocol):
+    """Anything with rocking properties, such as a `Frame` or a `LumpedStructure`."""
 
     def rocking(self, n_modes: int | None = None) -> RockingProperties:
-        """Properties of the first `n_modes` modes, or of all."""
+        """Return the properties of the first `n_modes` modes, or of all."""
         ...
 
 
@@ -35,8 +35,8 @@ def check_output(output: str) -> None:
         raise InputError(f'output must be "history" or "peaks", but {shown(output)} was given.')
 
 
-def properties_of(structure: Structure | RockingProperties) -> RockingProperties:
-    """The properties of a structure, or those given.
+def properties_of(structure: RockingStructure | RockingProperties) -> RockingProperties:
+    """Return the properties of a structure, or the properties themselves if they are given.
 
     Raises
     ------
@@ -54,22 +54,22 @@ def properties_of(structure: Structure | RockingProperties) -> RockingProperties
 
 
 def is_structure(given: object) -> bool:
-    """Tell whether `given` is a structure or its properties; a class of them is not."""
+    """Return whether `given` is a structure or its properties; a class is not."""
     return isinstance(given, RockingProperties) or (hasattr(given, "rocking") and not isinstance(given, type))
 
 
 def described(given: Any) -> str:
-    """What kind of object was given, for a message."""
+    """Describe the type of an object, for a message."""
     return f"the class {given.__name__}" if isinstance(given, type) else type(given).__name__
 
 
 def free_vibration_time(value: float | Literal["settle"]) -> float | None:
-    """Seconds of free vibration; None until settled.
+    """Return the seconds of free vibration; None means until settled.
 
     Raises
     ------
     InputError
-        If the value is negative, above 1e9 s, not finite, another word, or no number.
+        If the value is negative, above 1e9 s, not finite, another word, or not a number.
     """
     if isinstance(value, str) and value == "settle":
         return None
@@ -84,12 +84,12 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
 
 
 def work_limit_of(value: float | Literal["none"] | None) -> float | None:
-    """Seconds of computing that one run may take; None without a limit, which files call "none".
+    """Return the seconds of computing that one run may take; None means no limit, which files call "none".
 
     Raises
     ------
     InputError
-        If the value is not a positive number (or infinite), another word, or no number.
+        If the value is not positive, another word, or not a number.
     """
     if value is None or (isinstance(value, str) and value == "none"):
         return None
@@ -104,7 +104,7 @@ def work_limit_of(value: float | Literal["none"] | None) -> float | None:
 
 
 def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
-    """Raise an InputError unless both are what their names say, or None."""
+    """Raise an InputError unless `bouc_wen` is a BoucWen and `impact` an impact law, or None."""
     if not isinstance(bouc_wen, BoucWen | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
             f"bouc_wen must be a BoucWen or None, but {shown(bouc_wen)} was given. "
@@ -128,7 +128,7 @@ def check_initial(initial: InitialState | None) -> None:
 
 
 def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: str) -> list[Any]:
-    """One object or a sequence of them, as a list that is not empty."""
+    """Return one object, or a sequence of objects, as a list that is not empty."""
     if accepts(given):
         return [given]
     items = _items(given)
@@ -143,7 +143,7 @@ def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: s
 
 
 def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[float]:
-    """One positive number or more, as a list."""
+    """Return one or more positive numbers as a list."""
     numbers = finite_vector(name, values, unit)
     if numbers.min(initial=math.inf) <= 0.0 or numbers.size == 0:
         raise InputError(
@@ -153,7 +153,7 @@ def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[floa
 
 
 def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list[float]:
-    """One factor or a sequence of them, as a list; all are finite, and keep the strongest motion so."""
+    """Return one or more factors as a list; they must be finite, and so must the strongest motion times each."""
     given = [scales] if isinstance(scales, Real) else _items(scales)
     factors = [real_or_nan(factor) for factor in given or ()]
     if not factors or not all(map(math.isfinite, factors)):
@@ -168,7 +168,7 @@ def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list
 
 
 def _items(given: Any) -> list[Any] | None:
-    """What a sequence holds; None where `given` is none."""
+    """Return the items of a sequence; None if `given` is not a sequence."""
     if isinstance(given, str | bytes):
         return None
     try:

@@ -1,4 +1,4 @@
-"""One run, written once: a model tied to a structure and what is asked of its runs, under a motion at a scale."""
+"""One run: a model tied to a structure, with the options of its runs, under a motion at a scale."""
 
 from dataclasses import dataclass, field
 
@@ -13,31 +13,31 @@ from rockflex.study._initial import InitialState
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A model tied to a structure, and what is asked of its runs; its engine is made once, for any number of runs.
+    """A model tied to a structure, with the options of its runs. Its engine is built once, for any number of runs.
 
     Attributes
     ----------
     model
         The model, tied to its structure.
     free_vibration
-        In s; None until settled.
+        Seconds of free vibration; None means until settled.
     initial
         The state at t = 0; at rest if None.
     work_limit
-        Most work of a run in s; None for no limit.
+        Limit of the work of a run in s; None for no limit.
     history
-        Whether the states are kept.
+        Whether the history of the states is stored.
     floors
         Whether the peaks of the floors are tracked.
     extra
-        Quantities whose peaks are tracked beside the usual ones.
+        Additional quantities whose peaks are tracked.
     engine
-        The model made ready for records.
+        The engine of the model, ready to run records.
 
     Raises
     ------
     InputError
-        If a run is to settle and no one can tell when a hysteretic spring has, or the model's numbers overflow.
+        If a run with a hysteretic spring is to settle, or the numbers of the model overflow.
     """
 
     model: RockingModel
@@ -62,18 +62,18 @@ class Case:
         object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
-        """Return what a run is asked, to estimate its work by."""
+        """Return the task of a run, from which its work is estimated."""
         return self.engine.task(motion.acceleration * scale, motion.dt, self.free_vibration, history=self.history)
 
     def solve(self, motion: GroundMotion, scale: float = 1.0) -> Solution:
-        """Run the motion at a scale.
+        """Run the motion at a scale and return the solution.
 
         Raises
         ------
         InputError
-            If the initial state is none of the model's, or the run is more work than it may be.
+            If the initial state does not fit the model, or the run exceeds its work limit.
         SolverError
-            If it cannot be solved.
+            If the run cannot be solved.
         """
         return self.engine.run(
             motion.acceleration * scale,
@@ -85,5 +85,5 @@ class Case:
         )
 
     def run(self, motion: GroundMotion, scale: float = 1.0) -> Response:
-        """Run the motion at a scale, and name what was found; it raises what `solve` does."""
+        """Run the motion at a scale and return the response; raises the errors of `solve`."""
         return respond(self.model, motion.name, self.solve(motion, scale), floors=self.floors)

@@ -1,4 +1,4 @@
-"""Uplifted frequencies over the slenderness of a structure."""
+"""Uplifted frequencies as a function of the slenderness of a structure."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, SupportsIndex
@@ -6,37 +6,37 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 from rockflex._checks import dimensions, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, uplifted_modes
-from rockflex.study._arguments import Structure, positive_numbers, properties_of
+from rockflex.study._arguments import RockingStructure, positive_numbers, properties_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 def frequency_ratios(
-    structure: Structure | RockingProperties,
+    structure: RockingStructure | RockingProperties,
     aspect_ratios: Sequence[float],
     n_modes: SupportsIndex | Sequence[SupportsIndex | None] | None = (1, 2, None),
     *,
     side: int | None = None,
 ) -> "pd.DataFrame":
-    """Frequencies of a structure about its pivot over those on a fixed base, for bases of many widths.
+    """Ratio of uplifted to fixed-base frequencies of a structure, for bases of many widths.
 
-    The structure above the base, its mass and that of the base stay; the half width is B = h*_1/(aspect ratio), and
-    I_θ changes with m_tot B². Where B is large the ratios tend to 1. Where it is small those with all modes come close
-    to the pinned beam's (`pinned_beam`), the closer the more evenly the mass is spread; fewer modes go beyond them.
+    The structure above the base and all masses stay the same; the half width is B = h*_1/(aspect ratio), and I_θ
+    changes with m_tot B². For large B the ratios tend to 1. For small B and all modes they approach those of the pinned
+    beam (`pinned_beam`), the more closely the more evenly the mass is distributed; with fewer modes they exceed them.
 
     Parameters
     ----------
     structure
-        A structure, or its `RockingProperties`, on a base of any width. Tendons and eccentricity stay as they are, so a
-        base must not be narrower than they ask for.
+        A structure, or its `RockingProperties`, on a base of any width. Tendons and eccentricity do not change, so
+        every base must be wide enough for them.
     aspect_ratios
         h*_1/B, positive.
     n_modes
         Modes to keep: 1 for 2DOF-S, 2 for 3DOF-S, None for all; or a sequence of these.
     side
         1 for motion about the right edge of the base, -1 about the left one. Default: the edge about which each base
-        lifts first; both are alike if the structure is symmetric.
+        lifts first; both give the same result if the structure is symmetric.
 
     Returns
     -------
@@ -48,11 +48,20 @@ def frequency_ratios(
     Raises
     ------
     InputError
-        If an aspect ratio is not positive, there are not as many modes, h*_1 is not positive, or `side` is neither.
+        If an aspect ratio is not positive, the structure has too few modes, h*_1 is not positive, or `side` is not ±1.
 
     References
     ----------
     Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> rf.frequency_ratios(frame, [2.0, 10.0], n_modes=1)[["model", "aspect_ratio", "ratio"]].round(2)
+        model  aspect_ratio  ratio
+    0  2DOF-S           2.0   1.85
+    1  2DOF-S          10.0   7.67
     """
     ratios = positive_numbers("aspect_ratios", aspect_ratios, "")
     properties = properties_of(structure)

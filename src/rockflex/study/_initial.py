@@ -1,4 +1,4 @@
-"""Where a free motion starts from."""
+"""The initial state of a run."""
 
 import math
 from dataclasses import dataclass
@@ -19,18 +19,18 @@ LARGEST = 1e9  # m, m/s or rad/s: beyond any structure, and far from where numbe
 
 @dataclass(frozen=True, eq=False, init=False)
 class InitialState(Value):
-    """The state at t = 0, in place of rest.
+    """The state at t = 0, if the structure does not start at rest.
 
-    The base starts uplifted where `rotation` is not zero, on the side of its sign. With `rotation` zero and
-    `rotation_velocity` not, it starts uplifted too, and the sign of the velocity picks the side.
+    The base starts uplifted if `rotation` is not zero; its sign gives the side. If only `rotation_velocity` is not
+    zero, the base also starts uplifted, and the sign of the velocity gives the side.
 
     Parameters
     ----------
     rotation
         θ in rad, below π/2 in magnitude.
     modal_displacement, modal_velocity
-        D_n in m and D'_n in m/s of the model's modes, shape (N,) or fewer (the rest is zero); None for zero. Kept as
-        read-only copies.
+        D_n in m and D'_n in m/s of the modes of the model, shape (N,) or fewer (the others are zero); None for zero.
+        Stored as read-only copies.
     rotation_velocity
         θ' in rad/s; outward (the sign of θ) or, with θ ≠ 0, inward.
 
@@ -38,6 +38,15 @@ class InitialState(Value):
     ------
     InputError
         If a value is not a finite number, |θ| is not below π/2, or another value is not below 1e9 in magnitude.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=2.0)
+    >>> start = rf.InitialState(rotation=0.1)
+    >>> response = rf.simulate(block, rf.quiet_motion(5.0), "rigid", initial=start)
+    >>> round(response.max_rotation, 3)
+    0.1
     """
 
     rotation: float
@@ -60,7 +69,7 @@ class InitialState(Value):
         )
 
     def state(self, model: RockingModel) -> Array:
-        """State [D.., D'.., θ, θ'] for a model.
+        """Return the state [D.., D'.., θ, θ'] for a model.
 
         Raises
         ------

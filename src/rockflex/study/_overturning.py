@@ -1,4 +1,4 @@
-"""Which scales of a motion, and which amplitudes of a pulse, overturn a structure."""
+"""The scales of a motion and the amplitudes of a pulse that overturn a structure."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -19,7 +19,7 @@ from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
-    Structure,
+    RockingStructure,
     check_options,
     described,
     positive_numbers,
@@ -37,17 +37,26 @@ SCAN = tuple(float(scale) for scale in np.arange(1.0, 30.01, 0.1))  # a_p/(g α)
 
 @dataclass(frozen=True, eq=False)
 class OverturningScales(Value):
-    """Two boundaries of the scales that overturn; overturning is not monotone, and between them both may happen.
+    """The two boundaries of the scales that overturn. Overturning is not monotone: between them, runs may do either.
 
     Parameters
     ----------
     lowest
-        Least scale found to overturn; NaN if none does.
+        Smallest scale found to overturn; NaN if none does.
     highest_standing
-        Largest scale found to stand below one that overturns; NaN if none does, and infinite if the largest of the
-        scan stands after one overturned. Equal to `lowest`, within the tolerance, where they part at one boundary.
+        Largest scale found to stand below one that overturns. NaN if none overturns; infinite if the largest scale of
+        the scan stands although a smaller one overturned; `lowest`, within the tolerance, if there is one boundary.
     impacts
-        Impacts before the fall at `lowest`: 0 for one without.
+        Number of impacts before overturning at `lowest`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0), "2DOF-S")
+    >>> found.impacts
+    0
     """
 
     lowest: float
@@ -56,7 +65,7 @@ class OverturningScales(Value):
 
 
 def overturning_scales(
-    structure: Structure | RockingProperties,
+    structure: RockingStructure | RockingProperties,
     motion: GroundMotion,
     scales: Sequence[float],
     model: str | Model = "rigid",
@@ -64,12 +73,12 @@ def overturning_scales(
     tolerance: float = 1e-6,
     work_limit: float | None = WORK_LIMIT,
 ) -> OverturningScales:
-    """Find the scales at which a motion begins to overturn a structure.
+    """Find the scales at which a motion starts to overturn a structure.
 
-    The scales given are tried one by one. Where the first of them overturns, the boundary below it is narrowed by
-    bisection; so is that above the last that stands. **An island of scales narrower than the step of the scan can be
-    missed**, one below `lowest` too: refine the scan where it matters. Nothing is said of scales beyond the largest. A
-    run ends when it has overturned, or can do so no more.
+    The given scales are tried one by one. Bisection then narrows the boundary below the first that overturns, and the
+    boundary above the last that stands. **An island of scales narrower than the step of the scan can be missed**, also
+    below `lowest`: refine the scan where it matters. Scales above the largest are not considered. A run ends when it
+    has overturned or can no longer overturn.
 
     Parameters
     ----------
@@ -78,11 +87,11 @@ def overturning_scales(
     motion
         The ground motion at the scale 1.
     scales
-        Scales to try, positive and rising, two at least.
+        Scales to try: at least two, positive and rising.
     tolerance
         Relative width of the boundaries, from 1e-12 to below 0.1.
     work_limit
-        Most work of each run, as in `simulate`.
+        Work limit of each run, as in `simulate`.
 
     Raises
     ------
@@ -90,6 +99,15 @@ def overturning_scales(
         If the scales do not rise, a value is out of range, or the model has a base that cannot lift.
     SolverError
         If a run cannot be solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0))
+    >>> round(found.lowest, 3), found.impacts
+    (2.372, 1)
     """
     tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
@@ -100,7 +118,7 @@ def overturning_scales(
 
 
 def overturning_spectrum(
-    structure: Structure | RockingProperties,
+    structure: RockingStructure | RockingProperties,
     pulse: Callable[[float, float], GroundMotion],
     frequency_ratios: Sequence[float],
     model: str | Model = "rigid",
@@ -110,19 +128,19 @@ def overturning_spectrum(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
-    """Smallest amplitude at which a pulse overturns a structure, over the pulse's frequency.
+    """Smallest amplitude at which a pulse overturns a structure, as a function of the frequency of the pulse.
 
-    With p² = L_0^r g/I_θ and α = m_tot B/L_0^r, a rigid block's answer in ω_g/p and a_p/(g α) is the same for all
-    sizes and slendernesses as far as its impact is (Zhang & Makris 2001, J. Struct. Eng. 127(5), 501-511).
+    With p² = L_0^r g/I_θ and α = m_tot B/L_0^r, the spectrum of a rigid block in ω_g/p and a_p/(g α) is the same for
+    all sizes and slendernesses with the same impact (Zhang & Makris 2001, J. Struct. Eng. 127(5), 501-511).
 
     Parameters
     ----------
     structure, model, impact
         As in `simulate`.
     pulse
-        Makes a pulse of an amplitude in m/s² and a period 2π/ω_g in s, such as `one_sine_pulse`; for half a sine
-        ``lambda amplitude, period: half_sine_pulse(amplitude, period / 2)``. The step is the pulse's to choose: some
-        thousandth of the period.
+        Function that returns a pulse for an amplitude in m/s² and a period 2π/ω_g in s, such as `one_sine_pulse`; for
+        half a sine ``lambda amplitude, period: half_sine_pulse(amplitude, period / 2)``. It chooses the time step:
+        about a thousandth of the period.
     frequency_ratios
         ω_g/p, positive.
     relative_amplitudes
@@ -132,7 +150,7 @@ def overturning_spectrum(
     workers
         Number of threads; None for one a core.
     work_limit
-        Most work of each run, as in `simulate`.
+        Work limit of each run, as in `simulate`.
 
     Returns
     -------
@@ -143,9 +161,18 @@ def overturning_spectrum(
     Raises
     ------
     InputError
-        If a value is out of range, or `pulse` makes no ground motion.
+        If a value is out of range, or `pulse` does not return a ground motion.
     SolverError
         If a run cannot be solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=2.0)
+    >>> table = rf.overturning_spectrum(block, rf.one_sine_pulse, [3.0], relative_amplitudes=(1.0, 10.0))
+    >>> table[["frequency_ratio", "lowest"]].round(3)
+       frequency_ratio  lowest
+    0              3.0   1.387
     """
     ratios = positive_numbers("frequency_ratios", frequency_ratios, "")
     tried = _scan("relative_amplitudes", relative_amplitudes)
@@ -190,7 +217,10 @@ Run = Callable[[GroundMotion, float], Response]
 
 
 def _runner(
-    structure: Structure | RockingProperties, model: str | Model, impact: ImpactLaw | None, work_limit: float | None
+    structure: RockingStructure | RockingProperties,
+    model: str | Model,
+    impact: ImpactLaw | None,
+    work_limit: float | None,
 ) -> Run:
     check_options(None, impact)
     limit = work_limit_of(work_limit)
@@ -217,7 +247,7 @@ def _search(run: Run, motion: GroundMotion, scales: list[float], width: float) -
 
 
 def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: float) -> tuple[float, float, int]:
-    """Neighbours at a boundary, one that stands and one that overturns, and the impacts of the latter."""
+    """Return the scales on both sides of a boundary, one that stands and one that overturns, and its impacts."""
     impacts = run(motion, falls).n_impacts
     while falls - stands > width * falls:
         middle = 0.5 * (stands + falls)

@@ -28,11 +28,11 @@ def rocking_spectrum(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
 ) -> "pd.DataFrame":
-    """Largest rotation of homogeneous rigid blocks under one motion, over slenderness and size.
+    """Largest rotation of homogeneous rigid blocks under one motion, for several slendernesses and sizes.
 
-    The rocking spectrum of Makris & Konstantinidis (2003, Earthquake Engng Struct Dyn 32(12), 1879-1901): θ_max/α over
-    2π/p, a curve for each slenderness α = atan(b/h), with p² = 3 g/(4 R). "rigid" is linearised in the rotation, with
-    the balance at tan α and not at α; "rigid-C" is not.
+    This is the rocking spectrum of Makris & Konstantinidis (2003, Earthquake Engng Struct Dyn 32(12), 1879-1901):
+    θ_max/α against 2π/p, a curve for each slenderness α = atan(b/h), with p² = 3 g/(4 R). "rigid" is linearised in the
+    rotation, so a block is balanced at tan α and not at α; "rigid-C" is not linearised.
 
     Parameters
     ----------
@@ -45,25 +45,34 @@ def rocking_spectrum(
     model
         "rigid" or "rigid-C".
     impact
-        None for each block's own coefficient by Housner, 1 - 1.5 sin² α; or `Restitution(e)` for all.
+        None for Housner's coefficient of each block, 1 - 1.5 sin² α; or `Restitution(e)` for all blocks.
     free_vibration
         As in `simulate`. Blocks may overturn after the record.
     workers
         Number of threads; None for one a core.
     work_limit
-        Most work of each run, as in `simulate_many`.
+        Work limit of each run, as in `simulate_many`.
 
     Returns
     -------
     pandas.DataFrame
         One row a block, slendernesses outermost: `slenderness` (rad), `period` (s), `half_diagonal` (m), `status`,
         `max_rotation` (rad; π/2 if overturned), `relative_rotation` (θ_max/α), `overturned` and `n_impacts`. A run that
-        cannot be solved has its message in `error`, and its results missing.
+        cannot be solved has a message in `error` and no results.
 
     Raises
     ------
     InputError
-        If a value is out of range, the model has modes, or a block is so squat that it has no coefficient by Housner.
+        If a value is out of range, the model has modes, or a block is too squat for Housner's coefficient.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> rf.rocking_spectrum(pulse, [0.2], [2.0, 4.0])[["period", "status", "relative_rotation"]].round(3)
+       period      status  relative_rotation
+    0     2.0  overturned              7.854
+    1     4.0     rocking              0.272
     """
     alphas, times = positive_numbers("slendernesses", slendernesses, "rad"), positive_numbers("periods", periods, "s")
     chosen = parse_model(model)

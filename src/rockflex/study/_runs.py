@@ -1,4 +1,4 @@
-"""Runs on threads, which stop within a slice of their work once nobody waits for them any more."""
+"""Runs on threads, which stop soon after nobody waits for them any more."""
 
 from collections.abc import Callable, Iterable, Iterator
 from threading import Event
@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 def map_runs(
     function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
 ) -> Iterator[Result]:
-    """Map over tasks as `map_threads` does; the runs in them end when the map is left, as by Ctrl-C."""
+    """Map over tasks as `map_threads` does. Leaving the map, by Ctrl-C for instance, stops the runs in progress."""
     left, asked = Event(), asked_to_stop()
 
     def guarded(task: Task) -> Result:

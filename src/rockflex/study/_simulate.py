@@ -10,7 +10,7 @@ from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
     Output,
-    Structure,
+    RockingStructure,
     check_initial,
     check_options,
     check_output,
@@ -24,7 +24,7 @@ from rockflex.study._initial import InitialState
 
 
 def simulate(
-    structure: Structure | RockingProperties,
+    structure: RockingStructure | RockingProperties,
     motion: GroundMotion,
     model: str | Model = "MDOF-S",
     output: Output = "history",
@@ -36,10 +36,10 @@ def simulate(
 ) -> Response:
     """Simulate one structure under one ground motion.
 
-    The simplified models (Silva & Stojadinović 2024, Eqs. 15, 23-25 and 30-32) are carried in closed form; every
-    uplift, impact and peak is found to machine precision, those between samples included. The complete models (Eqs.
-    13-16 and 26-29) are carried so in contact, and integrated to some ten digits while they rock, the yielding ones
-    (Eqs. 37-38) throughout.
+    The simplified models (Silva & Stojadinović 2024, Eqs. 15, 23-25 and 30-32) are advanced in closed form; every
+    uplift, impact and peak is found to machine precision, also between samples. The complete models (Eqs. 13-16 and
+    26-29) are advanced in closed form while in contact, and integrated to about ten digits while they rock; yielding
+    models (Eqs. 37-38) are always integrated.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ def simulate(
         ``"rigid"``, ``"rigid-C"``: the same structure without flexure, and with Housner's impact. ``"fixed"``,
         ``"5DOF-fixed"``: on a base that cannot lift. Or a `Model`.
     output
-        ``"history"`` keeps the state at every sample and event, ``"peaks"`` only the peaks.
+        ``"history"`` stores the state at every sample and event, ``"peaks"`` only the peaks.
     free_vibration
         Seconds of free vibration after the record (rounded up to whole samples), or ``"settle"``: until overturned,
-        or until the base can never lift again nor any peak grow. With zero the run ends at the last sample, where the
-        record's last acceleration still acts. Only free vibration takes the ground to rest: if the record ends with an
+        or until the base cannot lift again and no peak can grow. With zero the run ends at the last sample, where the
+        last acceleration of the record still acts. In free vibration the ground is at rest: if the record ends with an
         acceleration that is not zero, it jumps to zero there, and the history has both sides of the jump.
     bouc_wen
         Hysteresis of the superstructure of a model with one mode, "2DOF-S" or "1DOF-fixed" for instance.
@@ -67,9 +67,9 @@ def simulate(
     initial
         The state at t = 0; at rest if None.
     work_limit
-        Most work that the run may be, in s of computing on one core; None for no limit. A run is refused that is
-        estimated to take longer, and stopped once it has taken so long. The work is counted, not timed, so it is the
-        same on every machine; on a slow one it takes longer. The runs of a paper take milliseconds.
+        Limit of the work of the run, in s of computing on one core; None for no limit. A run is refused if its
+        estimate exceeds the limit, and stopped when it reaches the limit. Work is counted, not timed, so the limit is
+        the same on every machine. A typical run takes milliseconds.
 
     Returns
     -------
@@ -83,6 +83,15 @@ def simulate(
         vertical component; if the run is more work than `work_limit`, or its history more than memory holds.
     SolverError
         If the run cannot be solved, or has done the work of `work_limit`; the message names the time and the state.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> response = rf.simulate(frame, pulse, "2DOF-S")
+    >>> response.status, round(response.max_rotation, 4)
+    ('rocking', 0.0198)
     """
     check_output(output)
     check_options(bouc_wen, impact)

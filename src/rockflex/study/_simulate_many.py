@@ -1,4 +1,4 @@
-"""The cross product of structures, motions, scales and models, one row a run."""
+"""The cross product of structures, motions, scales and models, with one row per run."""
 
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Literal, SupportsIndex
@@ -22,7 +22,7 @@ from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
 from rockflex.study._runs import map_runs
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
-from rockflex.study._table import Table
+from rockflex.study._table import RunTable
 from rockflex.study._yielding import hysteresis_of
 
 if TYPE_CHECKING:
@@ -46,8 +46,8 @@ def simulate_many(
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
-    The runs are shared among threads; the kernels hold no interpreter lock. With ``output="peaks"`` nothing but the
-    table grows with the number of runs.
+    The runs are shared among threads; the kernels release the interpreter lock. With ``output="peaks"`` only the table
+    grows with the number of runs.
 
     Parameters
     ----------
@@ -60,29 +60,41 @@ def simulate_many(
     scales
         Factor on the acceleration, or a sequence of factors.
     free_vibration, bouc_wen, impact, initial
-        As in `simulate`. A `bouc_wen` goes to the models whose label ends in "-BW"; where none does, to all,
-        which must then have one mode. The same initial state serves all models;
-        for a model with fewer modes than it has values, or with a fixed base where it rotates, the run is one that
-        cannot be solved.
+        As in `simulate`. `bouc_wen` applies to the models whose label ends in "-BW", or to all models if there are
+        none, which must then have one mode. All models start from the same initial state. A run fails if its model has
+        fewer modes than the state has values, or a fixed base where the state rotates.
     workers
         Number of threads; None for one a core.
     work_limit
-        Most work of each run, as in `simulate`. A run that is more has its message in `error`.
+        Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
 
     Returns
     -------
     pandas.DataFrame
         One row a run, structures outermost, then motions, models and scales. Columns: `structure` (its name in a
         mapping, else its index), `motion` (name), `scale`, `model`, `status`, `error`, then every scalar of `Response`
-        by its name, in SI units. A run that cannot be solved, or a model with more modes than its structure, has its
-        message in `error` and every other result missing: NaN, or NA in the columns of counts (Int64) and of flags
+        by its name, in SI units. A run that cannot be solved, or whose model has more modes than its structure, has a
+        message in `error`. Its other results are missing: NaN, or NA in the columns of counts (Int64) and flags
         (boolean).
 
     Raises
     ------
     InputError
         If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, a motion is a
-        vertical component, a scaled motion would overflow, or every run is more work than `work_limit`.
+        vertical component, a scaled motion would overflow, or every run exceeds `work_limit`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> table = rf.simulate_many(frame, pulse, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0))
+    >>> table[["model", "scale", "status"]]
+        model  scale   status
+    0  2DOF-S    0.5  rocking
+    1  2DOF-S    1.0  rocking
+    2  MDOF-S    0.5  rocking
+    3  MDOF-S    1.0  rocking
     """
     check_output(output)
     check_options(bouc_wen, impact)
@@ -98,12 +110,12 @@ def simulate_many(
     shape = (len(everything), len(records), len(chosen), len(factors))
     inner = len(chosen) * len(factors)  # runs of one structure under one motion
     each = len(records) * inner
-    table = Table(len(everything) * each, keep=output == "history")
+    table = RunTable(len(everything) * each, keep=output == "history")
 
     whole = output == "history"
 
     def case_of(index: int, which: int) -> Case | str:
-        """The case of a structure and a model, or why there is none."""
+        """Return the case of a structure and a model, or the reason why there is none."""
         try:
             tied = chosen[which].of(properties_of(everything[index]), impact, yielding[which])
             return Case(tied, free, initial, limit, history=whole, floors=whole)

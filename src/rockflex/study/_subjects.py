@@ -1,4 +1,4 @@
-"""What a study in Python is of: structures, motions and models, each one, several, or several by name."""
+"""The structures, motions and models of a study in Python: one, several, or several by name."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -8,41 +8,41 @@ from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import Model, parse_model
 from rockflex.motion import GroundMotion
-from rockflex.study._arguments import Structure, is_structure, sequence_of
+from rockflex.study._arguments import RockingStructure, is_structure, sequence_of
 
 Structures: TypeAlias = (
-    Structure
+    RockingStructure
     | RockingProperties
-    | Iterable[Structure | RockingProperties]
-    | Mapping[str, Structure]
+    | Iterable[RockingStructure | RockingProperties]
+    | Mapping[str, RockingStructure]
     | Mapping[str, RockingProperties]
-    | Mapping[str, Structure | RockingProperties]
+    | Mapping[str, RockingStructure | RockingProperties]
 )
 Motions: TypeAlias = GroundMotion | Iterable[GroundMotion] | Mapping[str, GroundMotion]
 Models: TypeAlias = str | Model | Iterable[str | Model]
 
 
-def structures_of(given: Structures) -> tuple[list[Structure | RockingProperties], list[str] | None]:
-    """Return the structures, and their names where they were given by name.
+def structures_of(given: Structures) -> tuple[list[RockingStructure | RockingProperties], list[str] | None]:
+    """Return the structures, and their names if they are given by name.
 
     Raises
     ------
     InputError
-        If there is none, something is no structure, or a name is no text.
+        If there is none, an item is not a structure, or a name is not text.
     """
-    names, several = _named("structures", given)
+    names, several = _named_entries("structures", given)
     return sequence_of("structures", several, is_structure, "a structure such as a Frame, or RockingProperties"), names
 
 
 def motions_of(given: Motions) -> list[GroundMotion]:
-    """Return the motions; those given by name have that name in place of their own.
+    """Return the motions; a name in the mapping replaces the name of the motion.
 
     Raises
     ------
     InputError
-        If there is none, something is no motion, or a name is no text.
+        If there is none, an item is not a motion, or a name is not text.
     """
-    names, several = _named("motions", given)
+    names, several = _named_entries("motions", given)
     motions = sequence_of("motions", several, lambda each: isinstance(each, GroundMotion), "a GroundMotion")
     if names is None:
         return motions
@@ -62,8 +62,8 @@ def models_of(given: Models) -> list[Model]:
     return [parse_model(each) for each in labels]
 
 
-def _named(what: str, given: Any) -> tuple[list[str] | None, Any]:
-    """The names of a mapping and what it holds; no names and `given` itself of anything else."""
+def _named_entries(what: str, given: Any) -> tuple[list[str] | None, Any]:
+    """Return the names and values of a mapping; None and `given` itself if it is not a mapping."""
     if not isinstance(given, Mapping):
         return None, given
     entries = cast("Mapping[Any, Any]", given)

@@ -1,29 +1,27 @@
-"""The table of a study."""
+"""The table that `simulate_many` returns."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.response import PEAKS, Response
+from rockflex.response import Response
+from rockflex.study._results import RESULTS, STATUSES
 
 if TYPE_CHECKING:
     import pandas as pd
 
-STATUSES = ("no_uplift", "rocking", "overturned")
-KINDS = {float: "f8", int: "i8", bool: "?"}
+TYPES = {float: "f8", int: "i8", bool: "?"}
 
 
-class Table:
+class RunTable:
     """Columns of fixed length, filled row by row from any thread."""
 
     def __init__(self, rows: int, *, keep: bool) -> None:
         self.status = np.full(rows, -1, dtype=np.int8)
         self.columns: dict[str, NDArray[Any]] = {}
-        for name in PEAKS:
-            kind = Response.__annotations__[name]
-            if kind in KINDS:
-                self.columns[name] = np.full(rows, np.nan if kind is float else 0, dtype=KINDS[kind])
+        for name, kind in RESULTS.items():
+            self.columns[name] = np.full(rows, np.nan if kind is float else 0, dtype=TYPES[kind])
         self.errors: dict[int, str] = {}
         self.responses: NDArray[np.object_] | None = np.full(rows, None, dtype=object) if keep else None
 
@@ -50,10 +48,10 @@ class Table:
             error[row] = message
         table = pd.DataFrame(
             {
-                "structure": structure if structures is None else _named(structure, structures),
-                "motion": _named(motion, motions),
+                "structure": structure if structures is None else _category(structure, structures),
+                "motion": _category(motion, motions),
                 "scale": np.asarray(scales)[scale],
-                "model": _named(model, models),
+                "model": _category(model, models),
                 "status": pd.Categorical.from_codes(self.status, dtype=pd.CategoricalDtype(list(STATUSES))),
                 "error": error,
                 **{name: _with_gaps(values, self.status < 0) for name, values in self.columns.items()},
@@ -64,8 +62,8 @@ class Table:
         return table
 
 
-def _named(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
-    """A categorical column; names that occur twice share a category."""
+def _category(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
+    """Return a categorical column; names that occur twice share a category."""
     import pandas as pd
 
     categories = list(dict.fromkeys(names))
@@ -74,7 +72,7 @@ def _named(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
 
 
 def _with_gaps(values: NDArray[Any], missing: NDArray[np.bool_]) -> Any:
-    """A column in which rows are missing: NaN among floats already, else a type of pandas that knows NA."""
+    """Return a column with missing rows: floats hold NaN already, other types become one that allows NA."""
     import pandas as pd
 
     if values.dtype.kind == "f":

@@ -21,9 +21,7 @@ from starlette.staticfiles import StaticFiles
 from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
 from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.web._cloud import cloud_plan, cloud_view
-from rockflex.web._design import design_plan, design_view
-from rockflex.web._download import cloud_files, design_files, download
+from rockflex.web._download import download, study_file
 from rockflex.web._exchange import file_answer, file_of, question_of, state_of, step_of
 from rockflex.web._forms import forms
 from rockflex.web._headers import Headers
@@ -31,12 +29,14 @@ from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limit_states import limit_states
 from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
 from rockflex.web._measures import measures
+from rockflex.web._pages import PAGES
 from rockflex.web._presets import PRESETS
 from rockflex.web._records import PULSES, record_view, suite_view, suites
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view
 from rockflex.web._state import State
 from rockflex.web._structures import build, structure_view
+from rockflex.web._studies import planned
 from rockflex.web._uploads import Uploads, read_matrices, read_record
 
 LOOK = 0.2  # s between checks whether a visitor still waits
@@ -158,10 +158,9 @@ class Server:
         """Start a study."""
         kind = _kind(request)
         state = await state_of(request)
-        plan = _STUDIES[kind][0]
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(plan(state), kind)}
+            return {"token": self.jobs.start(planned(PAGES[kind].study(state), kind), kind)}
 
         return JSONResponse(await self._answer(work))
 
@@ -169,14 +168,14 @@ class Server:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
         state = await state_of(request)
-        return JSONResponse(await self._answer(lambda: _STUDIES[kind][1](job, state)))
+        return JSONResponse(await self._answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Table or figure of a study."""
         kind, job = self._job(request)
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self._answer(lambda: _STUDIES[kind][2](job, state, what), FILES))
+        return file_answer(*await self._answer(lambda: study_file(PAGES[kind], job, state, what), FILES))
 
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
@@ -190,16 +189,9 @@ class Server:
         return kind, job
 
 
-_STUDIES: dict[str, tuple[Any, Any, Any]] = {
-    "cloud": (cloud_plan, cloud_view, cloud_files),
-    "design": (design_plan, design_view, design_files),
-}
-"""For each kind of study: its plan, its view and its files."""
-
-
 def _kind(request: Request) -> str:
     kind = request.path_params["kind"]
-    if kind not in _STUDIES:
+    if kind not in PAGES:
         raise Refusal(f"There is no study of the kind {kind[:40]!r}.", 404)
     return kind
 

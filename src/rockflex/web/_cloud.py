@@ -1,4 +1,4 @@
-"""The Fragility tab: a cloud of runs, and the curves through what has come of it."""
+"""The Fragility tab: a cloud of runs, and the curves fitted to the runs so far."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -18,12 +18,15 @@ from rockflex.fragility import (
     fit_each_cloud,
     fit_outcomes,
 )
-from rockflex.study.plans import CloudPlan, CloudStudy, pivot_lifts
+from rockflex.study.cloud import CloudStudy
+from rockflex.study.plan import pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION, limit_state
+from rockflex.web._refusal import Refusal
+from rockflex.web._script import cloud_script
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import none_solved, planned, progress, runs_of, shared, study_of
+from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,26 +44,15 @@ def cloud_study(state: State) -> CloudStudy:
     Raises
     ------
     Refusal
-        If it is not one.
+        If the state does not describe a valid study.
     """
+    build(state.structure)  # for its messages, which are shown next to the fields
     choice = state.cloud
     return study_of(CloudStudy, shared(state, choice, choice.models, "Cloud"), "cloud")
 
 
-def cloud_plan(state: State) -> CloudPlan:
-    """Return the runs of a state's cloud, cut into small chunks.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be made, or has too many runs for a page, or takes too long.
-    """
-    build(state.structure)  # for its messages, which stand beside the fields
-    return planned(cloud_study(state), "cloud")
-
-
 def cloud_view(job: Job, state: State) -> dict[str, Any]:
-    """Return progress, points and curves for the measure and the limit state that are chosen."""
+    """Return progress, points and curves for the chosen measure and limit state."""
     choice = state.cloud
     view = progress(job, choice.measure)
     runs = runs_of(job)
@@ -77,7 +69,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
         return plain(view)
     im = solved[choice.measure].to_numpy(dtype=float)
     if not (im > 0.0).all() or im.min() == im.max():
-        view["notes"].append("The runs so far share one intensity.")
+        view["notes"].append("All runs so far have the same intensity.")
         return plain(view)
     grid = np.geomspace(im.min(), im.max(), GRID)
     fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
@@ -126,7 +118,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
 
 
 def _median(grid: Array, p: Array) -> float | None:
-    """Least intensity at which a probability passes one half, between points of the curve; None if it does not."""
+    """Return the lowest intensity at which the probability reaches one half, interpolated; None if it does not."""
     above = np.flatnonzero(p >= 0.5)
     if not above.size or above[0] == 0:
         return None
@@ -138,7 +130,7 @@ def _median(grid: Array, p: Array) -> float | None:
 def _band(
     part: "pd.DataFrame", im: Array, rotation: Array, fallen: NDArray[np.bool_], choice: CloudChoice, grid: Array
 ) -> tuple[Array, Array]:
-    """Percentile band over resampled recordings: no closed one is known for the total probability."""
+    """Return the percentile band over resampled recordings: the total probability has no closed form for it."""
 
     def fit(measures: Array, values: Array) -> OutcomeFragility:
         return fit_outcomes(measures, values[:, 0], values[:, 1] > 0.5)
@@ -157,7 +149,33 @@ def _band(
 
 
 def _observed(im: Array, over: NDArray[np.bool_], bins: int = 8) -> list[list[float]]:
-    """Share of runs beyond the limit in groups of neighbouring intensities, at their geometric means."""
+    """Return the share of runs beyond the limit in groups of similar intensity, at their geometric means."""
     order = np.argsort(im, kind="stable")
     parts = [part for part in np.array_split(order, bins) if part.size]
     return [[float(np.exp(np.log(im[part]).mean())), float(over[part].mean())] for part in parts]
+
+
+def _runs(job: Job, _: State) -> "pd.DataFrame":
+    return some_runs_of(job)
+
+
+def _figure(job: Job, state: State) -> Any:
+    from rockflex.plot import plot_fragility
+
+    choice = state.cloud
+    fits, reasons = fit_each_cloud(some_runs_of(job), choice.measure, nominal=choice.limit == NOMINAL.name)
+    if not fits:
+        reason = " ".join(f"{model}: {why}" for (_, model), why in reasons.items())
+        raise Refusal(f"There is no curve to draw. {reason}")
+    return plot_fragility(fits, confidence=choice.confidence, overturning=True)
+
+
+PAGE = StudyPage(
+    study=cloud_study,
+    view=cloud_view,
+    table=_runs,
+    figure=_figure,
+    script=cloud_script,
+    table_name="runs",
+    figure_name="fragility",
+)

@@ -1,4 +1,4 @@
-"""The Design tab: how wide the base must be, with tendons and without."""
+"""The Design tab: the required width of the base, with and without tendons."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -6,22 +6,25 @@ import numpy as np
 
 from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
-from rockflex.study.plans import CloudPlan, DesignStudy, design_table, pivot_lifts, smallest_width
+from rockflex.kinds import KINDS
+from rockflex.study.design import DesignStudy, design_table, smallest_width
+from rockflex.study.plan import pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION
 from rockflex.web._refusal import Refusal
+from rockflex.web._script import design_script
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import none_solved, planned, progress, runs_of, shared, study_of
+from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-RESAMPLES = 60  # while runs still come; then 200
+RESAMPLES = 60  # while the study is running; 200 when it has ended
 
 
 def limit_of(choice: DesignChoice) -> float | str:
-    """Return the limit as the library takes it."""
+    """Return the limit in the form that the library expects."""
     return choice.rotation if choice.limit == ROTATION else choice.limit
 
 
@@ -31,7 +34,7 @@ def design_study(state: State) -> DesignStudy:
     Raises
     ------
     Refusal
-        If it is not one.
+        If the state does not describe a valid study.
     """
     choice = state.design
     present = build(state.structure).properties
@@ -40,7 +43,7 @@ def design_study(state: State) -> DesignStudy:
         raise Refusal({"design.widest": message})
     widths = np.linspace(choice.narrowest, choice.widest, choice.widths) * present.half_width
     levels: list[dict[str, Any]] = []
-    if not present.tendons:  # else it keeps its own
+    if not present.tendons:  # else the structure keeps its own tendons
         for force in dict.fromkeys(choice.tendons):
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0
@@ -56,28 +59,9 @@ def design_study(state: State) -> DesignStudy:
     return study_of(DesignStudy, content, "design")
 
 
-def design_plan(state: State) -> CloudPlan:
-    """Return the runs of a state's design study, cut into small chunks.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be made, or has too many runs for a page, or takes too long.
-    """
-    return planned(design_study(state), "design")
-
-
-def design_table_of(job: Job, choice: DesignChoice) -> "pd.DataFrame | None":
-    """Return a row a design from the runs so far; None if there are none.
-
-    Raises
-    ------
-    Refusal
-        If the question cannot be answered.
-    """
-    runs = runs_of(job)
-    if runs is None:
-        return None
+def _table(job: Job, state: State) -> "pd.DataFrame":
+    """Return the table of designs from the runs so far, one row per design."""
+    runs, choice = some_runs_of(job), state.design
     try:
         resamples = 200 if job.over else RESAMPLES
         return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at, n_resamples=resamples)
@@ -86,22 +70,39 @@ def design_table_of(job: Job, choice: DesignChoice) -> "pd.DataFrame | None":
 
 
 def design_view(job: Job, state: State) -> dict[str, Any]:
-    """Return progress, the probability over the half width for every tendon, and the answer."""
+    """Return progress, the probability against the half width for every tendon, and the smallest width."""
     choice = state.design
     present = build(state.structure).properties.half_width
     view: dict[str, Any] = progress(job, choice.measure) | {"present": present, "answers": []}
     runs = runs_of(job)
     lost = {} if runs is None else none_solved(job, runs)
-    table = None if lost else design_table_of(job, choice)
-    if table is None:
+    if runs is None or lost:
         return plain(view | lost)
+    table = _table(job, state)
     for tendon, part in table.groupby("tendon", observed=True, sort=False):
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
         view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
-    view["notes"] += [str(each) for each in pivot_lifts(runs) if each.lifting] if runs is not None else []
+    view["notes"] += [str(each) for each in pivot_lifts(KINDS["design"].runs(runs)) if each.lifting]
     answers = smallest_width(table, choice.target)
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
         "records"
     )
     return plain(view)
+
+
+def _figure(job: Job, state: State) -> Any:
+    from rockflex.plot import plot_design
+
+    return plot_design(_table(job, state), state.design.target)
+
+
+PAGE = StudyPage(
+    study=design_study,
+    view=design_view,
+    table=_table,
+    figure=_figure,
+    script=design_script,
+    table_name="design",
+    figure_name="design",
+)

@@ -2,29 +2,26 @@
 
 import csv
 import io
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import tomli_w
 
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import NOMINAL, fit_each_cloud
+from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
-from rockflex.web._cloud import cloud_study
-from rockflex.web._design import design_study, design_table_of
 from rockflex.web._jobs import Job
+from rockflex.web._pages import PAGES
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import check_energy, responses
-from rockflex.web._script import cloud_script, design_script, response_script
+from rockflex.web._script import response_script
 from rockflex.web._state import State
-from rockflex.web._studies import runs_of
+from rockflex.web._studies import StudyPage
 from rockflex.web._uploads import Uploads, clean_name
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ROWS = 250_000  # of a table of histories
 COLUMNS = {
@@ -60,7 +57,7 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     Refusal
         If there is no such file, or the state cannot be simulated.
     """
-    maker = _MAKERS.get(what)
+    maker = _MAKERS.get(what) or _study_maker(what)
     if maker is None:
         raise Refusal(f"There is no download named {what[:40]!r}.", 404)
     name, content = maker(state, uploads)
@@ -174,75 +171,37 @@ def _python(state: State, uploads: Uploads) -> tuple[str, str]:
     return "response.py", response_script(state, name)
 
 
-def _cloud_study(state: State, _: Uploads) -> tuple[str, str]:
-    return "cloud.toml", "# rockflex cloud cloud.toml --out study\n" + tomli_w.dumps(
-        cloud_study(state).model_dump(exclude_none=True)
-    )
+def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str]] | None:
+    """What makes the file or the program of a study, such as "cloud-study" or "design-python"; None if nothing does."""
+    kind, _, form = what.partition("-")
+    page = PAGES.get(kind)
+    if page is None:
+        return None
+
+    def toml(state: State, _: Uploads) -> tuple[str, str]:
+        head = f"# rockflex {KINDS[kind].command} {kind}.toml --out study\n"
+        return f"{kind}.toml", head + tomli_w.dumps(page.study(state).model_dump(exclude_none=True))
+
+    def python(state: State, _: Uploads) -> tuple[str, str]:
+        return f"{kind}.py", page.script(state, page.study(state))
+
+    return {"study": toml, "python": python}.get(form)
 
 
-def _cloud_python(state: State, _: Uploads) -> tuple[str, str]:
-    return "cloud.py", cloud_script(state)
-
-
-def _design_study(state: State, _: Uploads) -> tuple[str, str]:
-    content = design_study(state).model_dump(exclude_none=True)
-    return "design.toml", "# rockflex design design.toml --out study\n" + tomli_w.dumps(content)
-
-
-def _design_python(state: State, _: Uploads) -> tuple[str, str]:
-    return "design.py", design_script(state)
-
-
-def cloud_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
-    """Return the table or the figure of a cloud, from its runs so far.
+def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str, str, bytes]:
+    """Return the name, the type and the content of the table or the figure of a study, from its runs so far.
 
     Raises
     ------
     Refusal
-        If there is none yet.
+        If there are no runs yet, or nothing can be drawn.
     """
-    runs = _runs(job)
     if what == "table":
-        return "runs.csv", "text/csv", runs.to_csv(index=False).encode()
-    from rockflex.plot import plot_fragility
-
-    fits, reasons = fit_each_cloud(runs, state.cloud.measure, nominal=state.cloud.limit == NOMINAL.name)
-    if not fits:
-        raise Refusal(
-            f"There is no curve to draw. {' '.join(f'{model}: {why}' for (_, model), why in reasons.items())}"
-        )
+        return f"{page.table_name}.csv", "text/csv", page.table(job, state).to_csv(index=False).encode()
     try:
-        figure = plot_fragility(fits, confidence=state.cloud.confidence, overturning=True)
-        return "fragility.svg", "image/svg+xml", svg(figure)
+        return f"{page.figure_name}.svg", "image/svg+xml", svg(page.figure(job, state))
     except (InputError, SolverError) as error:
         raise Refusal(str(error)) from error
-
-
-def design_files(job: Job, state: State, what: str) -> tuple[str, str, bytes]:
-    """Return the table or the figure of a design study, from its runs so far.
-
-    Raises
-    ------
-    Refusal
-        If there is none yet.
-    """
-    _runs(job)
-    table = design_table_of(job, state.design)
-    if what == "table" and table is not None:
-        return "design.csv", "text/csv", table.to_csv(index=False).encode()
-    from rockflex.plot import plot_design
-
-    try:
-        return "design.svg", "image/svg+xml", svg(plot_design(table, state.design.target))  # pyright: ignore[reportArgumentType]
-    except InputError as error:
-        raise Refusal(str(error)) from error
-
-
-def _runs(job: Job) -> "pd.DataFrame":
-    runs = runs_of(job)
-    if runs is None:
-        raise Refusal("There are no results yet.")
-    return runs
 
 
 _MAKERS: dict[str, Any] = {
@@ -255,8 +214,4 @@ _MAKERS: dict[str, Any] = {
     "structure": _structure_toml,
     "study": _study,
     "python": _python,
-    "cloud-study": _cloud_study,
-    "cloud-python": _cloud_python,
-    "design-study": _design_study,
-    "design-python": _design_python,
 }

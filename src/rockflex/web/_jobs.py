@@ -1,4 +1,4 @@
-"""Studies that run in the background, chunk by chunk, while the page looks at what has come so far."""
+"""Studies that run in the background, chunk by chunk, while the page shows the results so far."""
 
 import logging
 import secrets
@@ -11,19 +11,19 @@ from typing import Any
 
 from rockflex._errors import InputError, SolverError
 from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.study.plans import Plan
+from rockflex.study.plan import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
 KEPT = 40  # jobs that are remembered
-WAITING = 12  # jobs that may wait or run at once
-FORGOTTEN = 30.0  # s without a look after which a job stops: its page was closed
+WAITING = 12  # jobs that may wait or run at the same time
+FORGOTTEN = 30.0  # s without a request after which a job stops, because its page was closed
 
 
 @dataclass
 class Job:
-    """A study that is computed by one thread and read by others; `tables` only grows."""
+    """A study that one thread computes and others read; `tables` only grows."""
 
-    plan: Plan
+    plan: ChunkedPlan
     kind: str
     status: str = "waiting"
     message: str = ""
@@ -34,7 +34,7 @@ class Job:
 
     @property
     def over(self) -> bool:
-        """Whether nothing more will come."""
+        """Whether the job has ended."""
         return self.status in ("done", "cancelled", "failed")
 
     def compute(self) -> None:
@@ -56,28 +56,28 @@ class Job:
             self.status, self.message = "failed", str(error)
         except Exception:
             logging.getLogger(__name__).exception("A study of the page failed")
-            self.status, self.message = "failed", "The server met an error of its own; its log has the details."
+            self.status, self.message = "failed", "An internal error occurred; the log of the server has the details."
 
 
 class Jobs:
-    """Jobs by their tokens, which nobody can guess; one runs at a time, so that the other core answers."""
+    """Jobs by token, which cannot be guessed. One job runs at a time, so that a core is free for answers."""
 
     def __init__(self) -> None:
         self._jobs: OrderedDict[str, Job] = OrderedDict()
         self._lock = Lock()
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="study")
 
-    def start(self, plan: Plan, kind: str) -> str:
+    def start(self, plan: ChunkedPlan, kind: str) -> str:
         """Queue a job, and return its token.
 
         Raises
         ------
         Refusal
-            If too many are waiting.
+            If too many jobs are waiting.
         """
         with self._lock:
             if sum(not job.over for job in self._jobs.values()) >= WAITING:
-                raise Refusal("The server is busy with the studies of others. Try again in a minute.", 503)
+                raise Refusal("The server is busy with other studies. Try again in a minute.", 503)
             token = secrets.token_urlsafe(18)
             job = self._jobs[token] = Job(plan, kind)
             while len(self._jobs) > KEPT:
@@ -87,22 +87,22 @@ class Jobs:
         return token
 
     def get(self, token: str) -> Job:
-        """Return a job, and note that somebody looks at it.
+        """Return a job, and record that its page is still open.
 
         Raises
         ------
         Refusal
-            If there is none with that token.
+            If there is no job with that token.
         """
         with self._lock:
             job = self._jobs.get(token)
         if job is None:
-            raise Refusal("The server does not know this study (any more). Start it again.", 404)
+            raise Refusal("The server does not have this study (any more). Start it again.", 404)
         job.seen = monotonic()
         return job
 
     def cancel(self, token: str) -> None:
-        """Stop a job; the chunks that have come stay."""
+        """Stop a job; completed chunks remain available."""
         job = self.get(token)
         job.cancelled.set()
         if job.status == "waiting":

@@ -17,7 +17,7 @@ from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._refusal import Refusal
 
 if TYPE_CHECKING:
-    from rockflex.study.plans import CloudPlan
+    from rockflex.study.cloud import CloudPlan
 
 FILE = 5_000_000  # bytes of an upload
 BODY = 6_000_000  # bytes of any request

@@ -11,8 +11,8 @@ from rockflex.structure import LumpedMasses
 from rockflex.structure.file import StructureEntry
 from rockflex.study._yielding import yielding
 from rockflex.study.assumed import Assumed
-from rockflex.web._cloud import cloud_study
-from rockflex.web._design import design_study, limit_of
+from rockflex.study.cloud import CloudStudy
+from rockflex.study.design import DesignStudy
 from rockflex.web._limit_states import ROTATION
 from rockflex.web._records import PULSES
 from rockflex.web._state import PulseChoice, State
@@ -50,9 +50,9 @@ def response_script(state: State, upload_name: str = "record") -> str:
     )
 
 
-def cloud_script(state: State) -> str:
+def cloud_script(state: State, study: CloudStudy) -> str:
     """Return a program that repeats the cloud of the Fragility tab, with its table in `runs`."""
-    cloud, study = state.cloud, cloud_study(state)
+    cloud = state.cloud
     records = " + ".join(f"list(rf.load_suite({name!r}))" for name in cloud.suites)
     lines = [
         "import numpy as np",
@@ -75,19 +75,18 @@ def cloud_script(state: State) -> str:
     return "\n".join([*lines, "print(curves)", ""])
 
 
-def design_script(state: State) -> str:
+def design_script(state: State, study: DesignStudy) -> str:
     """Return a program that repeats the Design tab, with its chart in `table` and its answer in `answer`."""
-    study = design_study(state)
     choice = state.design
     records = " + ".join(f"list(rf.load_suite({name!r}))" for name in choice.suites)
     levels = [
-        f"TendonLevel({each.prestress_ratio!r}, {each.stiffness_ratio!r}, name={each.name!r})" for each in study.tendons
+        f"rf.TendonLevel({each.prestress_ratio!r}, {each.stiffness_ratio!r}, name={each.name!r})"
+        for each in study.tendons
     ]
     return "\n".join(
         [
             "import numpy as np",
             "import rockflex as rf",
-            "from rockflex.study.plans import TendonLevel, smallest_width",
             "",
             *_structure(state.structure),
             f"motions = {records}",
@@ -96,8 +95,8 @@ def design_script(state: State) -> str:
             *([_hysteresis(state)] if study.bouc_wen else []),
             f"runs = rf.run_design(structure, motions, half_widths, tendons, {choice.model!r}, "
             f"scales={list(choice.scales)!r}, free_vibration={study.free_vibration!r}{_law(state)}{_yielding(study)})",
-            f"table = rf.design_table(runs, {limit_of(choice)!r}, measure={choice.measure!r}, at={choice.at!r})",
-            f"answer = smallest_width(table, {choice.target!r})",
+            f"table = rf.design_table(runs, {study.limits[0]!r}, measure={choice.measure!r}, at={choice.at!r})",
+            f"answer = rf.smallest_width(table, {choice.target!r})",
             "print(answer)",
             f'rf.save_figure(rf.plot_design(table, {choice.target!r}), "design.svg")',
             "",

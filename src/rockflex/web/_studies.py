@@ -1,12 +1,15 @@
-"""What the studies of the page have in common: their structure and assumptions, their limits, and their table."""
+"""What the studies of the page share: structure and assumptions, limits, and the table of their runs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rockflex._errors import InputError
 from rockflex.motion import MEASURES
 from rockflex.study._yielding import yielding
-from rockflex.study.plans import CloudPlan, CloudStudy, DesignStudy, to_frame
+from rockflex.study.cloud import CloudPlan, CloudStudy
+from rockflex.study.design import DesignStudy
+from rockflex.study.plan import to_frame
 from rockflex.web._jobs import Job
 from rockflex.web._limits import RUN, check_runs
 from rockflex.web._refusal import Refusal
@@ -15,14 +18,39 @@ from rockflex.web._state import CloudChoice, DesignChoice, State
 if TYPE_CHECKING:
     import pandas as pd
 
-PER_CHUNK = 24  # runs between two looks at whether to go on
-CALM = 10.0  # s of free vibration of a study that yields: none can tell when a hysteretic spring is at rest
+PER_CHUNK = 24  # runs between two checks whether to continue
+CALM = 10.0  # s of free vibration of yielding models: when a hysteretic spring is at rest is not known
 
 AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
 
 
+@dataclass(frozen=True, kw_only=True)
+class StudyPage:
+    """How the page shows one kind of study.
+
+    Attributes
+    ----------
+    study : callable
+        Returns the study of a state.
+    view : callable
+        Returns what its tab shows of the runs so far, for the choices of a state.
+    table, figure : callable
+        Return a DataFrame and a Figure of the runs so far. `table_name` and `figure_name` are the names of the files.
+    script : callable
+        Returns a Python program that repeats the study.
+    """
+
+    study: Callable[[State], Any]
+    view: "Callable[[Job, State], dict[str, Any]]"
+    table: "Callable[[Job, State], pd.DataFrame]"
+    figure: "Callable[[Job, State], Any]"
+    script: Callable[[State, Any], str]
+    table_name: str
+    figure_name: str
+
+
 def shared(state: State, choice: CloudChoice | DesignChoice, labels: Sequence[str], name: str) -> dict[str, Any]:
-    """Return the content that both kinds of study have; `name` is for a nameless structure."""
+    """Return the content that both kinds of study share; `name` is used for a structure without a name."""
     return {
         "name": state.structure.name or name,
         "structures": [state.structure.model_dump(exclude_none=True)],
@@ -41,7 +69,7 @@ def study_of(kind: type[AnyStudy], content: dict[str, Any], path: str) -> AnyStu
     Raises
     ------
     Refusal
-        If it is not one.
+        If the content is not a valid study.
     """
     try:
         return kind(**content)
@@ -50,12 +78,12 @@ def study_of(kind: type[AnyStudy], content: dict[str, Any], path: str) -> AnyStu
 
 
 def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
-    """Return the runs of a study, cut into small chunks.
+    """Return the runs of a study, divided into small chunks.
 
     Raises
     ------
     Refusal
-        If they cannot be made, are too many for a page, or take too long.
+        If they cannot be prepared, are too many for the page, or take too long.
     """
     try:
         plan = study.plan()
@@ -72,8 +100,22 @@ def runs_of(job: Job) -> "pd.DataFrame | None":
     return to_frame(*tables) if tables else None
 
 
+def some_runs_of(job: Job) -> "pd.DataFrame":
+    """Return the table of the runs so far.
+
+    Raises
+    ------
+    Refusal
+        If there are none.
+    """
+    runs = runs_of(job)
+    if runs is None:
+        raise Refusal("There are no runs yet.")
+    return runs
+
+
 def progress(job: Job, measure: str) -> dict[str, Any]:
-    """Return how far a study is, and room for what follows from its runs."""
+    """Return the progress of a study, with empty lists for the curves and notes."""
     return {
         "status": job.status,
         "message": job.message,
@@ -86,7 +128,7 @@ def progress(job: Job, measure: str) -> dict[str, Any]:
 
 
 def none_solved(job: Job, runs: "pd.DataFrame") -> dict[str, str]:
-    """Return what the page is to say of a study that is over and none of whose runs was solved."""
+    """Return the message for a study that has ended without a solved run; an empty dictionary otherwise."""
     if not job.over or runs["status"].notna().any():
         return {}
     return {"status": "failed", "message": f"no run could be solved. {runs['error'].dropna().iloc[0]}"}

@@ -1,4 +1,4 @@
-"""What is no number of the paper: checks of ourselves, and remarks. Neither has a verdict, and neither is counted."""
+"""Checks and remarks: not numbers of the paper, so they have no verdict and are not counted."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,22 +10,22 @@ from rockflex.papers.silva_stojadinovic_2024._shown import digits_of, shown
 
 @dataclass(frozen=True)
 class Check:
-    """Something that must hold by construction, of the library or of an equivalent specimen.
+    """Something that must hold by construction, for the library or an equivalent specimen.
 
     Attributes
     ----------
     name, place : str
-        What it is, and where the paper has what it is held to.
+        What is checked, and where the paper has the value it is compared with.
     stated : str
-        What the paper has there.
+        The value in the paper.
     ours : float
         In `unit`.
     unit : str
         Empty for a ratio.
     criterion : str
-        What `ours` must meet.
+        The criterion that `ours` must meet.
     holds : bool
-        Whether it does.
+        Whether `ours` meets it.
     digits : int
         Decimals with which `ours` is shown.
     note : str
@@ -51,47 +51,47 @@ class Check:
 def check(
     name: str, place: str, stated: str, ours: float, criterion: str = "", unit: str = "", *, note: str = ""
 ) -> Check:
-    """Hold a value to a bound, such as ``"< 1"``, or without one to the printed number `stated`."""
+    """Check a value against a bound, such as ``"< 1"``, or by default against the printed number `stated`."""
     wanted, value = range_of(criterion or stated), float(ours)
     digits = digits_of(wanted, value)
     return Check(name, place, stated, value, unit, criterion or "must round to it", value in wanted, digits, note)
 
 
 class Kind(StrEnum):
-    """What sort of remark it is."""
+    """The kind of a remark."""
 
     AFTERWARDS = "chosen after the fact"
     BESIDE = "beside the paper"
 
     @property
     def meaning(self) -> str:
-        """How to take it, in one sentence."""
+        """Explanation in one sentence."""
         return _MEANINGS[self]
 
 
 _MEANINGS = {
     Kind.AFTERWARDS: (
-        "A reading, or a value, that was chosen with the printed one in view. It shows what would have to be so, and "
-        "is no evidence that the authors did so."
+        "An interpretation or a value that was chosen to match the printed one. It shows what would have to be the "
+        "case, but is not evidence that the authors did this."
     ),
-    Kind.BESIDE: "Computed beside what the paper prints, to tell what a number of it rests on.",
+    Kind.BESIDE: "Computed in addition to the printed numbers, to show what one of them depends on.",
 }
 
 
 @dataclass(frozen=True)
 class Remark:
-    """Something computed beside the printed numbers.
+    """A computation in addition to the printed numbers.
 
     Attributes
     ----------
     kind : Kind
-        How to take it.
+        The kind of the remark.
     title : str
         Heading.
     text : str
-        What was computed, and what it says.
+        What was computed, and what follows from it.
     head : sequence of str
-        Columns of its table; none without one.
+        Columns of its table; empty without a table.
     rows : sequence of sequences of str
         The table's cells.
     """

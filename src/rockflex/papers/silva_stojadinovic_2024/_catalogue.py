@@ -1,4 +1,4 @@
-"""The targets by name, in the paper's order, and their conduct."""
+"""The targets by name, in the order of the paper, and the function that runs them."""
 
 from collections.abc import Callable, Iterator, Sequence
 from difflib import get_close_matches
@@ -17,7 +17,7 @@ TARGETS = (
 
 
 def title_of(target: str) -> str:
-    """Title of a target.
+    """Return the title of a target.
 
     Raises
     ------
@@ -32,26 +32,26 @@ def reproduce(
     records: Records | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> list[Result]:
-    """Compute targets anew, in the paper's order.
+    """Reproduce targets, in the order of the paper.
 
     Parameters
     ----------
     targets
-        Names, all of them by default; none for all.
+        Their names. Default, also for an empty sequence: all.
     records
-        What the studies run through; the embedded records by default.
+        The records of the studies. Default: the embedded records.
     progress
-        Called with the name of every target that is done.
+        Called with the name of each completed target.
 
     Returns
     -------
     list of Result
-        One a target.
+        One for each target.
 
     Raises
     ------
     InputError
-        If there is no target of a name, or the records cannot be read or are too few for a target.
+        If a target is unknown, or the records cannot be read or are too few for a target.
     """
     wanted = [_known(name) for name in targets] or list(TARGETS)
     given = Records() if records is None else records

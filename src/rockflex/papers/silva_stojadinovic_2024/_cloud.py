@@ -1,4 +1,4 @@
-"""The cloud of Section 3.2, which Figures 5 to 7 share, and how its models differ at PGV = 0.4 m/s."""
+"""The cloud of Section 3.2, which Figures 5 to 7 share, and the differences of its models at PGV = 0.4 m/s."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-PGV = 0.4  # m/s, at which the text gives its differences
+PGV = 0.4  # m/s, for which the text gives the differences
 THRESHOLD = 1e-4  # rad, above which a run rocks
 RESAMPLES = 200
 PARTS = ("median", "84 % quantile")
@@ -27,7 +27,7 @@ THIRD = list(STRUCTURES).index("#3")
 
 @lru_cache(maxsize=1)
 def cloud(records: Records) -> "pd.DataFrame":
-    """Run the six structures with three models under every record as it is and times two."""
+    """Run the six structures with three models under every record, at the scales 1 and 2."""
     frames = {name: frame_of(name) for name in STRUCTURES}
     return rf.run_cloud(frames, records.suite, MODELS, (1.0, 2.0))
 
@@ -44,7 +44,7 @@ def differences(records: Records, quantity: str) -> dict[str, Interval]:
         Of the 2DOF models against MDOF-S, each for ``"median"`` and ``"84 % quantile"``: the largest absolute
         difference in the response's unit (``"median, largest"``) and the same over the value of MDOF-S (``"median, of
         the largest"``); the largest relative difference (``"median, largest relative"``) and the same in the response's
-        unit (``"median, of the largest relative"``). Of the medians alone: ``"#3 over the others"``, the largest
+        unit (``"median, of the largest relative"``). Of the medians only: ``"#3 over the others"``, the largest
         relative difference of #3 over that of all others; ``"2DOF-C less 2DOF-S"``, their largest difference over the
         largest relative one; ``"shear"`` and ``"flexure"``, the mean ratio of a 2DOF model to MDOF-S.
 
@@ -84,7 +84,7 @@ def percent(values: Interval) -> Interval:
 
 
 def _kept(records: Records, quantity: str) -> tuple[Array, Array, "NDArray[np.str_]"]:
-    """PGV; structure and model as a number beside the response; recording: of the runs that rock and stand."""
+    """Return PGV, a code of the case with the response, and the recording, of the runs that rock and stand."""
     runs = cloud(records)
     kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > THRESHOLD)]
     code = {key: number for number, key in enumerate((name, model) for name in STRUCTURES for model in MODELS)}
@@ -108,7 +108,7 @@ def _away(fits: Array) -> tuple[Array, Array]:
 
 
 def _compare(fits: Array) -> Mapping[str, float]:
-    """What `differences` returns, of one set of fits."""
+    """Return the values of `differences` for one set of fits."""
     away, shares = _away(fits)
     found: dict[str, float] = {}
     for place, part in enumerate(PARTS):

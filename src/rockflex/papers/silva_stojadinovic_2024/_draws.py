@@ -1,4 +1,4 @@
-"""What Sections 3.3 and 3.4 say of a thousand random pairs, as numbers by their names."""
+"""The statements of Sections 3.3 and 3.4 about a thousand random pairs, as named numbers."""
 
 from typing import TYPE_CHECKING
 
@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 QUANTITIES = ("top_displacement", "base_shear", "base_moment")
-FEW = 5  # pairs that "the largest" are
+FEW = 5  # pairs that count as "the largest"
 
 
 def measure(pairs: "pd.DataFrame") -> dict[str, float]:
-    """Outcomes, agreement and discrepancies of some pairs; NaN where there are too few."""
+    """Return outcomes, agreement and discrepancies of some pairs; NaN where there are too few."""
     found = rf.population_statistics(pairs, n_resamples=1, n_outliers=2 * FEW)
     return _outcomes(pairs) | _agreement(found) | _combination(found) | _resting(pairs) | _outliers(pairs, found)
 
@@ -64,7 +64,7 @@ def _resting(pairs: "pd.DataFrame") -> dict[str, float]:
 
 
 def _outliers(pairs: "pd.DataFrame", found: rf.PopulationStatistics) -> dict[str, float]:
-    """Of the rocking pairs with the largest differences of rotation."""
+    """Return properties of the rocking pairs with the largest differences in rotation."""
     few = found.outliers[found.outliers["share"].notna()].head(FEW)  # none, if all overturned
     return {
         "aspect ratio of outliers": float(few["aspect_ratio"].astype(float).median()),

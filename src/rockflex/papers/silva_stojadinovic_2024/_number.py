@@ -1,16 +1,17 @@
-"""Whether a printed number reproduces: all rules are here.
+"""The rules by which a printed number reproduces.
 
-1. *Reproduced.* A value must round to the printed digits; words such as "about" widen nothing. Where a table cuts
-   digits off (Table 3 does so with some), a value that is cut off to the printed digits passes too, and the line says
-   so. A bound must hold. A statement in words is turned into a criterion on a number; the line shows both.
-2. *Compatible*, or *cannot tell*. The records of the paper cannot be had, nor its random draws. What comes of ours has
-   a 90 % interval. It must meet what rounds to the printed digits, or have its criterion hold throughout; an interval
-   that is wider than half the printed value, or over a part of which alone the criterion holds, tells nothing.
-3. *Equivalent specimen.* As 1, of structures that meet the published ratios of a tested specimen and are not it.
+1. *Reproduced.* A value must round to the printed digits; words such as "about" do not widen the range. Where a table
+   cuts digits off (Table 3 does so for some), a value that is cut off to the printed digits also passes, and its line
+   says so. A bound must hold. A statement in words becomes a criterion on a number; the line shows both.
+2. *Compatible*, or *cannot tell*. The paper's records and random draws are not available. Values from ours have a 90 %
+   interval. It must overlap what rounds to the printed digits, or meet its criterion throughout. The result is *cannot
+   tell* if the interval is wider than half the printed value, or only a part of it meets the criterion.
+3. *Equivalent specimen.* Rule 1 for a structure that meets the published ratios of a tested specimen but is not the
+   specimen itself.
 4. *Does not reproduce.* Everything else. Nothing is adjusted to pass.
 
-A printed value counts once, wherever it is repeated. What follows from how the library, or an equivalent specimen, is
-built is no number but a `Check`; what was tried beside the printed values is a `Remark`.
+A printed value counts once, even if it is repeated. Anything that follows from the way the library or an equivalent
+specimen is built is a `Check`, not a number; additional computations are `Remark`s.
 """
 
 import math
@@ -23,7 +24,7 @@ from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST, Verdict
 
 
 class Interval(NamedTuple):
-    """An estimate and its 90 % interval: over resampled recordings, or over random draws. NaN where there is none."""
+    """An estimate and its 90 % interval over resampled recordings or random draws; NaN if it does not exist."""
 
     estimate: float
     low: float
@@ -32,12 +33,12 @@ class Interval(NamedTuple):
 
 @dataclass(frozen=True)
 class Number:
-    """One number of the paper beside ours.
+    """One number of the paper and ours.
 
     Attributes
     ----------
     name, place : str
-        What it is, and where the paper has it.
+        What the number is, and where it is in the paper.
     printed : str
         As printed, or the statement in words.
     ours : float
@@ -45,17 +46,17 @@ class Number:
     unit : str
         Empty for a ratio.
     criterion : str
-        What `ours` had to meet.
+        The criterion for `ours`.
     verdict : Verdict
-        Whether it does, and on what ground.
+        Whether `ours` meets it, and by which rule.
     difference : float or None
-        Ours less the printed value in `unit`; None of a statement, and of a bound that holds.
+        Ours minus the printed value in `unit`; None for a statement, and for a bound that holds.
     relative : float or None
-        The same over the printed value.
+        The difference over the printed value.
     digits : int
         Decimals with which `ours` is shown.
     note : str
-        What to know of it.
+        A note for the reader.
     """
 
     name: str
@@ -77,7 +78,7 @@ class Number:
 
     @property
     def difference_as_text(self) -> str:
-        """The difference with its sign, and in per cent; empty where there is none."""
+        """The difference with its sign, and in per cent; empty if there is none."""
         if self.difference is None:
             return ""
         text = f"{self.difference:+.{self.digits}f}"
@@ -97,16 +98,16 @@ def compared(
     truncated: bool = False,
     note: str = "",
 ) -> Number:
-    """Compare a value, or a bound, that is printed (rules 1 and 3).
+    """Compare a printed value or bound with ours (rules 1 and 3).
 
     Parameters
     ----------
     name, place, printed, ours, unit, note
-        As in `Number`; `ours` in the unit of the print.
+        As in `Number`; `ours` in the unit in print.
     ground
-        Verdict of a value that agrees.
+        Verdict if the value agrees.
     truncated
-        Whether the print may have cut digits off (rule 1).
+        Whether digits may have been cut off in print (rule 1).
     """
     wanted, value = range_of(printed, truncated=truncated), float(ours)
     criterion = "must hold" if wanted.is_bound else "must round to it"
@@ -134,7 +135,7 @@ def stated(
 
 
 def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "", *, note: str = "") -> Number:
-    """Compare a value of other records or draws with the printed one, by its interval (rule 2)."""
+    """Compare a printed value with the interval of ours, from other records or draws (rule 2)."""
     wanted = range_of(printed)
     digits = digits_of(wanted, ours.estimate)
     known = math.isfinite(ours.low) and math.isfinite(ours.high)
@@ -154,7 +155,7 @@ def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "
 def tendency(
     name: str, place: str, printed: str, ours: Interval, criterion: str, unit: str = "", *, note: str = ""
 ) -> Number:
-    """Check a bound, or a statement in words, on a number of other records or draws, by its interval (rule 2)."""
+    """Check a bound or a statement in words on the interval of a number from other records or draws (rule 2)."""
     wanted, value = range_of(criterion), float(ours.estimate)
     digits = _digits(wanted, value)
     holds = [float(end) in wanted for end in (ours.low, ours.high)]
@@ -179,5 +180,5 @@ def _number(
 
 
 def _digits(wanted: Range, ours: float) -> int:
-    """Of a number that is held against a bound: at least three decimals, none of whole numbers."""
+    """Return the decimals of a number that is compared with a bound: at least three, or none for an integer."""
     return 0 if ours.is_integer() else max(digits_of(wanted, ours), 3)

@@ -1,4 +1,4 @@
-"""Numbers as they stand in print, and the interval of values that each of them can stand for."""
+"""Printed numbers, and the range of values that each of them can represent."""
 
 import math
 import re
@@ -15,20 +15,20 @@ _SLACK = 1e-14  # relative, for the binary image of a decimal edge
 
 @dataclass(frozen=True)
 class Range:
-    """Values that a printed number can stand for.
+    """The values that a printed number can represent.
 
     Attributes
     ----------
     low, high : float
         Ends of the interval; infinite for a bound.
     open : bool
-        Whether the ends themselves are outside.
+        Whether the ends themselves are excluded.
     value : float
         The printed number.
     step : float
         Unit of its last digit.
     is_bound : bool
-        Whether a bound was printed, and no value.
+        Whether a bound was printed, not a value.
     """
 
     low: float
@@ -48,7 +48,7 @@ class Range:
         return self.low - slack <= found <= self.high + slack
 
     def meets(self, low: float, high: float) -> bool:
-        """Tell whether it has a value in common with an interval."""
+        """Return whether the range overlaps an interval."""
         return low <= self.high and high >= self.low
 
 
@@ -59,9 +59,9 @@ def range_of(printed: str, *, truncated: bool = False) -> Range:
     ----------
     printed
         ``"1.66"``, ``"−0.24"``, ``"24'178'750"``, ``"580000/3"``, ``"about 44"``, or a bound such as ``"≤ 3.2"``. A
-        value stands for what rounds to its digits, and no word in front of it widens that.
+        value represents all that rounds to its digits; a word before it does not widen the range.
     truncated
-        Whether digits may have been cut off too, in place of rounding: a unit of the last digit away from zero.
+        Whether digits may have been cut off instead of rounded: up to a unit of the last digit away from zero.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The records in place of the paper's, and the one that it shares."""
+"""The records used instead of the paper's, and the one record that both use."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,14 +12,14 @@ SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
 
 @dataclass(frozen=True, eq=False)
 class Records:
-    """What the studies of Sections 3.2 to 3.4 run through, and El Centro 1940 of Sections 4.1.1 and 4.2.
+    """The records of the studies of Sections 3.2 to 3.4, and El Centro 1940 of Sections 4.1.1 and 4.2.
 
     Attributes
     ----------
     folder : Path or None
-        Folder of the user's records, such as PEER's AT2 files. None for the 72 components of FEMA P-695 without pulses.
+        Folder of other records, such as PEER's AT2 files. None for the 72 components of FEMA P-695 without pulses.
     seeds : int
-        How many populations of a thousand random pairs are run, at least 10, to tell how far Figs. 9 and 13 hang on the
+        Number of populations of a thousand random pairs, at least 10, to find how much Figs. 9 and 13 depend on the
         draw.
     """
 
@@ -35,7 +35,7 @@ class Records:
 
     @cached_property
     def suite(self) -> rf.Suite:
-        """Records of the studies.
+        """The records of the studies.
 
         Raises
         ------
@@ -46,7 +46,7 @@ class Records:
 
     @property
     def table(self) -> rf.Records:
-        """The same as a study's specification has it."""
+        """The same records as in the specification of a study."""
         given = {"suites": list(SUITES)} if self.folder is None else {"folder": str(self.folder)}
         return rf.Records.model_validate(given)
 
@@ -57,7 +57,7 @@ class Records:
 
     @property
     def description(self) -> str:
-        """One sentence for the report."""
+        """The records in words, for the report."""
         count = len(self.suite)
         studies = (
             f"{count} records of the folder {self.folder.resolve().name}"

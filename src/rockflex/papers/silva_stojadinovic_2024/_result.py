@@ -1,4 +1,4 @@
-"""What a target returns."""
+"""The result of a target."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -13,20 +13,20 @@ from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """A table or figure computed anew.
+    """A reproduced table or figure.
 
     Attributes
     ----------
     name, title : str
-        Of the target.
+        Name and title of the target.
     numbers : tuple of Number
         Every printed number that belongs to it.
     figures : mapping of str to callable
-        A function that draws the figure, by the stem of its file; nothing is drawn before it is called.
+        Functions that draw the figures, by the stem of the file; nothing is drawn before they are called.
     note : str
-        What the reader must know before the figures: assumptions that the paper leaves open.
+        Assumptions that the paper leaves open, which the reader must know before the figures.
     checks : tuple of Check
-        What holds by construction, and so is not counted.
+        Checks that hold by construction and are not counted.
     remarking : tuple of callable
         Functions without arguments that compute the remarks.
     """
@@ -45,7 +45,7 @@ class Result:
 
     @property
     def remarks(self) -> tuple[Remark, ...]:
-        """What was computed beside the numbers; nothing is before it is asked for, as some take half a minute."""
+        """Additional computations, made when first requested, because some take half a minute."""
         return self._remarks
 
     @cached_property
@@ -53,5 +53,5 @@ class Result:
         return tuple(remark() for remark in self.remarking)
 
     def count(self, verdict: Verdict) -> int:
-        """Numbers with a verdict."""
+        """Return how many numbers have a verdict."""
         return sum(number.verdict is verdict for number in self.numbers)

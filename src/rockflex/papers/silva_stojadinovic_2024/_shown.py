@@ -1,4 +1,4 @@
-"""Numbers as text: as many digits as a comparison with print needs."""
+"""Numbers as text, with the digits that a comparison with print needs."""
 
 import math
 
@@ -6,7 +6,7 @@ from rockflex.papers.silva_stojadinovic_2024._printed import Range
 
 
 def digits_of(wanted: Range, ours: float) -> int:
-    """Two decimals more than are printed; none of whole numbers beside a whole number."""
+    """Return two decimals more than printed, or none if both are integers."""
     decimals = max(0, round(-math.log10(wanted.step)))
     return 0 if decimals == 0 and ours.is_integer() else decimals + 2
 
@@ -18,7 +18,7 @@ def percent(relative: float) -> str:
 
 
 def shown(value: float, digits: int) -> str:
-    """Write a value with so many decimals, or as a power of ten where these would not show it."""
+    """Write a value with a number of decimals, or with an exponent if they are too few."""
     if not math.isfinite(value):
         return "∞" if value > 0.0 else "−∞" if value < 0.0 else "none"
     if value != 0.0 and abs(value) < 0.5 * 10.0**-digits:

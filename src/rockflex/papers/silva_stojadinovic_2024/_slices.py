@@ -1,4 +1,4 @@
-"""The chimney's modes by two coarser roads, to see where the printed ones may come from (Section 4.1.1)."""
+"""Modes of the chimney by two coarser methods, to find where the printed values may come from (Section 4.1.1)."""
 
 import math
 
@@ -13,7 +13,7 @@ FUNCTIONS = 5  # of Eq. 36
 
 
 def ritz_of_slices(slices: int) -> dict[str, Array]:
-    """ω (rad/s), m* (10⁶ kg), h* (m) and Γ of a Ritz solution with sums over slices in place of integrals.
+    """Return ω (rad/s), m* (10⁶ kg), h* (m) and Γ of a Ritz solution with sums over slices instead of integrals.
 
     The functions are those of Eq. 36. What the stiffness matrix integrates, EI φ_i'' φ_j'', is taken at the upper end
     of each slice, and what the mass matrix does by the trapezoidal rule.
@@ -39,7 +39,7 @@ def ritz_of_slices(slices: int) -> dict[str, Array]:
 
 
 def first_frequency(elements: int, place: float) -> float:
-    """ω_1 in rad/s by cubic elements, with dense matrices and nothing done about rounding.
+    """Return ω_1 in rad/s by cubic elements, with dense matrices and without precautions against rounding.
 
     Parameters
     ----------
@@ -71,12 +71,12 @@ def _radii(z: Array) -> tuple[Array, Array]:
 
 
 def _stiffness(z: Array) -> Array:
-    """EI in N m²."""
+    """Return EI in N m²."""
     outer, inner = _radii(z)
     return TOWER.elastic_modulus * 0.25 * math.pi * (outer**4 - inner**4)
 
 
 def _mass(z: Array) -> Array:
-    """Mass a unit length in kg/m."""
+    """Return the mass per length in kg/m."""
     outer, inner = _radii(z)
     return TOWER.density * math.pi * (outer**2 - inner**2)

@@ -1,4 +1,4 @@
-"""What Figures 3 and 4 share: what is not known of the two specimens, the runs, and the bands of what was varied."""
+"""The parts that Figures 3 and 4 share: unknown parameters of the two specimens, runs, and bands over their ranges."""
 
 from collections.abc import Callable, Iterable, Mapping
 from itertools import product
@@ -8,7 +8,7 @@ import rockflex as rf
 
 SPECIMEN_MODELS = ("2DOF-C", "2DOF-C-SI", "2DOF-S", "MDOF-S")
 
-# Nominal values first. None of them is known of the specimens.
+# Nominal values first. None of these parameters of the specimens is known.
 TWO_HZ = {"base_mass_ratio": (0.1, 0.0, 0.05, 0.2, 0.3), "damping_ratio": (0.01, 0.005, 0.02)}
 S1 = {
     "base_mass_ratio": (0.3, 0.1, 0.6),
@@ -24,28 +24,28 @@ Run = Callable[[rf.RockingProperties, str], rf.Response]
 
 
 def nominal(free: Free) -> dict[str, float]:
-    """First value of each parameter."""
+    """Return the nominal value of each parameter."""
     return {name: values[0] for name, values in free.items()}
 
 
 def combinations(free: Free) -> list[dict[str, float]]:
-    """Every combination of the values."""
+    """Return every combination of the values."""
     return [dict(zip(free, values, strict=True)) for values in product(*free.values())]
 
 
 def histories(properties: rf.RockingProperties, run: Run) -> dict[str, rf.Response]:
-    """Responses of the four models, by their names."""
+    """Return the responses of the four models by name."""
     return {model: run(properties, model) for model in SPECIMEN_MODELS}
 
 
 def widest(values: Iterable[float]) -> float:
-    """Largest over least."""
+    """Return the ratio of the largest to the smallest value."""
     found = list(values)
     return max(found) / min(found)
 
 
 def spread(title: str, responses: Mapping[str, rf.Response], free: Free, make: Make, run: Run) -> Any:
-    """Figure of each model's response with the band of every combination."""
+    """Draw the response of each model with the band over all combinations."""
     cases = [make(**case) for case in combinations(free)]
     varied = [[run(case, model) for case in cases] for model in responses]
     return rf.plot_spread(list(responses.values()), varied, panels=("rotation", "top_displacement"), title=title)

@@ -35,7 +35,7 @@ def frame_of(name: str) -> rf.Frame:
 
 
 def tall_frame(behaviour: str, aspect_ratio: float = MARK) -> rf.Frame:
-    """Return the 15-story building of Section 3.4; period and base mass are ours, the paper has neither."""
+    """Return the 15-story building of Section 3.4; its period and base mass are assumed."""
     return rf.Frame(
         n_stories=15, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=BEHAVIOURS[behaviour],
         period=1.0, aspect_ratio=aspect_ratio, damping_ratio=0.02,

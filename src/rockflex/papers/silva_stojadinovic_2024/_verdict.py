@@ -1,4 +1,4 @@
-"""What a verdict on a printed number can be, and what each one means."""
+"""The verdicts on a printed number, and their meanings."""
 
 from enum import StrEnum
 
@@ -6,7 +6,7 @@ WIDEST = 0.5  # of the printed value: the width of an interval, above which it t
 
 
 class Verdict(StrEnum):
-    """How a number of ours stands to the printed one; `_number` has the rules."""
+    """How our number compares with the printed one; `_number` has the rules."""
 
     REPRODUCED = "reproduced"
     COMPATIBLE = "compatible"
@@ -22,20 +22,20 @@ class Verdict(StrEnum):
 
 _MEANINGS = {
     Verdict.REPRODUCED: (
-        "From the paper's own input: it rounds to the printed digits (or is cut off to them, and says so), or the "
+        "From the input in the paper: it rounds to the printed digits (or is cut off to them, as noted), or the "
         "criterion holds."
     ),
     Verdict.COMPATIBLE: (
-        "With other records than the paper's, or other random draws: the 90 % interval meets what rounds to the "
-        "printed digits, and is no wider than half the printed value; or the criterion holds over the whole interval. "
-        "This does not contradict the paper, and does not prove it."
+        "With other records or random draws: the 90 % interval overlaps what rounds to the printed digits "
+        "and is at most half as wide as the printed value; or the criterion holds over the whole interval. "
+        "This does not contradict the paper, but does not prove it."
     ),
     Verdict.EQUIVALENT: (
-        "As the first, of a structure that meets the published ratios of a tested specimen and is not the specimen."
+        'As "reproduced", for a structure that meets the published ratios of a tested specimen but is not the specimen.'
     ),
     Verdict.UNDECIDED: (
-        "With other records or draws: the 90 % interval meets the printed value but is wider than half of it, or the "
-        "criterion holds over a part of the interval only."
+        "With other records or draws: the 90 % interval overlaps the printed value but is wider than half of "
+        "it, or the criterion holds over only a part of the interval."
     ),
     Verdict.NOT: "None of these. Nothing is adjusted to pass; the difference is shown.",
 }

@@ -1,4 +1,4 @@
-"""The random pairs of Sections 3.3 and 3.4 once more, under weaker records."""
+"""The random pairs of Sections 3.3 and 3.4 under weaker records."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
-from rockflex.papers.silva_stojadinovic_2024._population import PAIRS, SEED, intervals
+from rockflex.papers.silva_stojadinovic_2024._pool import PAIRS, SEED, intervals
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 
 if TYPE_CHECKING:
     import pandas as pd
 
-FACTOR = 0.6  # times the records' acceleration
+FACTOR = 0.6  # on the acceleration of the records
 
 
 def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remark:
-    """Show some measures, each with its name and its printed value, with records as they are and with weaker ones."""
+    """Compare some measures, with their printed values, for unscaled and for weaker records."""
     as_they_are, weaker = intervals(records), measure(_pairs(records))
     return Remark(
         Kind.AFTERWARDS,
         f"All records times {FACTOR}",
-        "The factor is chosen so that about as many pairs uplift as in the paper, whose records cannot be had. It is "
-        f"one thousand pairs (seed {SEED}); a count of 300 of them has a standard deviation of 14 from draw to draw.",
+        "The factor is chosen so that about as many pairs uplift as in the paper, whose records are not available. "
+        f"The sample is one thousand pairs (seed {SEED}); a count of 300 of them has a standard deviation of 14.",
         ("quantity", "paper", "records as they are, median", f"times {FACTOR}"),
         [
             (name, printed, f"{as_they_are[key].estimate:.4g}", f"{weaker[key]:.4g}")
@@ -34,6 +34,6 @@ def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remar
 
 @lru_cache(maxsize=1)
 def _pairs(records: Records) -> "pd.DataFrame":
-    """The same structures as the first thousand of the population."""
+    """Return the measures of the first thousand structures of the population under weaker records."""
     suite = rf.Suite([motion.scaled(FACTOR) for motion in records.suite])
     return rf.run_population(suite, PAIRS, SEED)

@@ -1,4 +1,4 @@
-"""Figure 10: uplifted over fixed-base frequencies of two 15-story buildings, over the aspect ratio."""
+"""Figure 10: ratio of uplifted to fixed-base frequencies of two 15-story buildings, against the aspect ratio."""
 
 import numpy as np
 
@@ -16,13 +16,13 @@ NARROW = 1000.0
 SHOWN: list[float] = np.geomspace(0.1, NARROW, 201).tolist()
 MODES = {"2DOF-S": (1,), "3DOF-S": (1, 2), "MDOF-S": (1, 2)}
 NOTE = (
-    "15 stories of 3 m and 40 t, T_1 = 1 s, a base of 40 t: the paper gives neither period nor base mass. The pinned "
-    "beam has its mass and stiffness spread evenly and feels no gravity."
+    "15 stories of 3 m and 40 t, T_1 = 1 s, a base of 40 t: the paper does not give period or base mass. The "
+    "pinned beam has uniform mass and stiffness and is not subject to gravity."
 )
 
 
 def reproduce(_: Records) -> Result:
-    """Compare the models at low aspect ratios, at the figure's gray line and at its end."""
+    """Compare the models at low aspect ratios, at the gray line of the figure and at its right end."""
 
     def figure() -> object:
         tables = {b: rf.frequency_ratios(tall_frame(b), SHOWN) for b in BEHAVIOURS}
@@ -70,7 +70,7 @@ def _of(behaviour: str) -> list[Number]:
 
 
 def _low(behaviour: str) -> list[Number]:
-    """What the text says of lower aspect ratios, at 1 and 2: no building has a lower one."""
+    """Check the text on lower aspect ratios at 1 and 2, since buildings do not have lower ones."""
     rise = {
         n: [max(abs(ratio(behaviour, m, n, x) - 1.0) for m, modes in MODES.items() if n in modes) for x in LOW]
         for n in (1, 2)
@@ -98,7 +98,7 @@ def _low(behaviour: str) -> list[Number]:
 
 def _why(behaviour: str, model: str) -> str:
     if model != "MDOF-S":
-        return "the highest mode kept stands for all above it, and is too stiff"
-    return "masses lumped at 15 floors are not spread evenly; the excess falls with more floors" * (
+        return "the highest mode included represents all modes above it, and is too stiff"
+    return "masses lumped at 15 floors are not uniform; the excess decreases with more floors" * (
         behaviour == "flexure"
     )

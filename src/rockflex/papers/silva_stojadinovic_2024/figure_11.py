@@ -1,4 +1,4 @@
-"""Figure 11: base moment over rotation of a pinned beam and of a rocking base."""
+"""Figure 11: base moment against rotation of a pinned beam and of a rocking base."""
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import check
@@ -6,7 +6,7 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import tall_frame
 
-TITLE = "Base moment over rotation of a pinned beam and of a rocking base"
+TITLE = "Base moment against rotation of a pinned beam and of a rocking base"
 
 
 def reproduce(_: Records) -> Result:
@@ -24,7 +24,7 @@ def reproduce(_: Records) -> Result:
         check(
             "slope of the resisting moment of MDOF-S over L_0^r g", "Section 3.4", "negative rotational stiffness",
             slope, "< 0",
-            note="the model is built so: M = m_tot g B − L_0^r g θ has −1; from the first instant of a free motion",
+            note="by construction: M = m_tot g B − L_0^r g θ has slope −1; from the first instant of a free motion",
         ),
     )  # fmt: skip
     figures = {"figure-11": lambda: rf.plot_moment_rotation_laws(frame)}

@@ -28,5 +28,5 @@ def reproduce(_: Records) -> Result:
         for behaviour, model, mode, words, criterion in STATEMENTS
     )  # fmt: skip
     frames = {behaviour: tall_frame(behaviour) for behaviour in BEHAVIOURS}
-    note = "Errors against MDOF-S. The text judges in words; the limits in per cent are our reading of them."
+    note = "Errors relative to MDOF-S. The text uses words; the limits in per cent are our interpretation."
     return Result("figure-12", TITLE, numbers, {"figure-12": lambda: rf.plot_frequency_equation(frames)}, note)

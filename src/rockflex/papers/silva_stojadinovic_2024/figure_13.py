@@ -4,7 +4,7 @@ from functools import partial
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, statistic, tendency
-from rockflex.papers.silva_stojadinovic_2024._population import DRAWS, PAIRS, intervals, population
+from rockflex.papers.silva_stojadinovic_2024._pool import DRAWS, PAIRS, intervals, population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
@@ -18,7 +18,7 @@ PRINTED = {
     "r2, base_moment, SRSS": ("R² of M_b,max, SRSS", "0.93"),
     "r2, base_moment, 2DOF-S": ("R² of M_b,max, 2DOF-S", "0.93"),
 }
-"""That of u_top,max with 2DOF-S alone is a number of Figure 9."""
+"""The value of u_top,max for 2DOF-S is a number of Figure 9."""
 
 STATED = {
     "slope, second_displacement, S_d(ω_2)": ("D_2,max over S_d(ω_2), slope", "underestimated by the fixed base", "> 1"),
@@ -43,8 +43,8 @@ def reproduce(records: Records) -> Result:
         ),
     )  # fmt: skip
     note = (
-        "R² is that of the line of equality, as in the paper; the blue line is y = c_1 x. Ours is the median, and the "
-        f"90 % interval that of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
+        "R² refers to the line of equality, as in the paper; the blue line is y = c_1 x. Our value is the median, with "
+        f"the 90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
     )
     return Result(
         "figure-13", TITLE, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note,
@@ -53,7 +53,7 @@ def reproduce(records: Records) -> Result:
 
 
 def _size(slope: Interval) -> Interval:
-    """Magnitude of a slope less 1."""
+    """Return the magnitude of a slope minus 1."""
     estimate, *ends = (value - 1.0 for value in slope)
     low, high = sorted(map(abs, ends))
     return Interval(abs(estimate), 0.0 if min(ends) < 0.0 < max(ends) else low, high)

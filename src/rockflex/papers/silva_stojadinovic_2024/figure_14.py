@@ -1,4 +1,4 @@
-"""Figure 14 and Eqs. 33-35: the chimney's geometry and what follows from it alone."""
+"""Figure 14 and Eqs. 33-35: the geometry of the chimney and the parameters that follow from it."""
 
 import math
 

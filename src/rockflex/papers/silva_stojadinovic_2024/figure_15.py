@@ -1,4 +1,4 @@
-"""Figure 15: the chimney under El Centro times 2."""
+"""Figure 15: the chimney under El Centro at the scale 2."""
 
 from functools import partial
 
@@ -32,8 +32,8 @@ def reproduce(records: Records) -> Result:
     panels = ("rotation", "top_displacement", "base_moment", "base_shear")
     figures = {"figure-15": lambda: rf.plot_history(shown, panels=panels, title="Chimney, El Centro times 2")}
     note = (
-        "Errors are against 6DOF-S. Where the text does not tell their direction, magnitudes are compared. The text "
-        f"calls the number of uplift events small without a number; here 6DOF-S lifts {runs['6DOF-S'].n_uplifts} times."
+        "Errors are relative to 6DOF-S. If the text does not give their sign, magnitudes are compared. The text calls "
+        f"the number of uplift events small without giving it; here 6DOF-S lifts {runs['6DOF-S'].n_uplifts} times."
     )
     remarking = (partial(_at_samples, runs, motion.dt), partial(_missing_mass, motion))
     return Result("figure-15", TITLE, tuple(_numbers(runs)), figures, note, remarking=remarking)
@@ -71,7 +71,7 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
 
 
 def _missing_mass(motion: rf.GroundMotion) -> Remark:
-    """What the ground must hold, and base shear and moment with the mass that few modes leave out."""
+    """Compute the reaction of the ground, and base shear and moment with the mass of the modes left out."""
     quantities = {"base_shear": "V_b,max", "base_moment": "M_b,max", "horizontal_reaction": "ΣF_x,max"}
     models = ("2DOF-S", "2DOF-S-R", "3DOF-S", "3DOF-S-R", "6DOF-S-R")
     reference, *runs = (rf.simulate(TOWER, motion, model, "peaks") for model in ("6DOF-S", *models))
@@ -83,17 +83,17 @@ def _missing_mass(motion: rf.GroundMotion) -> Remark:
     return Remark(
         Kind.BESIDE,
         "The mass that few modes leave out",
-        "V_b and M_b are the elastic forces of the modes kept. Models that end in -R count the mass of the others too, "
-        f"as if it moved with the base, and so does ΣF_x, what the ground must hold ({held} MN with 6DOF-S). The base "
-        "shear of one mode is then of the right size. Its moment is no better for it, since a static share "
-        "cannot tell what the second mode does. Five modes leave out 13 % of the mass, which 6DOF-S-R counts.",
+        "V_b and M_b are the elastic forces of the modes included. Models that end in -R add the mass of the other "
+        f"modes, as if it moved with the base; so does ΣF_x, the reaction of the ground ({held} MN with 6DOF-S). The "
+        "base shear of one mode is then of the right size. Its moment does not improve, because a static share does "
+        "not represent the second mode. Five modes leave out 13 % of the mass, which 6DOF-S-R adds.",
         ("error against 6DOF-S", *quantities.values()),
         rows,
     )
 
 
 def _at_samples(runs: dict[str, rf.Response], dt: float) -> Remark:
-    """Errors by the largest sample, in place of the peak between samples."""
+    """Compute the errors from the largest sample instead of the peak between samples."""
 
     def peak(model: str, quantity: str) -> float:
         run = runs[model]

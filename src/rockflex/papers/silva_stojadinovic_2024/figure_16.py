@@ -1,4 +1,4 @@
-"""Figure 16: structure #1 that yields and barely rocks."""
+"""Figure 16: structure #1, which yields and barely rocks."""
 
 from functools import partial
 
@@ -42,15 +42,15 @@ def reproduce(records: Records) -> Result:
     )  # fmt: skip
     names = ["2DOF-S", *(f"2DOF-S-BW, $D_y$ = {value} m" for value in (WEAK, STRONGER))]
     text = (
-        f"The paper does not give D_1,y of this figure; {WEAK} m is one with which the structure yields and barely "
-        f"rocks. With {STRONGER} m, shown beside it, it has the printed top displacement, and rocks."
+        f"The paper does not give D_1,y of this figure; with {WEAK} m the structure yields and barely rocks. With "
+        f"{STRONGER} m, also shown, it has the printed top displacement, and rocks."
     )
     figures = {"figure-16": lambda: rf.plot_yielding([elastic, weak, stronger], names)}
     return Result("figure-16", TITLE, numbers, figures, text, remarking=(partial(_yield_displacements, records),))
 
 
 def _yield_displacements(records: Records) -> Remark:
-    """Which of the four statements on this figure hold, by the yield displacement that the paper does not give."""
+    """Find which of four statements on this figure hold, depending on the yield displacement (not in the paper)."""
     wanted = [range_of(text) for text in (YIELDS, BARELY, TOP, SAME)]
     elastic, strong = run(records, "2DOF-S"), run(records, "2DOF-S-BW", STRONG)
 
@@ -68,8 +68,8 @@ def _yield_displacements(records: Records) -> Remark:
     return Remark(
         Kind.AFTERWARDS,
         "The yield displacement of the weak structure",
-        f"Four statements of Section 4.2 hang on it. Of {len(TRIED)} values from {TRIED[0]:g} to {TRIED[-1]:g} m, the "
-        f"most that one meets is {most} of the four.",
+        f"Four statements of Section 4.2 depend on it. With {len(TRIED)} values from {TRIED[0]:g} to {TRIED[-1]:g} m, "
+        f"at most {most} of the four hold.",
         (
             "D_1,y in m",
             f"largest |z| ({YIELDS})",

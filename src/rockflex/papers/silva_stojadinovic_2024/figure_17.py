@@ -1,4 +1,4 @@
-"""Figure 17: structure #1 that rocks and barely yields, beside the same on a fixed base."""
+"""Figure 17: structure #1, which rocks and barely yields, and the same structure on a fixed base."""
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import compared, stated
@@ -11,7 +11,7 @@ PLACE = "Section 4.2"
 
 
 def reproduce(records: Records) -> Result:
-    """Run both."""
+    """Run both structures."""
     fixed, rocking = run(records, "1DOF-fixed-BW", STRONG), run(records, "2DOF-S-BW", STRONG)
     weak = run(records, "2DOF-S-BW", WEAK)
     top = rocking.max_top_displacement
@@ -24,7 +24,7 @@ def reproduce(records: Records) -> Result:
         stated("largest |z|, fixed", PLACE, "the fixed base yields", largest_yielding(fixed), "> 0.99"),
         stated(
             "u_top,max of Fig. 16's weak structure over Fig. 17's", PLACE, "approximately the same",
-            weak.max_top_displacement / top, SAME, note=f"with D_1,y = {WEAK} m for Fig. 16; 1.1 is our reading",
+            weak.max_top_displacement / top, SAME, note=f"with D_1,y = {WEAK} m for Fig. 16; 1.1 is our interpretation",
         ),
     )  # fmt: skip
     names = [f"fixed base, $D_y$ = {STRONG} m", f"2DOF-S-BW, $D_y$ = {STRONG} m"]

@@ -17,7 +17,7 @@ TITLE = "Specimen 2Hz-Long Base(14) under an antisymmetric Ricker pulse, by an e
 LABEL = "Equivalent of 2Hz-Long Base(14), not the specimen; Ricker pulse 0.1 g, 0.5 s"
 PLACE = "Section 3.1"
 NOTE = (
-    "The paper gives ratios of the specimen, and no mass, length or damping. This is a structure that meets the "
+    "The paper gives ratios of the specimen, but not its mass, length or damping. This structure meets the "
     "ratios, with m_0/m_s = 0.1 and ζ = 1 % assumed; the second figure varies these two. The test itself is not shown."
 )
 
@@ -81,7 +81,7 @@ def _numbers(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Numb
         ),
         holds(
             "friction that 2DOF-C needs over B/h*_1, Eq. 22 as printed", PLACE, "larger than B/h*_1",
-            friction / _slenderness(p), "> 1", note="with the sign of the weight mended it is not: see the remark",
+            friction / _slenderness(p), "> 1", note="with the corrected sign of the weight it is not: see the remark",
         ),
     ]  # fmt: skip
 
@@ -100,7 +100,7 @@ def _checks(p: rf.RockingProperties, complete: rf.Response) -> tuple[Check, ...]
 
 
 def _both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark:
-    """Friction with either sign of the weight."""
+    """Compute the required friction with both signs of the weight."""
     rows = [
         (model, f"{_as_printed(run):.3f}", f"{run.required_friction:.3f}", f"{_slenderness(p):.3f}")
         for model, run in runs.items()
@@ -108,15 +108,15 @@ def _both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark
     return Remark(
         Kind.BESIDE,
         "Both signs of the weight in Eq. 22",
-        "That more friction is needed than B/h*_1 follows from Eq. 22 as printed. With the sign mended the complete "
-        "models need just about B/h*_1, at which the base lifts.",
+        "Eq. 22 as printed requires more friction than B/h*_1. With the corrected sign, the complete models require "
+        "about B/h*_1, at which the base lifts.",
         ("model", "as printed", "N = Σ m_i (g + z''_i)", "B/h*_1"),
         rows,
     )
 
 
 def _as_printed(run: rf.Response) -> float:
-    """Friction that a run needs by Eq. 22 as printed."""
+    """Return the friction that a run requires by Eq. 22 as printed."""
     return run.required_friction_excluding_impacts(0.0, printed=True)
 
 

@@ -1,4 +1,4 @@
-"""Figure 4: an equivalent of specimen S1, let go at 0.11 rad."""
+"""Figure 4: an equivalent of specimen S1, released at 0.11 rad."""
 
 from functools import partial
 from typing import Any
@@ -20,14 +20,14 @@ PLACE = "Section 3.1"
 RELEASE = 0.11  # rad
 BOUNDLESS = 1e6  # friction that rounding alone keeps from being infinite
 NOTE = (
-    "The paper gives ratios of the specimen, and no mass, length or damping. This is a structure that meets the "
+    "The paper gives ratios of the specimen, but not its mass, length or damping. This structure meets the "
     "ratios, with m_0/m_s = 0.3, ζ = 2 %, B/h*_1 = 0.2, h*_1 = 1 m and a spacing of the masses assumed; the second "
     "figure varies all five. The test itself is not shown."
 )
 
 
 def run(properties: rf.RockingProperties, model: str) -> rf.Response:
-    """Let a structure go."""
+    """Run the free motion of a structure after its release."""
     start = rf.InitialState(rotation=RELEASE)
     return rf.simulate(properties, rf.quiet_motion(3.0, 0.001), model, initial=start)
 
@@ -58,7 +58,7 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
     change = 100.0 * (runs["MDOF-S"].max_top_displacement / runs["2DOF-S"].max_top_displacement - 1.0)
     changes = _changes()
     swept = (
-        f"over {changes.size} combinations of what is not published it is from {changes.min():+.0f} % to "
+        f"over {changes.size} combinations of the unpublished values it is from {changes.min():+.0f} % to "
         f"{changes.max():+.0f} %, {np.median(changes):+.1f} % in the median"
     ).replace("-", "−")
     return [
@@ -74,7 +74,7 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
         ),
         holds(
             "friction that MDOF-S needs, Eq. 22 as printed", PLACE, "force ratios higher than 2", friction, "> 2",
-            note="∞: the vertical sum passes through zero; with the sign of the weight mended "
+            note="∞: the vertical sum passes through zero; with the corrected sign of the weight "
             f"{shown(every.required_friction, 1)}",
         ),
     ]  # fmt: skip
@@ -91,7 +91,7 @@ def _checks(p: rf.RockingProperties) -> tuple[Check, ...]:
 
 
 def _changes() -> "np.ndarray[Any, np.dtype[np.float64]]":
-    """Difference of u_top,max, MDOF-S against 2DOF-S, in per cent, over all combinations."""
+    """Compare u_top,max of MDOF-S and 2DOF-S, in per cent, over all combinations."""
     start, quiet = rf.InitialState(rotation=RELEASE), rf.quiet_motion(3.0, 0.001)
     found: list[float] = []
     for case in combinations(S1):

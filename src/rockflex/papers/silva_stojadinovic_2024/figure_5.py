@@ -24,7 +24,7 @@ AGREE = "< 0.1"
 
 
 def reproduce(records: Records) -> Result:
-    """Fit the curves, and find where those of the models part most."""
+    """Fit the curves, and find the largest differences between the models."""
     runs = cloud(records)
     shear, flexure, more = _gaps(runs)
     words = "the curves agree well"
@@ -43,15 +43,15 @@ def reproduce(records: Records) -> Result:
         ),
     )  # fmt: skip
     note = (
-        "P(θ_max > 10⁻⁴ rad) by logistic regression on log PGV, over the PGV of the records. The records here are "
-        "stronger than the paper's: where all runs, or all but a few, rock, a curve is flat or rests on these few. "
+        "P(θ_max > 10⁻⁴ rad) by logistic regression on log PGV, up to the PGV of the records. These records are "
+        "stronger than those of the paper: if (almost) all runs rock, a curve is flat or depends on a few runs. "
         "Intervals are over resampled records."
     )
     return Result("figure-5", TITLE, numbers, {"figure-5": lambda: rf.plot_fragility(runs)}, note)
 
 
 def _gaps(runs: "pd.DataFrame") -> tuple[Interval, Interval, Interval]:
-    """Largest difference of P from MDOF-S: shear, flexure, and the second less the first."""
+    """Return the largest difference of P from MDOF-S: for shear, for flexure, and flexure minus shear."""
     pgv, rocks = runs["pgv"].to_numpy(dtype=float), (runs["max_rotation"] > THRESHOLD).to_numpy(dtype=bool)
     keys = runs["structure"].astype(str) + runs["model"].astype(str)
     names = [[name + model for model in MODELS] for name in STRUCTURES]
@@ -74,16 +74,16 @@ def _gaps(runs: "pd.DataFrame") -> tuple[Interval, Interval, Interval]:
 
 
 def _curve(pgv: Array, rocks: NDArray[np.bool_], grid: Array) -> Array:
-    """Probability over the grid; constant where all runs are alike."""
+    """Return the probability on the grid; constant if all runs have the same outcome."""
     if rocks.all() or not rocks.any():
         return np.full(grid.size, float(rocks[0]))
     return rf.fit_logistic(pgv, rocks).probability(grid)
 
 
 def _few(runs: "pd.DataFrame") -> str:
-    """How few runs the curves of #2 rest on, whose difference is the largest."""
+    """Show how few runs support the curves of #2, which differ the most."""
     still = runs[(runs["structure"] == "#2") & (runs["max_rotation"] <= THRESHOLD)]
     counts = still["model"].astype(str).value_counts()
     of = len(runs[(runs["structure"] == "#2") & (runs["model"] == "MDOF-S")])
     each = ", ".join(f"{counts.get(model, 0)} with {model}" for model in MODELS)
-    return f"the curves of #2 rest on the runs that do not rock: {each}, of {of}"
+    return f"the curves of #2 depend on the runs that do not rock: {each}, of {of}"

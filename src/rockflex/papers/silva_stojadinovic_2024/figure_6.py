@@ -38,16 +38,16 @@ def reproduce(records: Records) -> Result:
         ),
     )  # fmt: skip
     note = (
-        "Differences of 2DOF-C or 2DOF-S from MDOF-S, of the structure and model where they are largest in rad. So the "
-        "text reads: 0.002 rad are 15 % of a median of 0.013 rad, which is not where the differences are relatively "
-        "largest. Intervals are over records, resampled with all that belongs to them."
+        "Differences of 2DOF-C or 2DOF-S from MDOF-S, for the structure and model where they are largest in rad. We "
+        "interpret the text so: 0.002 rad are 15 % of a median of 0.013 rad, where the differences are not "
+        "relatively largest. Intervals are over resampled recordings, with all of their runs."
     )
     figures = {"figure-6": lambda: rf.plot_clouds(runs, QUANTITY)}
     return Result("figure-6", TITLE, numbers, figures, note, remarking=(partial(_readings, records),))
 
 
 def _readings(records: Records) -> Remark:
-    """The differences where they are largest in rad, and where they are relatively largest."""
+    """Show the differences where they are largest, absolutely and relatively."""
     at = places(records, QUANTITY)
     largest = {part: str(place) for part, place in at.idxmax().items()}
     reasons = {
@@ -64,7 +64,7 @@ def _readings(records: Records) -> Remark:
     return Remark(
         Kind.BESIDE,
         "Which difference is the largest",
-        "One structure and model a line. The last two lines are the other reading of the text, by the largest relative "
+        "One line for each structure and model. The last two lines interpret the text by the largest relative "
         "difference.",
         ("structure and model", "where the difference is", "medians", "84 % quantiles"),
         rows,

@@ -45,12 +45,12 @@ def reproduce(records: Records) -> Result:
         tendency(f"{mean}, flexure", "Sections 3.2 and 5", "2DOF models underestimate", found["flexure"], "< 1"),
         tendency(
             f"{mean}, shear", "Section 3.2", "2DOF models underestimate", found["shear"], "< 1",
-            note="a slip: Sections 3.3 and 5 say overestimate, and so it is here",
+            note="an error in the text: Sections 3.3 and 5 have overestimate, as here",
         ),
         tendency(f"{mean}, shear", "Section 5", "2DOF models overestimate", found["shear"], "> 1"),
     )  # fmt: skip
     note = (
-        "Differences of 2DOF-C or 2DOF-S from MDOF-S, of the structure and model where they are relatively largest: "
-        "the text names per cent first, and #3. Intervals are over records, resampled with all that belongs to them."
+        "Differences of 2DOF-C or 2DOF-S from MDOF-S, for the structure and model where they are relatively largest: "
+        "the text gives per cent first, and names #3. Intervals are over resampled recordings with all of their runs."
     )
     return Result("figure-7", TITLE, numbers, {"figure-7": lambda: rf.plot_clouds(runs, QUANTITY)}, note)

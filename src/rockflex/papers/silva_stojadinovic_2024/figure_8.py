@@ -1,8 +1,8 @@
-"""Figure 8: what was drawn for the random prototypes."""
+"""Figure 8: the characteristics of the random prototypes."""
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import check
-from rockflex.papers.silva_stojadinovic_2024._population import population
+from rockflex.papers.silva_stojadinovic_2024._pool import population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 
@@ -19,7 +19,7 @@ COEFFICIENTS = {
 
 
 def reproduce(records: Records) -> Result:
-    """Draw the prototypes, and check that they leave none of the ranges of the text."""
+    """Draw the prototypes, and check that they are within the ranges of the text."""
     pairs = population(records)
     place = "Section 3.3"
     columns = {name: (pairs[column], *rest) for name, (column, *rest) in RANGES.items()}
@@ -30,6 +30,6 @@ def reproduce(records: Records) -> Result:
         for name, (drawn, printed, low, high) in columns.items()
         for which, value, criterion in (("least", drawn.min(), low), ("largest", drawn.max(), high))
     ]
-    note = "The ranges are those that we draw from: that the draws stay in them is a check of ourselves."
+    note = "The prototypes are drawn from these ranges, so this only checks the library."
     figures = {"figure-8": lambda: rf.plot_population(pairs)}
     return Result("figure-8", TITLE, figures=figures, note=note, checks=tuple(checks))

@@ -1,4 +1,4 @@
-"""Figure 9: MDOF-S over 2DOF-S, for a thousand random prototypes."""
+"""Figure 9: MDOF-S against 2DOF-S, for a thousand random prototypes."""
 
 from functools import partial
 
@@ -8,7 +8,7 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
 from rockflex.papers.silva_stojadinovic_2024._number import Number, statistic, tendency
-from rockflex.papers.silva_stojadinovic_2024._population import (
+from rockflex.papers.silva_stojadinovic_2024._pool import (
     DRAWS,
     PAIRS,
     SEED,
@@ -56,10 +56,10 @@ def reproduce(records: Records) -> Result:
     numbers += [statistic(*row, found[key]) for key, row in AGREEMENT.items()]
     numbers += _discrepancies(records)
     note = (
-        "A thousand pairs; what overturns with either model is in no R² and no slope. Ours is the median, and the 90 % "
-        f"interval that of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {SEED} to "
-        f"{SEED + records.seeds - 1}), under the same records throughout: what other records would change is "
-        "in no interval. The figure shows the first thousand."
+        "A thousand pairs; R² and slopes exclude pairs in which a model overturns. Our value is the median, with the "
+        f"90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {SEED} to "
+        f"{SEED + records.seeds - 1}). All draws use the same records, so the intervals do not include the effect of "
+        "other records. The figure shows the first thousand."
     )
     pairs = population(records)
     return Result(
@@ -95,7 +95,7 @@ def _discrepancies(records: Records) -> list[Number]:
 
 
 def _seeds(records: Records) -> Remark:
-    """What each seed by itself would have given."""
+    """Show the result of each seed by itself."""
     pairs = pool(records)
     found = [measure(pairs.iloc[i : i + PAIRS].reset_index(drop=True)) for i in range(0, len(pairs), PAIRS)]
     rows: list[tuple[str, ...]] = []

@@ -1,4 +1,4 @@
-"""The friction that keeps the prototypes of Table 1 from sliding, as the end of Section 3.2 has it."""
+"""The friction that prevents sliding of the prototypes of Table 1 (end of Section 3.2)."""
 
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-TITLE = "Friction that keeps the prototypes from sliding"
+TITLE = "Friction that prevents sliding of the prototypes"
 PLACE = "Section 3.2"
-EVERY = 3  # every third record: to find the friction of a run takes its history
+EVERY = 3  # every third record, because the friction of a run needs its history
 RESAMPLES = 400
 SCALES = (1.0, 2.0)
 MODEL = "2DOF-C"  # with which Section 3.1 checks for sliding
@@ -57,7 +57,7 @@ def reproduce(records: Records) -> Result:
 
 @lru_cache(maxsize=1)
 def _runs(records: Records) -> "pd.DataFrame":
-    """Required friction of every run that rocks and stands, with both signs of Eq. 22."""
+    """Return the required friction of every run that rocks and stands, with both signs of Eq. 22."""
     import pandas as pd
 
     suite = records.suite[::EVERY]
@@ -75,7 +75,7 @@ def _runs(records: Records) -> "pd.DataFrame":
 
 
 def _intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str, Interval]:
-    """Least ratio of medians of each statement, and the number of runs that need more than 1."""
+    """Return the smallest ratio of medians of each statement, and the number of runs that need more than 1."""
     mine = runs[runs["model"] == model]
     codes = mine["structure"].map({name: place for place, name in enumerate(STRUCTURES)}).to_numpy(dtype=float)
     names = list(STRUCTURES)
@@ -97,7 +97,7 @@ def _intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str, Interva
 
 
 def _both_signs(records: Records) -> Remark:
-    """The same with the sign of the weight mended, and of the other models."""
+    """Repeat this with the corrected sign of the weight and with the other models."""
     rows: list[tuple[str, ...]] = []
     above: dict[str, list[str]] = {sign: [] for sign in SIGNS}
     for sign, words in SIGNS.items():
@@ -109,10 +109,10 @@ def _both_signs(records: Records) -> Remark:
     return Remark(
         Kind.BESIDE,
         "Both signs of the weight in Eq. 22",
-        "Eq. 22 is printed with −g + z''_i, of which one sign is wrong. As printed, shear-dominant buildings are more "
-        f"prone to sliding than flexural ones with {_listed(above['printed'])}; with the sign mended, with "
+        "Eq. 22 is printed with −g + z''_i, in which one sign is wrong. As printed, shear-dominant buildings are more "
+        f"prone to sliding than flexural ones with {_listed(above['printed'])}; with the corrected sign, with "
         f"{_listed(above['mended'])}."
-        + " The paper's conclusion hangs on this misprint."
+        + " The conclusion of the paper depends on this misprint."
         * (MODEL in above["printed"] and not above["mended"]),
         ("Eq. 22", "model", *(f"least ratio, {name}" for name in PAIRS), ABOVE),
         rows,
@@ -120,7 +120,7 @@ def _both_signs(records: Records) -> Remark:
 
 
 def _lifts(records: Records) -> Remark:
-    """Runs in which the pivot itself would lift."""
+    """Count the runs in which the pivot would lift."""
     frames = [frame_of(name) for name in STRUCTURES]
     runs = rf.simulate_many(frames, records.suite[::EVERY], MODELS, scales=SCALES, free_vibration="settle")
     standing = runs[runs["status"] == "rocking"]
@@ -137,8 +137,8 @@ def _lifts(records: Records) -> Remark:
         Kind.BESIDE,
         "Runs in which the pivot would lift",
         "Of the runs that rock and stand under every third record, those in which the vertical reaction falls below "
-        "zero: the model pulls the base down there, which no ground can, and no friction is enough. The paper does not "
-        "mention them. They are in its clouds, and in ours.",
+        "zero: the model pulls the base down, but the ground cannot, and no friction is enough. The paper does not "
+        "mention them. They are in its clouds and in ours.",
         ("structure", *(f"{model}, × {scale:g}" for model in MODELS for scale in SCALES)),
         rows,
     )

@@ -1,4 +1,4 @@
-"""Table 1: the six prototypes of five stories. Period and aspect ratio are given to the frames, the rest follows."""
+"""Table 1: the six prototypes of five stories. Period and aspect ratio are input; the other values follow."""
 
 from collections.abc import Mapping
 
@@ -17,7 +17,7 @@ PRINTED: dict[str, dict[tuple[str, ...], str]] = {
     **{f"m*_{n}/(5 m_i)": {names: row[n - 1] for names, row in MASSES.items()} for n in range(1, 6)},
     **{f"h*_{n}/h_5": {names: row[n - 1] for names, row in HEIGHTS.items()} for n in range(1, 6)},
 }
-"""Printed values by the structures that share them: the shapes depend on neither period nor aspect ratio."""
+"""Printed values and the structures that share them, because the shapes do not depend on period or aspect ratio."""
 
 
 def reproduce(_: Records) -> Result:
@@ -29,14 +29,14 @@ def reproduce(_: Records) -> Result:
         for names, text in row.items()
     ]
     note = (
-        "T_1 and h*_1/B are given to the frames and so are not among the numbers. A value that the table repeats, as "
-        "it does not depend on them, is one number; ours is that of the structure that is farthest from it."
+        "T_1 and h*_1/B are input, so they are not among the numbers. A value that the table repeats, because it does "
+        "not depend on them, is one number; ours is the value of the structure that differs most from it."
     )
     return Result("table-1", TITLE, tuple(numbers), note=note)
 
 
 def _values(name: str) -> dict[str, float]:
-    """The table's quantities of a structure."""
+    """Return the quantities of the table for a structure."""
     frame = frame_of(name)
     p = frame.rocking()
     mass, height = p.effective_mass.tolist(), p.effective_height.tolist()
@@ -49,7 +49,7 @@ def _values(name: str) -> dict[str, float]:
 
 
 def _farthest(quantity: str, printed: str, values: Mapping[str, float]) -> Number:
-    """Compare the value that is farthest from the printed one."""
+    """Compare the value that differs most from the printed one."""
     place = f"Table 1, {', '.join(values)}"
     lines = [compared(quantity, place, printed, value) for value in values.values()]
     return max(lines, key=lambda line: abs(line.difference or 0.0))

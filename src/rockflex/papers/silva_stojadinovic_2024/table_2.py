@@ -16,7 +16,7 @@ GRAVITY = 9.81
 
 
 def reproduce(_: Records) -> Result:
-    """Compare the sums of the table with the parameters of structure #1, and for I_θ, L_0^r, M_r the chimney's."""
+    """Compare the sums of the table with the parameters of structure #1, and some with those of the chimney."""
     frame = frame_of("#1")
     p, damping = frame.rocking(), 0.02
     omega, shape = _first_mode(frame)
@@ -49,7 +49,7 @@ def reproduce(_: Records) -> Result:
 
 
 def _first_mode(frame: rf.Frame) -> tuple[float, NDArray[np.float64]]:
-    """First frequency and shape of the shear building by its closed form, sin((2i − 1)…), stiffness from T_1."""
+    """Return first frequency and shape of the shear building in closed form, sin((2i − 1)…); T_1 is given."""
     n = frame.n_stories
     turn = math.pi / (2 * n + 1)
     stiffness = frame.story_mass * (math.pi / (frame.period * math.sin(0.5 * turn))) ** 2

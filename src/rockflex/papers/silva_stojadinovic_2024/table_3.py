@@ -26,8 +26,8 @@ PLACES = {"lower end": 0.0, "middle": 0.5, "upper end": 1.0}
 def reproduce(_: Records) -> Result:
     """Compute both sets of modes."""
     note = (
-        "The table rounds some values and cuts others off; a line says which. The Ritz values are those of one "
-        "solution with the five functions of Eq. 36; iterations would lead on to those of the finite elements."
+        "The table rounds some values and cuts others off, as noted in each line. The Ritz values are from one "
+        "solution with the five functions of Eq. 36; iterations would approach the finite element values."
     )
     numbers = (*_ritz(), *_elements())
     return Result("table-3", TITLE, numbers, note=note, remarking=(_thin_slices, _rounding))
@@ -71,7 +71,7 @@ def _elements() -> list[Number]:
 
 
 def _thin_slices() -> Remark:
-    """How many entries of the table a Ritz solution over slices meets by rounding."""
+    """Count the entries of the table that a Ritz solution with slices meets by rounding."""
     rows: list[tuple[str, ...]] = []
     for slices in SLICES:
         ours = ritz_of_slices(slices)
@@ -94,17 +94,17 @@ def _thin_slices() -> Remark:
 
 
 def _rounding() -> Remark:
-    """How far ω_1 of finite elements strays by rounding alone."""
+    """Show how much rounding errors change ω_1 of finite elements."""
     found = {n: [first_frequency(n, place) for place in PLACES.values()] for n in ELEMENTS}
     robust = float(replace(TOWER, method="fe").rocking().omega[0])
     low, high = min(found[ELEMENTS[-1]]), max(found[ELEMENTS[-1]])
     return Remark(
         Kind.BESIDE,
-        "ω_1 of finite elements without care for rounding",
+        "ω_1 of finite elements without precautions against rounding",
         "Cubic elements in plain double precision, with dense matrices and a general eigenvalue solver; the stiffness "
         "of an element is sampled at one place, which by itself changes ω_1 by less than 0.1 % from 1000 elements on. "
         "But the largest eigenvalue over the least grows as the fourth power of their number, and rounding with it. "
-        f"With {ELEMENTS[-1]} elements ω_1 is from {low:.3f} to {high:.3f} rad/s here, and other on another machine; "
+        f"With {ELEMENTS[-1]} elements ω_1 is from {low:.3f} to {high:.3f} rad/s here, and differs on other machines; "
         f"without these errors it is {robust:.4f}. The printed 1.678 may be such a value, or not.",
         ("elements", *(f"stiffness at the {name}, ω_1 in rad/s" for name in PLACES)),
         [(str(n), *(f"{value:.4f}" for value in values)) for n, values in found.items()],

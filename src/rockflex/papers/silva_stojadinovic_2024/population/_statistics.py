@@ -1,0 +1,246 @@
+"""How well one mode represents all modes (Section 3.3), and what the second mode adds (Section 3.4)."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._checks import in_range, whole_number
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex._values import Value
+from rockflex.study._results import STATUSES
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+FEWEST = 3  # pairs for a comparison
+SUMS = 6  # per comparison, from which slope and R² follow
+SHOWN = (
+    *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion", "pga", "pgv"),
+    *("status_mdof", "status_2dof", "max_rotation_mdof", "max_rotation_2dof"),
+    *("max_top_displacement_mdof", "max_top_displacement_2dof"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class PopulationStatistics(Value):
+    """Agreement of MDOF-S with 2DOF-S, and with 2DOF-S combined with the second mode on a fixed base.
+
+    The tables `agreement` and `combination` have one row per comparison of y, from MDOF-S, with an estimate x of it:
+    `group`, `quantity`, `behaviour` ("all", "shear" or "flexure"), `estimate`, the number `n` of pairs, and
+
+    - `r2` = 1 - Σ(y - x)²/Σ(y - ȳ)², the coefficient of determination of the line y = x, with `r2_low`, `r2_high`;
+    - `slope`, c1 of y = c1 x by least squares, with `slope_low`, `slope_high`;
+    - `r2_line`, the coefficient of determination of that line.
+
+    The intervals are bootstrap percentiles over resampled pairs. With fewer than three pairs all values are NaN.
+
+    Attributes
+    ----------
+    outcomes : pandas.DataFrame
+        Number of pairs by the status of MDOF-S (rows) and 2DOF-S (columns).
+    n_failed : int
+        Number of pairs with a run that could not be solved. They are not in the tables.
+    n_nominal_mdof, n_nominal_2dof : int
+        Number of pairs whose rotation exceeded 0.7 atan(B/h*_1).
+    agreement : pandas.DataFrame
+        Section 3.3, Fig. 9: the top displacement of pairs without uplift, and top displacement and rotation of pairs
+        in which MDOF-S rocks and neither model overturns.
+    combination : pandas.DataFrame
+        Section 3.4, Fig. 13, of the same rocking pairs: D_2 against S_d(ω_2); top displacement (m), base shear over
+        m_s g and base moment over L_0^r g against 2DOF-S ("2DOF-S") and its combination with the second mode ("SRSS").
+    outliers : pandas.DataFrame
+        Pairs with the largest difference in rotation, and their properties. `share` is their part of Σ(y - x)² over
+        the rocking pairs; it is missing for other pairs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> rf.population_statistics(pairs, n_resamples=50).n_failed
+    0
+    """
+
+    outcomes: "pd.DataFrame"
+    n_failed: int
+    n_nominal_mdof: int
+    n_nominal_2dof: int
+    agreement: "pd.DataFrame"
+    combination: "pd.DataFrame"
+    outliers: "pd.DataFrame"
+
+
+@dataclass(frozen=True, eq=False)
+class _Comparison:
+    group: str
+    quantity: str
+    behaviour: str
+    estimate: str
+    x: Array
+    y: Array
+    kept: NDArray[np.bool_]
+
+
+def population_statistics(
+    pairs: "pd.DataFrame",
+    confidence: float = 0.9,
+    n_resamples: SupportsIndex = 1000,
+    seed: SupportsIndex = 0,
+    n_outliers: SupportsIndex = 10,
+) -> PopulationStatistics:
+    """Compare the two models of a population of random structures (Silva & Stojadinović 2024, Sections 3.3 and 3.4).
+
+    Parameters
+    ----------
+    pairs
+        The table of `run_population` or of a `PopulationStudy`.
+    confidence
+        Confidence of the bootstrap intervals, between 0 and 1.
+    n_resamples, seed
+        Number of bootstrap samples, and seed of the bootstrap.
+    n_outliers
+        Number of rows in the table of outliers.
+
+    Returns
+    -------
+    PopulationStatistics
+        Counts, coefficients of determination, slopes and outliers.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or no pair could be solved.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> found = rf.population_statistics(pairs, n_resamples=50)
+    >>> int(found.outcomes.loc["rocking", "rocking"])
+    10
+    """
+    in_range("confidence", confidence, 1e-9, 1.0)
+    resamples, start = whole_number("n_resamples", n_resamples, 1), whole_number("seed", seed, 0)
+    shown = whole_number("n_outliers", n_outliers, 0)
+    solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
+    if not len(solved):
+        raise InputError(
+            "pairs holds no pair that was solved. Give the table of run_population, or see its column error."
+        )
+    import pandas as pd
+
+    resting = solved[solved["status_mdof"] == "no_uplift"]
+    rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
+    agreeing = [
+        *_compare(_agreement("no_uplift", resting, ("top_displacement",)), confidence, resamples, start),
+        *_compare(_agreement("rocking", rocking, ("top_displacement", "rotation")), confidence, resamples, start),
+    ]
+    combining = pd.DataFrame(_compare(_combination(rocking), confidence, resamples, start))
+    counts = pd.crosstab(
+        pd.Categorical(solved["status_mdof"], STATUSES),
+        pd.Categorical(solved["status_2dof"], STATUSES),
+        rownames=["MDOF-S"],
+        colnames=["2DOF-S"],
+        dropna=False,
+    )
+    return PopulationStatistics(
+        outcomes=counts,
+        n_failed=len(pairs) - len(solved),
+        n_nominal_mdof=int(solved["nominal_overturning_mdof"].sum()),
+        n_nominal_2dof=int(solved["nominal_overturning_2dof"].sum()),
+        agreement=pd.DataFrame(agreeing),
+        combination=combining.drop(columns=["group", "behaviour"]),
+        outliers=_outliers(solved, rocking, shown),
+    )
+
+
+def _agreement(group: str, frame: "pd.DataFrame", quantities: tuple[str, ...]) -> list[_Comparison]:
+    everything = np.ones(len(frame), dtype=bool)
+    shear = (frame["behaviour"] == "shear").to_numpy(dtype=bool)
+    found: list[_Comparison] = []
+    for quantity in quantities:
+        x, y = (frame[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
+        for behaviour, kept in (("all", everything), ("shear", shear), ("flexure", ~shear)):
+            found.append(_Comparison(group, quantity, behaviour, "2DOF-S", x, y, kept))
+    return found
+
+
+def _combination(frame: "pd.DataFrame") -> list[_Comparison]:
+    everything = np.ones(len(frame), dtype=bool)
+    found: list[_Comparison] = []
+
+    def compare(quantity: str, estimate: str, x: str, y: str, unit: Array) -> None:
+        of_x, of_y = (frame[name].to_numpy(dtype=float) / unit for name in (x, y))
+        found.append(_Comparison("rocking", quantity, "all", estimate, of_x, of_y, everything))
+
+    one = np.ones(len(frame))
+    weight, moment = frame["structure_mass"].to_numpy(dtype=float) * GRAVITY, frame["l0r_g"].to_numpy(dtype=float)
+    compare("second_displacement", "S_d(ω_2)", "sd_2", "max_second_displacement_mdof", one)
+    for quantity, unit in (("top_displacement", one), ("base_shear", weight), ("base_moment", moment)):
+        compare(quantity, "2DOF-S", f"max_{quantity}_2dof", f"max_{quantity}_mdof", unit)
+        compare(quantity, "SRSS", f"srss_{quantity}", f"max_{quantity}_mdof", unit)
+    return found
+
+
+def _compare(comparisons: list[_Comparison], confidence: float, resamples: int, seed: int) -> list[dict[str, object]]:
+    """Return the rows of comparisons over the same pairs, which are resampled together."""
+    terms = np.column_stack([_terms(each) for each in comparisons])
+    n = terms.shape[0]
+    rng = np.random.Generator(np.random.Philox(seed))
+    drawn = np.full((resamples, len(comparisons), 2), np.nan)
+    for resample in drawn if n else ():
+        weights = np.bincount(rng.integers(n, size=n), minlength=n).astype(float)
+        resample[:] = _estimates((weights @ terms).reshape(-1, SUMS))
+    tail = 0.5 * (1.0 - confidence)
+    best = _estimates(terms.sum(axis=0).reshape(-1, SUMS))
+    rows: list[dict[str, object]] = []
+    for place, each in enumerate(comparisons):
+        x, y = each.x[each.kept], each.y[each.kept]
+        known = drawn[np.isfinite(drawn[:, place]).all(axis=1), place]
+        (slope, r2), low, high = np.full((3, 2), np.nan)
+        if x.size >= FEWEST and len(known):
+            (slope, r2), (low, high) = best[place], np.quantile(known, (tail, 1.0 - tail), axis=0)
+        spread = float(np.sum((y - y.mean()) ** 2)) if y.size else 0.0
+        rows.append(
+            {
+                "group": each.group,
+                "quantity": each.quantity,
+                "behaviour": each.behaviour,
+                "estimate": each.estimate,
+                "n": x.size,
+                "r2": r2,
+                "r2_low": low[1],
+                "r2_high": high[1],
+                "slope": slope,
+                "slope_low": low[0],
+                "slope_high": high[0],
+                "r2_line": 1.0 - float(np.sum((y - slope * x) ** 2)) / spread if spread > 0.0 else np.nan,
+            }
+        )
+    return rows
+
+
+def _terms(each: _Comparison) -> Array:
+    """Return the terms of the sums, one row per pair: x², xy, (y - x)², and y, y² about the mean of all y, and 1."""
+    x, y, kept = each.x, each.y, each.kept.astype(float)
+    away = y - (float(y[each.kept].mean()) if each.kept.any() else 0.0)
+    return np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x))) * kept[:, None]
+
+
+def _estimates(sums: Array) -> Array:
+    """Return the slope of y = c1 x and R² of y = x, one row per comparison."""
+    xx, xy, misses, away, square, count = sums.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.column_stack((xy / xx, 1.0 - misses / (square - away**2 / count)))
+
+
+def _outliers(solved: "pd.DataFrame", rocking: "pd.DataFrame", count: int) -> "pd.DataFrame":
+    misses = (solved["max_rotation_mdof"] - solved["max_rotation_2dof"]).abs()
+    worst = solved.loc[misses.sort_values(ascending=False, kind="stable").index[:count], list(SHOWN)]
+    total = float((misses[rocking.index] ** 2).sum())
+    share = (misses**2 / total).where(misses.index.isin(rocking.index)) if total > 0.0 else misses * np.nan
+    return worst.assign(difference=misses[worst.index], share=share[worst.index]).reset_index(drop=True)

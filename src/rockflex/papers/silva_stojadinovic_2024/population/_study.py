@@ -1,0 +1,236 @@
+"""Random structures under random records, with one mode and with all modes (Sections 3.3 and 3.4)."""
+
+import math
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+
+from pydantic import Field, field_validator
+
+from rockflex._checks import whole_number
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError, SolverError
+from rockflex.modal import RockingProperties
+from rockflex.models import LinearModel, modal_displacement
+from rockflex.motion import GroundMotion, Suite
+from rockflex.papers.silva_stojadinovic_2024.population._prototypes import STORY_MASS, Prototype, draw_prototype
+from rockflex.response import Response, respond
+from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
+from rockflex.study._case import Case
+from rockflex.study._modal_combination import SecondMode, combine, second_mode
+from rockflex.study._results import result_columns, results_of
+from rockflex.study._subjects import Motions, motions_of
+from rockflex.study.plan._bench import record_columns, record_facts
+from rockflex.study.plan._chunked import ChunkedPlan, run_plan
+from rockflex.study.plan._spec import Spec
+from rockflex.study.plan._tables import Columns, Row, kinds_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+BEHAVIOURS = ("shear", "flexure")
+DRAWN = "height period coefficient aspect_ratio base_mass_ratio stiffness_ratio damping_ratio"
+STRUCTURE = "nominal_limit structure_mass total_mass l0r_g uplift_acceleration"
+SECOND = "period_2 sd_2 sa_2 top_ordinate_2 effective_mass_2 effective_height_2"
+COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear srss_base_moment"
+
+
+MOST = 2**32 - 1  # pairs with different random numbers
+
+
+class PopulationStudy(Spec):
+    """Random structures under random records, each with MDOF-S and 2DOF-S (Section 3.3).
+
+    The table has one row per pair; its columns are those of `run_population`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.PopulationStudy(pairs=1000, records={"suites": ["el-centro-1940"]}).plan().n_runs
+    2000
+    """
+
+    study: Literal["population"] = Field("population", description='"population"')
+    pairs: int = Field(
+        1000, ge=1, le=MOST, description="the number of random structures, a whole number from 1 to 4294967295"
+    )
+    seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
+    free_vibration: float | Literal["settle"] = Field(
+        0.0, description='the free vibration after the record, a number in s or "settle"'
+    )
+
+    @field_validator("free_vibration")
+    @classmethod
+    def _seconds(cls, value: float | Literal["settle"]) -> float | Literal["settle"]:
+        free_vibration_time(value)
+        return value
+
+    def plan(self) -> "PopulationPlan":
+        """Load the records, and divide the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a record cannot be read.
+        """
+        free = free_vibration_time(self.free_vibration)
+        return PopulationPlan(
+            self.records.load(self._folder),
+            self.pairs,
+            self.seed,
+            free,
+            max(1, self.runs_per_chunk // 2),
+            work_limit_of(self.work_limit),
+        )
+
+
+class PopulationPlan(ChunkedPlan):
+    """Pairs of runs, MDOF-S and 2DOF-S of the same random structure and record, divided into chunks.
+
+    Pairs share no data, so a study of any size fits in memory.
+    """
+
+    def __init__(
+        self,
+        motions: Suite,
+        pairs: int,
+        seed: int,
+        free_vibration: float | None,
+        pairs_per_chunk: int,
+        work_limit: float | None,
+    ) -> None:
+        super().__init__(motions, pairs, pairs_per_chunk)
+        self.seed, self.free_vibration, self.work_limit = seed, free_vibration, work_limit
+        self._facts = record_facts(motions)
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs, two for each pair."""
+        return 2 * self.n_units
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        found: dict[str, Any] = {"pair": int, "n_stories": int, "behaviour": BEHAVIOURS, **kinds_of(DRAWN, float)}
+        found |= record_columns(self.motions)
+        found |= kinds_of("pga pgv", float) | kinds_of(STRUCTURE, float) | kinds_of(SECOND, float)
+        found |= result_columns("_mdof") | result_columns("_2dof")
+        return found | kinds_of(COMBINED, float) | {"error": str}
+
+    def rows(self, unit: int) -> list[Row]:
+        """Draw one structure and simulate it with both models."""
+        drawn = draw_prototype(self.seed, unit, len(self.motions))
+        motion = self.motions[drawn.record]
+        properties = drawn.frame().rocking()
+        row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
+        second = second_mode(properties, motion)
+        row |= _facts_of(drawn, properties) | self._facts[drawn.record] | _second_mode(properties, second)
+        try:
+            all_modes, second_peak = self._run(LinearModel("MDOF-S", properties), motion)
+            one_mode, _ = self._run(LinearModel("2DOF-S", properties.truncated(1)), motion)
+        except (SolverError, InputError) as error:
+            return [row | {"error": str(error)}]
+        row |= results_of(all_modes, "_mdof")
+        row["max_second_displacement_mdof"] = second_peak
+        row |= results_of(one_mode, "_2dof")
+        return [row | _combined(one_mode, second)]
+
+    def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
+        """Return the response, and the peak of the second mode (of the first, if there is only one)."""
+        mode = min(model.properties.n_modes, 2) - 1
+        extra = modal_displacement(model, mode)
+        solution = Case(model, self.free_vibration, work_limit=self.work_limit, extra=extra).solve(motion)
+        return respond(model, motion.name, solution), float(solution.peaks[-1])
+
+
+def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
+    return {
+        "n_stories": drawn.n_stories,
+        "behaviour": BEHAVIOURS.index("shear" if math.isinf(drawn.stiffness_ratio) else "flexure"),
+        "height": drawn.height,
+        "period": drawn.period,
+        "coefficient": drawn.coefficient,
+        "aspect_ratio": float(drawn.aspect_ratio),
+        "base_mass_ratio": drawn.base_mass_ratio,
+        "stiffness_ratio": drawn.stiffness_ratio,
+        "damping_ratio": float(properties.zeta[0]),
+        "nominal_limit": properties.nominal_overturning_rotation,
+        "structure_mass": drawn.n_stories * STORY_MASS,
+        "total_mass": properties.m_tot,
+        "l0r_g": properties.l0r * GRAVITY,
+        "uplift_acceleration": properties.resisting_moment / properties.l0r,
+    }
+
+
+def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
+    omega = float(properties.omega[1])
+    return {
+        "period_2": 2.0 * math.pi / omega,
+        "sd_2": second.displacement,
+        "sa_2": omega**2 * second.displacement,
+        "top_ordinate_2": float(properties.top_ordinate[1]),
+        "effective_mass_2": float(properties.effective_mass[1]),
+        "effective_height_2": float(properties.effective_height[1]),
+    }
+
+
+def _combined(rocking: Response, second: SecondMode) -> Row:
+    """Return the combined peaks of 2DOF-S and the second mode on a fixed base (Section 3.4)."""
+    peaks = combine(rocking, second)
+    return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
+
+
+def run_population(
+    motions: Motions,
+    pairs: int = 1000,
+    seed: int = 0,
+    free_vibration: float | Literal["settle"] = 0.0,
+    workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
+) -> "pd.DataFrame":
+    """Simulate random structures under random records with MDOF-S and 2DOF-S (Silva & Stojadinović 2024, Section 3.3).
+
+    Single-bay frames of 2 to 15 stories of 3 m and 40 t, with h*_1/B a whole number from 5 to 10, a base of 1, 1.5, 2,
+    2.5 or 3 story masses, ρ infinite or 0, T_1 = a1 H^0.85 or a2 H, and 2 % damping; see `draw_prototype`. A pair
+    depends only on `seed`, its number and the suite.
+
+    Parameters
+    ----------
+    motions
+        The records to draw from, with equal probability; as in `run_cloud`.
+    pairs
+        Number of structures.
+    seed
+        Seed of the draws, an integer of at least zero.
+    free_vibration, workers, work_limit
+        As in `run_cloud`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per pair. Drawn values: `pair`, `n_stories`, `behaviour` ("shear" or "flexure"), `height` (m), `period`
+        (s), `coefficient`, `aspect_ratio`, `base_mass_ratio`, `stiffness_ratio`, `damping_ratio`, `motion`, `group`,
+        `magnitude`, `distance_km`, `pga`, `pgv`; of the structure `nominal_limit` (rad), `structure_mass` and
+        `total_mass` (kg), `l0r_g` = L_0^r g (N m), `uplift_acceleration` = M_r/L_0^r (m/s²); of its second mode on a
+        fixed base `period_2`, `sd_2`, `sa_2`, `top_ordinate_2` = Γ_2 φ_top,2, `effective_mass_2`, `effective_height_2`;
+        the status and every scalar of both models' `Response` with the suffixes `_mdof` and `_2dof`;
+        `max_second_displacement_mdof`, the peak of D_2; the estimates `srss_top_displacement`, `srss_base_shear` and
+        `srss_base_moment` of Section 3.4; `error`, a message if a run could not be solved, without results.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=3, seed=1)
+    >>> pairs[["pair", "n_stories", "behaviour", "status_mdof", "status_2dof"]]
+       pair  n_stories behaviour status_mdof status_2dof
+    0     0          4   flexure     rocking     rocking
+    1     1          4   flexure     rocking     rocking
+    2     2          3   flexure     rocking     rocking
+    """
+    count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
+    suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
+    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
+    return run_plan(PopulationPlan(suite, count, start, free, 32, limit), workers)

@@ -1,0 +1,136 @@
+"""Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+
+from pydantic import Field, field_validator
+
+from rockflex.models import BoucWen, ImpactLaw
+from rockflex.motion import GroundMotion
+from rockflex.study._arguments import WORK_LIMIT, factors_of
+from rockflex.study._subjects import Models, Motions, Structures
+from rockflex.study.plan._bench import Bench, bench_of
+from rockflex.study.plan._chunked import run_plan
+from rockflex.study.plan._cross import CrossPlan
+from rockflex.study.plan._spec import StructuresSpec
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class CloudStudy(StructuresSpec):
+    """Cloud analysis (Silva & Stojadinović 2024, Section 3.2).
+
+    The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
+    `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> study = rf.CloudStudy(
+    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, scales=[1.0, 2.0]
+    ... )
+    >>> study.plan().n_runs
+    2
+    """
+
+    study: Literal["cloud"] = Field("cloud", description='"cloud"')
+    scales: list[float] = Field([1.0], min_length=1, description="a list of factors on the acceleration")
+    friction: bool = Field(
+        False, description="true or false: whether to find the required friction too, which takes time"
+    )
+
+    @field_validator("scales")
+    @classmethod
+    def _finite(cls, scales: list[float]) -> list[float]:
+        return factors_of(scales, QUIET)
+
+    def plan(self) -> "CloudPlan":
+        """Build the structures, load the records, and divide the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a structure cannot be built or a record cannot be read; see also `run_cloud`.
+        """
+        return CloudPlan(self.bench(friction=self.friction), self.scales, self.runs_per_chunk)
+
+
+QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
+
+
+class CloudPlan(CrossPlan):
+    """The cross product of structures, records, models and scales, divided into chunks."""
+
+    def __init__(self, bench: Bench, scales: Sequence[float], per_chunk: int) -> None:
+        self.scales = factors_of(scales, max(bench.motions, key=lambda motion: motion.pga))
+        super().__init__(bench, len(self.scales), per_chunk)
+
+    def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002
+        """Return the factor on the acceleration of a record, the same for all records."""
+        return self.scales[level]
+
+
+def run_cloud(
+    structures: Structures,
+    motions: Motions,
+    models: Models = "MDOF-S",
+    scales: float | Sequence[float] = 1.0,
+    free_vibration: float | Literal["settle"] = 0.0,
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
+    friction: bool = False,
+    workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
+) -> "pd.DataFrame":
+    """Simulate every structure under every motion with every model at every scale, with intensity measures.
+
+    Parameters
+    ----------
+    structures
+        One, a sequence (named "S1", "S2", ...), or a mapping from names.
+    motions
+        One, a sequence such as a suite, or a mapping from names. All names must differ.
+    models, scales, free_vibration, bouc_wen, impact
+        As in `simulate_many`.
+    friction
+        Whether to find the friction that prevents sliding (Eqs. 20-22), which needs the history of every run.
+    workers
+        Number of threads; None for one a core.
+    work_limit
+        Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per run. `structure`, `motion`, `group` (shared by the components of one recording), `magnitude` and
+        `distance_km` where known, `model`, `scale`; measures of the scaled motion: `pga` (m/s²), `pgv` (m/s), `pgd`
+        (m), `arias` (m/s), `cav` (m/s), `sd_t1` (m) and `sa_t1` (m/s²) at the structure's first period and damping,
+        `relative_pga` = pga/(g tan α) and `relative_pgv` = p pgv/(g tan α) with g tan α = M_r/L_0^r and
+        p² = L_0^r g/I_θ; `status` and every scalar of `Response` by its name; `nominal_limit`, the rotation in rad of
+        `nominal_overturning`; `required_friction` if requested; `error`. A run that cannot be solved has a message in
+        `error` and no results; a run whose friction cannot be found has a message and no friction.
+
+    Raises
+    ------
+    InputError
+        If a label is unknown, a sequence is empty, two motions have the same name, an argument is out of range, or
+        every run exceeds `work_limit`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> rf.run_cloud(frame, pulse, "2DOF-S", scales=(0.5, 1.0))[["structure", "scale", "pga", "status"]]
+      structure  scale  pga   status
+    0        S1    0.5  1.5  rocking
+    1        S1    1.0  3.0  rocking
+    """
+    given: Any = scales
+    bench = bench_of(
+        structures, motions, models, free_vibration, bouc_wen, impact, friction=friction, work_limit=work_limit
+    )
+    return run_plan(CloudPlan(bench, given, per_chunk=64), workers)

@@ -1,0 +1,276 @@
+"""Design of a base: how wide it must be, and which tendon holds it down (Section 4.1)."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+
+from numpy.typing import ArrayLike
+from pydantic import Field, field_validator, model_validator
+
+from rockflex._checks import in_range, positive
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.fragility import HazardCurve
+from rockflex.modal import RockingProperties
+from rockflex.models import BoucWen, ImpactLaw
+from rockflex.structure.file import StructureEntry, Table
+from rockflex.study._arguments import WORK_LIMIT, RockingStructure, described, factors_of
+from rockflex.study._subjects import Models, Motions
+from rockflex.study.cloud._study import QUIET, CloudPlan
+from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
+from rockflex.study.design._limits import check_limit, check_same_for_all, rotation_of
+from rockflex.study.design._table import design_table
+from rockflex.study.plan._bench import Bench, bench_of
+from rockflex.study.plan._chunked import run_plan
+from rockflex.study.plan._spec import StructuresSpec
+from rockflex.study.plan._tables import Columns, Row
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class TendonLevelTable(Table):
+    """The arguments of `TendonLevel`."""
+
+    prestress_ratio: float = Field(0.0, description="the initial force over the weight m_tot g, a number")
+    stiffness_ratio: float = Field(0.0, description="EA/L over L_0^r g/B², a number; 1 keeps the moment constant")
+    yield_ratio: float | None = Field(None, description="the yield force over the weight m_tot g, a number")
+    name: str = Field("", description="a name, in quotes")
+
+
+class HazardTable(Table):
+    """The arguments of `HazardCurve`."""
+
+    im: list[float] = Field(description="a list of levels of the measure, in SI units, rising")
+    rate: list[float] = Field(description="a list of annual rates at which they are exceeded, falling")
+
+
+class DesignStudy(StructuresSpec):
+    """One structure on bases of many half widths B, with tendons of a few levels, under all records.
+
+    The table has one row per run and the columns of `run_design`. `limits`, `measure`, `level` or `hazard`, and
+    `target` define the requirement: see `design_table` and `smallest_width`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = {"n_stories": 3, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": 1e9,
+    ...          "period": 0.6, "aspect_ratio": 6.0, "damping_ratio": 0.02}
+    >>> study = rf.DesignStudy(
+    ...     structures=[{"frame": frame}], records={"suites": ["el-centro-1940"]}, half_widths=[1.0, 1.5], level=0.5)
+    >>> study.plan().columns["structure"]
+    ['B = 1 m', 'B = 1.5 m']
+    """
+
+    study: Literal["design"] = Field("design", description='"design"')
+    structures: list[StructureEntry] = Field(min_length=1, max_length=1, description="one table [[structures]]")
+    free_vibration: float | Literal["settle"] = Field(
+        "settle", description='the free vibration after the record, a number in s or "settle"'
+    )
+    half_widths: list[float] = Field(
+        description="a list of half widths B in m, or a range {smallest = 1.0, largest = 3.0, count = 9}"
+    )
+    tendons: list[TendonLevelTable] = Field(
+        default_factory=list[TendonLevelTable], description="a list of tables, each under a heading [[tendons]]"
+    )
+    base_mass_per_width: float = Field(
+        0.0, description="the mass that the base gains for each metre of its width 2 B, a number in kg/m"
+    )
+    scales: list[float] = Field([1.0], min_length=1, description="a list of factors on the acceleration")
+    limits: list[float | str] = Field(
+        ["overturning"], min_length=1, description='a list of limits, such as [0.02, "0.5 nominal", "overturning"]'
+    )
+    measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"')
+    level: float | None = Field(None, description="the level of the measure, in SI units")
+    hazard: HazardTable | None = Field(None, description="a table of the lists im and rate")
+    target: float | None = Field(
+        None, description="the probability, or with a hazard the annual rate, that a design must not exceed"
+    )
+
+    @field_validator("half_widths", mode="before")
+    @classmethod
+    def _widths(cls, given: object) -> object:
+        return half_widths_of(given) if isinstance(given, list | dict) else given
+
+    @field_validator("scales")
+    @classmethod
+    def _finite(cls, scales: list[float]) -> list[float]:
+        return factors_of(scales, QUIET)
+
+    @field_validator("limits")
+    @classmethod
+    def _limits(cls, limits: list[float | str]) -> list[float | str]:
+        for limit in limits:
+            check_limit(limit)
+        return limits
+
+    @field_validator("measure")
+    @classmethod
+    def _measure(cls, measure: str) -> str:
+        check_same_for_all(measure)
+        return measure
+
+    @model_validator(mode="after")
+    def _question(self) -> "DesignStudy":
+        if (self.level is None) == (self.hazard is None):
+            raise InputError("level and hazard: give one of them, not both, for the strength of the shaking.")
+        if self.level is not None:
+            positive("level", self.level, "the unit of the measure")
+        if self.hazard is not None:
+            HazardCurve(self.hazard.im, self.hazard.rate)
+        if self.target is not None:
+            positive("target", self.target, "probability or 1/year")
+            if self.level is not None:
+                in_range("target", self.target, 0.0, 1.0, hint="With a level it is a probability.")
+        return self
+
+    def plan(self) -> "DesignPlan":
+        """Build the designs, load the records, and cut the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a design cannot be built, a record cannot be read, a limit is out of range for a design, or a model's
+            base cannot lift.
+        """
+        levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
+        bench = self.bench()
+        (properties,) = bench.structures
+        designs = designs_of(properties, self.half_widths, levels, self.base_mass_per_width)
+        for design in designs:
+            for limit in self.limits:
+                try:
+                    rotation_of(limit, design.properties.nominal_overturning_rotation)
+                except InputError as error:
+                    raise InputError(f"{design.name}: {error}") from error
+        return DesignPlan(bench, designs, self.scales, self.runs_per_chunk)
+
+
+class DesignPlan(CloudPlan):
+    """The cross product of designs, records, models and scales, cut into chunks."""
+
+    def __init__(self, bench: Bench, designs: Sequence[Design], scales: Sequence[float], per_chunk: int) -> None:
+        for model in bench.assumptions.models:
+            if not model.lifts:
+                raise InputError(
+                    f"models: {model.label} has a fixed base, so the base width has no effect. Leave it out."
+                )
+        self._tendons = list(dict.fromkeys(design.tendon for design in designs))
+        self._facts = [self._facts_of(design) for design in designs]
+        made = Bench({each.name: each.properties for each in designs}, bench.motions, bench.assumptions)
+        super().__init__(made, scales, per_chunk)
+
+    def _facts_of(self, design: Design) -> Row:
+        p = design.properties
+        height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
+        return {
+            "half_width": p.half_width,
+            "aspect_ratio": height / p.half_width,
+            "tendon": self._tendons.index(design.tendon),
+            "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
+            "stiffness_ratio": p.tendon_stiffness / (p.l0r * GRAVITY),
+            "resisting_moment": p.resisting_moment,
+        }
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        facts = {name: self._tendons if name == "tendon" else float for name in self._facts[0]}
+        return {"structure": self.bench.names, **facts, **self.bench.columns}
+
+    def rows(self, unit: int) -> Iterator[Row]:
+        """Simulate one run."""
+        for row in super().rows(unit):
+            yield row | self._facts[row["structure"]]
+
+
+def run_design(
+    structure: RockingStructure | RockingProperties,
+    motions: Motions,
+    half_widths: ArrayLike,
+    tendons: Sequence[TendonLevel] = (),
+    models: Models = "MDOF-S",
+    scales: float | Sequence[float] = 1.0,
+    base_mass_per_width: float = 0.0,
+    free_vibration: float | Literal["settle"] = "settle",
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
+    workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
+) -> "pd.DataFrame":
+    """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
+
+    The structure above the base does not change; I_θ changes with m_tot B² (Silva & Stojadinović 2024, Table 2).
+
+    Parameters
+    ----------
+    structure
+        A structure, or its `RockingProperties`, on a base of any width. Its own tendons keep their forces,
+        stiffnesses and positions.
+    motions
+        As in `run_cloud`.
+    half_widths : array_like, shape (n,)
+        B in m, positive.
+    tendons
+        Levels of a tendon on the axis, each with every width; `TendonLevel()` means none. Default: the structure's own.
+    models, scales, free_vibration, bouc_wen, impact, workers, work_limit
+        As in `run_cloud`.
+    base_mass_per_width
+        Mass in kg/m that the base gains for each metre of width 2 B above the structure's own width, and loses for each
+        metre below it. Default: 0, a constant base mass.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per run, in the order of tendons, increasing half widths, motions, models and scales. The columns are
+        those of `run_cloud`, where `structure` names the design, followed by `half_width` (m); `aspect_ratio` = h*_1/B;
+        `tendon`, the name of the level; `prestress_ratio` = ΣF_0/(m_tot g); `stiffness_ratio` = the tendons' stiffness
+        against rotation over L_0^r g, about the edge that lifts first; `resisting_moment` (M_r in N m).
+
+    Raises
+    ------
+    InputError
+        If a half width is not positive or occurs twice, a model's base cannot lift, a design cannot be built, or as in
+        `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> len(runs)
+    16
+    >>> runs["structure"].cat.categories.tolist()
+    ['B = 1 m', 'B = 1.5 m']
+    """
+    given: Any = scales
+    if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given.")
+    bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
+    designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
+    return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)
+
+
+def design_tables(
+    runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
+) -> "Iterator[tuple[float | str, pd.DataFrame]]":
+    """Yield each limit of a study with its `design_table`.
+
+    Parameters
+    ----------
+    runs
+        The table of the study.
+    spec
+        The study as returned by its `document()`.
+    confidence
+        As in `design_table`.
+    """
+    hazard = None if spec.get("hazard") is None else HazardCurve(**spec["hazard"])
+    for limit in spec["limits"]:
+        yield (
+            limit,
+            design_table(
+                runs, limit, measure=spec["measure"], at=spec.get("level"), hazard=hazard, confidence=confidence
+            ),
+        )

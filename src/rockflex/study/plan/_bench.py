@@ -1,0 +1,213 @@
+"""The structures, records and models of a study, prepared for its runs."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from rockflex._checks import instance
+from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
+from rockflex.modal import RockingProperties
+from rockflex.models import BoucWen, ImpactLaw, Model
+from rockflex.motion import Suite, intensities
+from rockflex.response import Response
+from rockflex.solve import Task, WorkLimitError
+from rockflex.study._arguments import (
+    WORK_LIMIT,
+    check_options,
+    free_vibration_time,
+    properties_of,
+    work_limit_of,
+)
+from rockflex.study._case import Case
+from rockflex.study._results import result_columns, results_of
+from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
+from rockflex.study._yielding import hysteresis_of
+from rockflex.study.plan._intensity import intensity_measures, scaled_measures
+from rockflex.study.plan._records import record_group
+from rockflex.study.plan._tables import Columns, Row, kinds_of
+
+
+@dataclass(frozen=True)
+class Assumptions:
+    """The options that all runs of a study share.
+
+    `free_vibration` in s, None until settled. `bouc_wen` applies to the models whose label ends in "-BW", or to all if
+    there are none. `work_limit` is that of each run in s, None for no limit.
+    """
+
+    models: tuple[Model, ...]
+    free_vibration: float | None = 0.0
+    impact: ImpactLaw | None = None
+    bouc_wen: BoucWen | None = None
+    friction: bool = False
+    work_limit: float | None = WORK_LIMIT
+
+
+class Bench:
+    """Structures, records and models, with their engines, which are built when needed.
+
+    A pickle holds no engines, so that it is small; they are rebuilt where it is loaded.
+    """
+
+    def __init__(self, structures: Mapping[str, RockingProperties], motions: Suite, assumptions: Assumptions) -> None:
+        self.names, self.structures = list(structures), list(structures.values())
+        self.motions, self.assumptions = motions, assumptions
+        self.labels = [model.label for model in assumptions.models]
+        check_different("models", self.labels)
+        if assumptions.bouc_wen is not None and assumptions.free_vibration is None:
+            raise InputError(
+                'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free vibration in '
+                "seconds."
+            )
+        self._facts = record_facts(motions)
+        self._yielding = hysteresis_of(assumptions.models, assumptions.bouc_wen)
+        self._cases: dict[tuple[int, int], Case | str] = {}
+        self._measures: dict[tuple[int, int], dict[str, float]] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return vars(self) | {"_cases": {}, "_measures": {}}
+
+    def limited(self, work_limit: float | None) -> "Bench":
+        """Return the same bench with another work limit for each run."""
+        given = dict(zip(self.names, self.structures, strict=True))
+        return Bench(given, self.motions, replace(self.assumptions, work_limit=work_limit))
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of a run."""
+        found: dict[str, type | Sequence[str]] = {"structure": self.names}
+        found |= record_columns(self.motions)
+        found |= {"model": self.labels, "scale": float}
+        found |= dict.fromkeys((measure.name for measure in intensities()), float)
+        found |= result_columns() | {"nominal_limit": float}
+        if self.assumptions.friction:
+            found["required_friction"] = float
+        return found | {"error": str}
+
+    def measures(self, structure: int, record: int) -> dict[str, float]:
+        """Intensity measures of a record at the scale 1; computed once."""
+        found = self._measures.get((structure, record))
+        if found is None:
+            found = intensity_measures(self.structures[structure], self.motions[record])
+            self._measures[structure, record] = found
+        return found
+
+    def run(self, structure: int, record: int, model: int, scale: float) -> Row:
+        """Simulate one run and return its row; if it cannot be solved, the row has a message and no results."""
+        row: Row = {"structure": structure, **self._facts[record], "model": model, "scale": scale}
+        row |= scaled_measures(self.measures(structure, record), scale)
+        case = self._case(structure, model)
+        if isinstance(case, str):
+            return row | {"error": case}
+        try:
+            response = case.run(self.motions[record], scale)
+        except (SolverError, InputError) as error:
+            return row | {"error": str(error)}
+        row |= results_of(response)
+        row["nominal_limit"] = case.model.properties.nominal_overturning_rotation
+        return row | _friction(response) if self.assumptions.friction else row
+
+    def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
+        """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
+        case = self._case(structure, model)
+        return None if isinstance(case, str) else case.task(self.motions[record], scale)
+
+    def check_work(self, runs: Iterable[tuple[int, int, int, float]]) -> None:
+        """Raise the error of the first of these runs if every one of them exceeds its work limit."""
+        first: WorkLimitError | None = None
+        for run in runs:
+            task = self.task(*run)
+            if task is None:
+                return
+            try:
+                task.check(self.assumptions.work_limit)
+            except WorkLimitError as error:
+                first = first or error
+            else:
+                return
+        if first is not None:
+            raise first
+
+    def _case(self, structure: int, model: int) -> Case | str:
+        """Return the case of a structure and a model, which is built once, or the reason why there is none."""
+        found = self._cases.get((structure, model))
+        if found is None:
+            found = self._cases[structure, model] = self._new_case(structure, model)
+        return found
+
+    def _new_case(self, structure: int, model: int) -> Case | str:
+        given = self.assumptions
+        try:
+            tied = given.models[model].of(self.structures[structure], given.impact, self._yielding[model])
+            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.friction)
+        except InputError as error:
+            return str(error)
+
+
+def _friction(response: Response) -> Row:
+    try:
+        return {"required_friction": response.required_friction}
+    except (SolverError, InputError) as error:
+        return {"error": f"No required friction: {error}"}
+
+
+def check_different(name: str, values: Sequence[str]) -> None:
+    """Raise an InputError if a value occurs more than once."""
+    repeated = [value for place, value in enumerate(values) if value in values[:place]]
+    if repeated:
+        raise InputError(f"{name}: {shown(repeated[0])} occurs more than once. Give each once.")
+
+
+def record_facts(motions: Suite) -> list[Row]:
+    """Return the columns that describe each record; its name and group are codes."""
+    groups = list(dict.fromkeys(record_group(motion) for motion in motions))
+    facts: list[Row] = []
+    for place, motion in enumerate(motions):
+        info = motion.metadata
+        facts.append(
+            {
+                "motion": place,
+                "group": groups.index(record_group(motion)),
+                "magnitude": None if info is None else info.magnitude,
+                "distance_km": None if info is None else info.distance_km,
+            }
+        )
+    return facts
+
+
+def record_columns(motions: Suite) -> Columns:
+    """Return the columns that `record_facts` fills."""
+    groups = list(dict.fromkeys(record_group(motion) for motion in motions))
+    return {"motion": motions.names, "group": groups, **kinds_of("magnitude distance_km", float)}
+
+
+def bench_of(
+    structures: Structures,
+    motions: Motions,
+    models: Models,
+    free_vibration: float | Literal["settle"],
+    bouc_wen: BoucWen | None,
+    impact: ImpactLaw | None,
+    *,
+    friction: bool = False,
+    work_limit: float | None = WORK_LIMIT,
+) -> Bench:
+    """Check the arguments of a study in Python and return its bench; structures without names are "S1", "S2", ...
+
+    Raises
+    ------
+    InputError
+        If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
+        option is out of range.
+    """
+    check_options(bouc_wen, impact)
+    instance("friction", friction, bool)
+    chosen = tuple(models_of(models))
+    free = free_vibration_time(free_vibration)
+    suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
+    listed, names = structures_of(structures)
+    names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
+    named = {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
+    assumptions = Assumptions(chosen, free, impact, bouc_wen, friction, work_limit_of(work_limit))
+    return Bench(named, suite, assumptions)

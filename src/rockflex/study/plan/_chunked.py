@@ -1,0 +1,102 @@
+"""A study divided into chunks that can be computed anywhere."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, ClassVar, SupportsIndex
+
+from rockflex._checks import whole_number
+from rockflex.motion import Suite, check_horizontal
+from rockflex.study._runs import map_runs
+from rockflex.study.plan._records import checksums
+from rockflex.study.plan._tables import ArrowTable, Columns, Row, tabulate, to_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class ChunkedPlan(ABC):
+    """A plan of `n_units` units, computed `per_chunk` at a time; each unit gives some rows of the table.
+
+    A unit depends only on its own number, so the size of the chunks changes no row.
+    """
+
+    exact_count: ClassVar[bool] = True
+    """Whether `n_runs` is the number of runs, and not only an upper bound."""
+
+    def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
+        check_horizontal(*motions)
+        self.motions = motions
+        self.n_units = n_units
+        self.per_chunk = whole_number("the size of a chunk", per_chunk, 1)
+
+    @property
+    @abstractmethod
+    def n_runs(self) -> int:
+        """Number of runs in all chunks, or an upper bound of it."""
+
+    @property
+    @abstractmethod
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+
+    @abstractmethod
+    def rows(self, unit: int) -> Iterable[Row]:
+        """Compute the rows of one unit."""
+
+    def check_work(self) -> None:
+        """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none.
+
+        Raises
+        ------
+        InputError
+            If no run is within its work limit.
+        """
+        return
+
+    @property
+    def n_chunks(self) -> int:
+        """Number of chunks."""
+        return -(-self.n_units // self.per_chunk)
+
+    @property
+    def checksums(self) -> dict[str, str]:
+        """SHA-256 of each record's step and samples, by its name."""
+        return checksums(self.motions)
+
+    def chunk(self, number: SupportsIndex) -> ArrowTable:
+        """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed.
+
+        Raises
+        ------
+        InputError
+            If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
+        """
+        first = self.per_chunk * whole_number("number", number, 0, self.n_chunks - 1)
+        units = range(first, min(first + self.per_chunk, self.n_units))
+        return tabulate([row for unit in units for row in self.rows(unit)], self.columns)
+
+
+def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.DataFrame":
+    """Compute all chunks of a plan on threads, and return them as one table, in order.
+
+    Parameters
+    ----------
+    plan
+        The plan that `.plan()` of a study returns.
+    workers
+        Number of threads; None for one a core.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The rows of all chunks; see the study for its columns.
+    """
+    plan.check_work()
+    tables: dict[int, ArrowTable] = {}
+
+    def work(number: int) -> None:
+        tables[number] = plan.chunk(number)
+
+    for _ in map_runs(work, range(plan.n_chunks), workers):
+        pass
+    return to_frame(*(tables[number] for number in range(plan.n_chunks)))

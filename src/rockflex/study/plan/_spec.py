@@ -1,0 +1,158 @@
+"""The specification of a study: the keys that all kinds share."""
+
+import math
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import Field, PrivateAttr, ValidationError, field_validator
+
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.modal import RockingProperties
+from rockflex.models import parse_model
+from rockflex.structure.file import StructureEntry, Table, problems
+from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, properties_of, work_limit_of
+from rockflex.study.assumed import Assumed
+from rockflex.study.plan._bench import Assumptions, Bench, check_different
+from rockflex.study.plan._chunked import ChunkedPlan
+from rockflex.study.plan._own_law import law_checksum, law_document
+from rockflex.study.plan._records import Records
+
+
+class Spec(Table):
+    """A study as a file or Python describes it; in Python, its tables are dictionaries.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or missing, or a value is wrong; the message lists them all.
+    """
+
+    name: str = Field("", description="a name, in quotes")
+    records: Records = Field(description="a table of suites or a folder")
+    runs_per_chunk: int = Field(
+        256, ge=1, description="about how many runs to compute and store together, a whole number of at least 1"
+    )
+    work_limit: float | Literal["none"] = Field(
+        WORK_LIMIT, description='the most computing that one run may take, a number in s or "none"'
+    )
+
+    _folder: Path = PrivateAttr(default_factory=Path)
+
+    def __init__(self, **content: Any) -> None:
+        try:
+            super().__init__(**content)
+        except ValidationError as error:
+            raise InputError(" ".join(problems(error, content, type(self)))) from error
+
+    @field_validator("work_limit")
+    @classmethod
+    def _limit(cls, value: float | Literal["none"]) -> float | Literal["none"]:
+        work_limit_of(value)
+        return value
+
+    @property
+    def kind(self) -> str:
+        """Kind of the study: the value of its key `study`."""
+        return type(self).model_fields["study"].default
+
+    def plan(self) -> ChunkedPlan:
+        """Prepare the runs; each kind of study has its own plan."""
+        raise NotImplementedError
+
+    def document(self) -> dict[str, Any]:
+        """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out."""
+        return _plain(self.model_dump(exclude_none=True))
+
+    def checksums(self) -> dict[str, str]:
+        """Return the SHA-256 of the numbers in each file that a structure names, by its key in the document."""
+        return {}
+
+    def read_from(self, folder: Path) -> Self:
+        """Let relative paths start from a folder instead of the working directory, and return the study."""
+        self._folder = folder
+        return self
+
+
+class StructuresSpec(Assumed, Spec):
+    """A study of given structures: the structures, the models, and the options of the runs."""
+
+    structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
+    models: list[str] = Field(["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
+    free_vibration: float | Literal["settle"] = Field(
+        0.0, description='the free vibration after the record, a number in s or "settle"'
+    )
+
+    @field_validator("models")
+    @classmethod
+    def _labels(cls, labels: list[str]) -> list[str]:
+        for label in labels:
+            parse_model(label)
+        return labels
+
+    @field_validator("free_vibration")
+    @classmethod
+    def _seconds(cls, value: float | Literal["settle"]) -> float | Literal["settle"]:
+        free_vibration_time(value)
+        return value
+
+    def document(self) -> dict[str, Any]:
+        """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out.
+
+        Raises
+        ------
+        InputError
+            If `impact` is a user-defined law with a value that is not plain JSON.
+        """
+        if self.impact is None or isinstance(self.impact, str):
+            return super().document()
+        return self.model_copy(update={"impact": None}).document() | {"impact": _plain(law_document(self.impact))}
+
+    def checksums(self) -> dict[str, str]:
+        """Return the SHA-256 of the numbers in each file that a structure names, and of a user-defined impact law.
+
+        Raises
+        ------
+        InputError
+            If that law is not defined in a file.
+        """
+        files = {
+            f"structures[{place}].{key}": value
+            for place, entry in enumerate(self.structures)
+            for key, value in entry.checksums(self._folder).items()
+        }
+        return files if self.impact is None or isinstance(self.impact, str) else files | law_checksum(self.impact)
+
+    def bench(self, *, friction: bool = False) -> Bench:
+        """Build the structures and load the records.
+
+        Raises
+        ------
+        InputError
+            If a structure or a record is not available, or the options contradict each other.
+        """
+        names = [entry.name or f"S{place}" for place, entry in enumerate(self.structures, start=1)]
+        check_different("the names of the structures", names)
+        properties: dict[str, RockingProperties] = {}
+        for place, entry in enumerate(self.structures, start=1):
+            try:
+                properties[names[place - 1]] = properties_of(entry.build(self._folder))
+            except InputError as error:
+                raise InputError(
+                    f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"
+                ) from error
+        free = free_vibration_time(self.free_vibration)
+        models = tuple(map(parse_model, self.models))
+        limit = work_limit_of(self.work_limit)
+        assumptions = Assumptions(models, free, self.law(), self.hysteresis(), friction, limit)
+        return Bench(properties, self.records.load(self._folder), assumptions)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value
