@@ -7,12 +7,11 @@ from numbers import Real
 from typing import Any, SupportsIndex, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-
-Float = NDArray[np.float64]
 
 T = TypeVar("T")
 
@@ -42,7 +41,7 @@ def in_range(name: str, value: float, low: float, high: float, *, hint: str = ""
     return number
 
 
-def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None = None) -> Float:
+def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None = None) -> Array:
     """Return `values` as a read-only one-dimensional float64 array of finite numbers; `field` as in `in_range`."""
     field = field or name
     array = float_array(values)
@@ -117,7 +116,7 @@ def mode_count(n_modes: SupportsIndex | None, available: int) -> int:
     return available if n_modes is None else whole_number("n_modes", n_modes, 1, available)
 
 
-def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Float:
+def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Array:
     """Return a read-only array of one damping ratio in [0, 1) per mode, from one or from `n_modes` numbers."""
     if dimensions(values) == 0:
         ratio = in_range(name, values, 0.0, 1.0, hint=_DAMPING_HINT)  # pyright: ignore[reportArgumentType]
@@ -147,7 +146,7 @@ def dimensions(values: ArrayLike) -> int:
 
 def finite_matrix(
     name: str, values: ArrayLike, unit: str, shape: tuple[int, int], *, field: str | None = None
-) -> Float:
+) -> Array:
     """Return a float64 copy of `values` with the given shape and only finite entries; `field` as in `in_range`."""
     field = field or name
     array = float_array(values)
@@ -165,7 +164,7 @@ def finite_matrix(
     return array
 
 
-def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Float:
+def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Array:
     """Return a read-only float64 copy of `values`: at least one row of `columns` finite numbers each."""
     rows = np.shape(values)[0] if dimensions(values) == 2 else 1
     array = finite_matrix(name, values, unit, (max(rows, 1), columns))
@@ -173,7 +172,7 @@ def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Float:
     return array
 
 
-def float_array(values: ArrayLike) -> Float | None:
+def float_array(values: ArrayLike) -> Array | None:
     """Return a float64 copy of real numbers; None for ragged rows, complex numbers, dates, and too large numbers."""
     try:
         given = np.asarray(values)

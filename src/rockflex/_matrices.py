@@ -1,19 +1,18 @@
 """Checks of the mass matrix, the stiffness matrix and the heights of a structure."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import dimensions, finite_matrix, finite_vector
 from rockflex._computable import computable
 from rockflex._errors import InputError
-
-Float = NDArray[np.float64]
 
 # Asymmetry due to condensation or printed digits, relative to the largest entry.
 _SYMMETRY_TOLERANCE = 1e-9
 
 
-def checked_heights(heights: ArrayLike) -> Float:
+def checked_heights(heights: ArrayLike) -> Array:
     """Return the heights of the masses above the base (N,) in m, read-only: positive, strictly increasing."""
     h = finite_vector("heights", heights, "m")
     if h.size == 0:
@@ -36,7 +35,7 @@ def checked_heights(heights: ArrayLike) -> Float:
     return h
 
 
-def checked_mass(mass: ArrayLike, size: int, *, field: str = "mass") -> Float:
+def checked_mass(mass: ArrayLike, size: int, *, field: str = "mass") -> Array:
     """Return the masses (N,) or the mass matrix (N, N) in kg, read-only: positive (definite).
 
     `field` is the name of the argument.
@@ -60,12 +59,12 @@ def checked_mass(mass: ArrayLike, size: int, *, field: str = "mass") -> Float:
     return m
 
 
-def checked_stiffness(stiffness: ArrayLike, size: int) -> Float:
+def checked_stiffness(stiffness: ArrayLike, size: int) -> Array:
     """Return the stiffness matrix (N, N) in N/m, read-only: symmetric and positive definite."""
     return _symmetric_positive_definite("stiffness", stiffness, "N/m", size, "stiffness")
 
 
-def mass_times(mass: Float, vectors: Float) -> Float:
+def mass_times(mass: Array, vectors: Array) -> Array:
     """Return M x for a diagonal (N,) or full (N, N) mass, and x of shape (N,) or (N, n)."""
     if mass.ndim == 2:
         return mass @ vectors
@@ -73,7 +72,7 @@ def mass_times(mass: Float, vectors: Float) -> Float:
 
 
 @computable("Whether a matrix is positive definite")
-def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: int, field: str) -> Float:
+def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: int, field: str) -> Array:
     matrix = finite_matrix(name, values, unit, (size, size), field=field)
     asymmetry = np.abs(matrix - matrix.T)
     if asymmetry.max() > _SYMMETRY_TOLERANCE * np.abs(matrix).max():

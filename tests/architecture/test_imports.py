@@ -30,6 +30,7 @@ ALLOWED = {
     "kinds": {"motion", "structure", "study", "fragility", "plot", "papers", "parallel", "store"},
 }
 FOUNDATION = {
+    "_arrays",
     "_cases",
     "_checks",
     "_computable",

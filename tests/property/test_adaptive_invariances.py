@@ -60,7 +60,7 @@ def mirrored(structure, motion, model, **options):
 def assert_mirrored(one, other):
     """To the last bit."""
     assert one.peaks() == other.peaks()
-    nodes, opposite = one.history.nodes, other.history.nodes
+    nodes, opposite = one.history.states, other.history.states
     n = one.history.model.properties.n_modes
     assert np.array_equal(nodes[:, 0], opposite[:, 0])
     assert np.array_equal(nodes[:, 1 : 6 + 2 * n], -opposite[:, 1 : 6 + 2 * n])

@@ -56,8 +56,8 @@ def test_a_mirrored_record_mirrors_the_response(given_, motion, model):
     structure = Frame(**given_)
     one, other = simulate(structure, motion, model), simulate(structure, motion.scaled(-1.0), model)
     assert one.peaks() == other.peaks()
-    assert np.array_equal(one.history.nodes[:, 0], other.history.nodes[:, 0])
-    assert np.array_equal(one.history.nodes[:, 1:], -other.history.nodes[:, 1:])
+    assert np.array_equal(one.history.states[:, 0], other.history.states[:, 0])
+    assert np.array_equal(one.history.states[:, 1:], -other.history.states[:, 1:])
 
 
 @examples(60)
@@ -83,7 +83,7 @@ def test_a_base_too_wide_to_lift_is_fixed(given_, motion):
 def test_as_many_modes_as_there_are_is_all_of_them(given_, motion):
     structure = Frame(**given_)
     one, other = simulate(structure, motion, f"{given_['n_stories'] + 1}DOF-S"), simulate(structure, motion)
-    assert np.array_equal(one.history.nodes, other.history.nodes)
+    assert np.array_equal(one.history.states, other.history.states)
     assert {**one.peaks(), "model": "MDOF-S"} == other.peaks()
 
 
@@ -105,7 +105,7 @@ def test_a_late_start_shifts_the_response(given_, motion, quiet):
     late = GroundMotion(np.concatenate((np.zeros(quiet + 1), motion.acceleration)), motion.dt)
     one, other = simulate(structure, early), simulate(structure, late)
     assert_same_peaks(one, other, max(1e-12, 100.0 * sensitivity(structure, early)), later=quiet * motion.dt)
-    assert not other.history.nodes[: quiet + 1, 1:].any()
+    assert not other.history.states[: quiet + 1, 1:].any()
     if one.n_uplifts:
         assert other.uplift_times[0] == pytest.approx(one.uplift_times[0] + quiet * motion.dt, abs=1e-9)
 

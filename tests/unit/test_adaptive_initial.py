@@ -75,10 +75,10 @@ def test_no_one_knows_when_a_hysteretic_spring_is_at_rest(model):
 def test_quiet_ground_moves_nothing(model):
     run = simulate(FRAME, quiet_motion(1.0), model, free_vibration=1.0)
     assert run.status == "no_uplift"
-    assert not run.history.nodes[:, 1:].any()
+    assert not run.history.states[:, 1:].any()
     assert run.end_time == 2.0
     yields = simulate(FRAME, quiet_motion(1.0), "2DOF-S", bouc_wen=BoucWen(0.05))
-    assert not yields.history.nodes[:, 1:].any()
+    assert not yields.history.states[:, 1:].any()
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_any_state_starts_a_run(model, n, law, start):
     assert (run.n_uplifts, run.n_impacts) == (twin.n_uplifts, twin.n_impacts)
     for name in ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear"):
         assert getattr(run, name) == pytest.approx(getattr(twin, name), rel=1e-8), name
-    first = run.history.nodes[0]
+    first = run.history.states[0]
     assert first[: 5 + 2 * n].tolist() == [
         0,
         np.sign(rotation or spin),
@@ -182,7 +182,7 @@ def test_a_block_has_no_modes_to_start_from():
 def test_whatever_is_accepted_is_solved(model, velocity):
     start = InitialState(0.1, None if model == "rigid-C" else [1e3], rotation_velocity=velocity)
     run = simulate(FRAME, quiet_motion(0.1), model, impact=VVELSimplified(), initial=start)
-    assert np.isfinite(run.history.nodes).all()
+    assert np.isfinite(run.history.states).all()
     assert np.isfinite(run.energy.residual).all()
 
 
@@ -196,8 +196,8 @@ def test_free_vibration_follows_a_record():
         assert run.ground_acceleration[twin_end].tolist() == [1.5, 0.0]
         assert run.end_time == pytest.approx(120 * 0.02 + 1.0)
         short = simulate(FRAME, cut, model, **options)
-        assert np.array_equal(run.history.nodes[: short.time.size], short.history.nodes)
-        last = short.history.nodes[-1]
+        assert np.array_equal(run.history.states[: short.time.size], short.history.states)
+        last = short.history.states[-1]
         n = (last.size - 9) // 2
         rest = simulate(
             FRAME,

@@ -40,7 +40,7 @@ def test_a_history_finds_room_for_all_its_events(monkeypatch):
     assert rooms == sorted(rooms)
     assert rooms[0] < run.time.size < rooms[-1]
     assert set(np.diff(rooms)) - {0} == {size for size in rooms[:-1] if 2 * size in rooms}  # it doubles
-    assert np.array_equal(run.history.nodes, roomy.history.nodes)
+    assert np.array_equal(run.history.states, roomy.history.states)
     assert run.time[-1] == 2.0
     assert simulate(FRAME, quiet_motion(2.0, dt=0.1), "rigid-C", "peaks", **options).peaks() == run.peaks()
 
@@ -53,7 +53,7 @@ def test_an_engine_runs_again_and_again():
     first = mine.run(record, 0.02, state=start, history=True)
     mine.run(-0.5 * record, 0.01)
     again = mine.run(record, 0.02, state=start, history=True)
-    assert np.array_equal(first.nodes, again.nodes)
+    assert np.array_equal(first.states, again.states)
     assert np.array_equal(first.peaks, again.peaks)
     assert np.array_equal(record, RECORD)
     assert np.array_equal(start, kept)
@@ -73,13 +73,13 @@ def test_records_of_any_kind_are_taken():
 
 def test_every_sample_and_event_is_a_node():
     run = engine().run(RECORD, 0.02, history=True)
-    times = run.nodes[:, 0]
+    times = run.states[:, 0]
     for k in range(RECORD.size):
         at = np.flatnonzero(np.abs(times - 0.02 * k) < 1e-12)
         assert at.size >= 1
-        assert run.nodes[at[-1], 2] == RECORD[k]
+        assert run.states[at[-1], 2] == RECORD[k]
     assert times.size == RECORD.size + 2 * (run.n_uplifts + run.n_impacts)
-    np.testing.assert_allclose(run.nodes[:, 2], np.interp(times, 0.02 * np.arange(RECORD.size), RECORD), atol=1e-12)
+    np.testing.assert_allclose(run.states[:, 2], np.interp(times, 0.02 * np.arange(RECORD.size), RECORD), atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -117,4 +117,4 @@ def test_shaking_that_only_begins_at_its_end():
     longer = simulate(FRAME, motion, "2DOF-C", free_vibration=0.1)
     k = np.flatnonzero(longer.time == 0.04)
     assert longer.ground_acceleration[k].tolist()[-1] == 0.0
-    assert np.array_equal(longer.history.nodes[: run.time.size - 1], run.history.nodes[:-1])
+    assert np.array_equal(longer.history.states[: run.time.size - 1], run.history.states[:-1])

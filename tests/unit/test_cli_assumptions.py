@@ -204,7 +204,7 @@ def test_a_hysteresis_in_the_file_that_no_model_asks_for_is_told(write):
             [*YIELDING, "--model", "fixed-BW"],
             "bouc_wen applies to models with one mode, but fixed-BW has 5. Use 1DOF-fixed-BW, or leave it out.",
         ),
-        ([*YIELDING, "--model", "3DOF-S-BW"], "A Bouc-Wen superstructure has one mode, but 2 were asked for."),
+        ([*YIELDING, "--model", "3DOF-S-BW"], "A Bouc-Wen superstructure has one mode, but 2 were requested."),
         (
             ["--model", "2DOF-S-BW"],
             "2DOF-S-BW needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file.",

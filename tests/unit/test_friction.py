@@ -175,7 +175,7 @@ def test_a_window_as_long_as_the_run_leaves_what_is_before_the_first_impact():
 def test_one_node_alone():
     run = simulate(FRAME, EL_CENTRO, "2DOF-S")
     moment = int(np.argmax(run.friction_demand))
-    history = type(run.history)(run.history.model, run.history.nodes[moment : moment + 1])
+    history = type(run.history)(run.history.model, run.history.states[moment : moment + 1])
     assert history.required_friction == pytest.approx(run.friction_demand[moment], rel=1e-12)
     assert history.sliding_time(0.1) == run.time[moment]
     assert history.sliding_time(10.0) is None

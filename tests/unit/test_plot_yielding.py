@@ -49,7 +49,7 @@ def test_the_hysteretic_loop_encloses_what_the_spring_took_up(pair):
     """The area is work; over the whole run it is the last of the nodes' energies, up to what is still stored."""
     x, force = loop(plot_hysteresis(pair).axes[0], 1)
     work = float(np.trapezoid(1e3 * force, x))
-    taken = float(pair[1].history.nodes[-1, -1])
+    taken = float(pair[1].history.states[-1, -1])
     p = FRAME.rocking(1)
     # V_b works on D_1 and not on the top.
     work /= float(p.top_ordinate[0])

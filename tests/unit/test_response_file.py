@@ -66,7 +66,7 @@ def test_what_is_saved_comes_back(tmp_path, structure, model, output):
         for name in ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement"):
             assert np.array_equal(getattr(back.floors, name), getattr(run.floors, name))
     if output == "history":
-        assert np.array_equal(back.history.nodes, run.history.nodes)
+        assert np.array_equal(back.history.states, run.history.states)
         for name in ("time", "rotation", "base_moment", "top_displacement", "impact_times"):
             assert np.array_equal(getattr(back, name), getattr(run, name))
         assert back.energy.closing_error == run.energy.closing_error
@@ -212,15 +212,25 @@ def test_a_file_written_again_is_sound(saved, tmp_path):
     assert Response.load(rewritten(tmp_path / "run.npz", arrays, scalars)).max_rotation == scalars["max_rotation"]
 
 
+def test_a_file_of_an_older_version_is_read(saved, tmp_path):
+    arrays, scalars = dict(saved[0]), saved[1]
+    states = arrays["nodes"] = arrays.pop("states")
+    assert np.array_equal(Response.load(rewritten(tmp_path / "run.npz", arrays, scalars)).history.states, states)
+
+
 @pytest.mark.parametrize(
     ("name", "change", "text"),
     [
-        ("nodes", lambda a: a[:, :-1], r"InputError: nodes must have the shape \(\d+, 11\), but .* \(\d+, 10\)"),
-        ("nodes", lambda a: a[:0], r"InputError: nodes must have the shape \(1, 11\), but an array of shape \(0, 11\)"),
-        ("nodes", lambda a: a[0], r"InputError: nodes must have the shape \(1, 11\), but an array of shape \(11,\)"),
-        ("nodes", lambda a: a * np.nan, r"InputError: nodes must be finite, but its entry \[0, 0\] is nan"),
-        ("nodes", lambda a: a.astype(str), "InputError: nodes must be of type float64, but is of type <U32"),
-        ("nodes", lambda a: a + 0j, "InputError: nodes must be of type float64, but is of type complex128"),
+        ("states", lambda a: a[:, :-1], r"InputError: states must have the shape \(\d+, 11\), but .* \(\d+, 10\)"),
+        (
+            "states",
+            lambda a: a[:0],
+            r"InputError: states must have the shape \(1, 11\), but an array of shape \(0, 11\)",
+        ),
+        ("states", lambda a: a[0], r"InputError: states must have the shape \(1, 11\), but an array of shape \(11,\)"),
+        ("states", lambda a: a * np.nan, r"InputError: states must be finite, but its entry \[0, 0\] is nan"),
+        ("states", lambda a: a.astype(str), "InputError: states must be of type float64, but is of type <U32"),
+        ("states", lambda a: a + 0j, "InputError: states must be of type float64, but is of type complex128"),
         (
             "floors.story_drift",
             lambda a: a[:2],

@@ -52,7 +52,7 @@ class Mine:
 
 def same(back, run):
     assert back.peaks() == run.peaks()
-    assert np.array_equal(back.history.nodes, run.history.nodes)
+    assert np.array_equal(back.history.states, run.history.states)
     for name in ("rotation", "yielding", "base_moment", "base_shear", "modal_acceleration", "rotation_acceleration"):
         assert np.array_equal(getattr(back, name), getattr(run, name)), name
     assert np.array_equal(back.impact_times, run.impact_times)
@@ -143,7 +143,7 @@ def test_what_a_file_says(saved):
         ("law", {"law": "Restitution"}, "TypeError: .*missing 1 required positional argument: 'e'"),
         ("law", {"law": "VVELComplete", "e": 1.0}, "TypeError: "),
         ("complete", "yes", "InputError: complete must be of type bool, but is 'yes'"),
-        ("complete", ..., "InputError: nodes must have the shape"),
+        ("complete", ..., "InputError: states must have the shape"),
         ("bouc_wen", ..., "KeyError: 'bouc_wen'"),
         ("bouc_wen", {"yield_displacement": -1.0}, "InputError: yield_displacement must be a positive, finite number"),
         ("bouc_wen", {"yield": 1.0}, "TypeError: "),
@@ -162,14 +162,14 @@ def test_scalars_that_do_not_fit(saved, tmp_path, name, value, text):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda a: a[:, :-4], r"InputError: nodes must have the shape \(\d+, 11\), but .* \(\d+, 7\)"),
-        (lambda a: np.where(a == a[-1, -1], np.inf, a), "InputError: nodes must be finite, but its entry"),
+        (lambda a: a[:, :-4], r"InputError: states must have the shape \(\d+, 11\), but .* \(\d+, 7\)"),
+        (lambda a: np.where(a == a[-1, -1], np.inf, a), "InputError: states must be finite, but its entry"),
     ],
 )
 def test_nodes_that_do_not_fit(saved, tmp_path, change, text):
     arrays, scalars = saved
     with pytest.raises(InputError, match=text):
-        Response.load(rewritten(tmp_path / "run.npz", {**arrays, "nodes": change(arrays["nodes"])}, scalars))
+        Response.load(rewritten(tmp_path / "run.npz", {**arrays, "states": change(arrays["states"])}, scalars))
 
 
 def test_a_file_written_again_is_sound(saved, tmp_path):

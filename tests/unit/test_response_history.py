@@ -126,7 +126,7 @@ def test_floor_accelerations_are_those_of_the_velocities(response):
 def test_nodes_of_a_history(response):
     history, time = response.history, response.time
     n = history.model.properties.n_modes
-    assert history.nodes.shape == (len(time), 2 * n + 5)
+    assert history.states.shape == (len(time), 2 * n + 5)
     for name in ("modal_displacement", "modal_velocity"):
         assert getattr(response, name).shape == (len(time), n)
     assert np.all(np.diff(time) > -1e-12)
@@ -183,8 +183,8 @@ def test_no_floors_no_story_drifts():
 def test_what_is_observed_does_not_change_the_motion(response):
     """Neither the peaks that are tracked nor the nodes that are kept."""
     without = simulate(bare(FRAME), MOTION, free_vibration=1.0)
-    size = np.abs(response.history.nodes).max(axis=0)
-    np.testing.assert_allclose(without.history.nodes / size, response.history.nodes / size, rtol=0.0, atol=1e-15)
+    size = np.abs(response.history.states).max(axis=0)
+    np.testing.assert_allclose(without.history.states / size, response.history.states / size, rtol=0.0, atol=1e-15)
     assert simulate(bare(FRAME), MOTION, free_vibration=1.0, output="peaks").peaks() == without.peaks()
     # Floors call for closer looks, where other peaks may be met a rounding higher.
     for run in (without, simulate(FRAME, MOTION, free_vibration=1.0, output="peaks")):
@@ -198,7 +198,7 @@ def test_what_is_observed_does_not_change_the_motion(response):
 
 
 ARRAYS = (
-    "nodes", "time", "side", "ground_acceleration", "modal_displacement", "modal_velocity", "rotation",
+    "states", "time", "side", "ground_acceleration", "modal_displacement", "modal_velocity", "rotation",
     "rotation_velocity", "top_displacement", "base_moment", "base_shear", "story_drift", "story_shear",
     "floor_acceleration",
 )  # fmt: skip
@@ -214,11 +214,11 @@ def test_histories_are_read_only(response):
         for values in vars(each.energy).values():
             with pytest.raises(ValueError, match="read-only"):
                 values[0] = 0.0
-        assert np.array_equal(each.nodes, history.nodes)
-    mine = history.nodes.copy()
+        assert np.array_equal(each.states, history.states)
+    mine = history.states.copy()
     kept = History(history.model, mine)
     mine[:] = 0.0
-    assert np.array_equal(kept.nodes, history.nodes)
+    assert np.array_equal(kept.states, history.states)
 
 
 def test_a_history_in_short(response):
@@ -244,4 +244,4 @@ def test_a_history_in_short(response):
 )
 def test_nodes_that_are_none(response, change, text):
     with pytest.raises(InputError, match=text):
-        History(response.history.model, change(response.history.nodes))
+        History(response.history.model, change(response.history.states))

@@ -81,7 +81,7 @@ def test_no_quantity_is_forgotten():
 
 
 def test_nothing_else_is_an_attribute(response):
-    for name in ("nothing", "_private", "nodes", "__array__"):
+    for name in ("nothing", "_private", "states", "__array__"):
         with pytest.raises(AttributeError, match=f"'Response' object has no attribute '{name}'"):
             getattr(response, name)
     for name in ("max_rotation", "rotation"):
@@ -95,7 +95,7 @@ def test_copies_are_whole(response, peaks_only):
             assert twin.peaks() == run.peaks()
             assert hasattr(twin, "rotation") == hasattr(run, "rotation")
             if run.history is not None:
-                assert np.array_equal(twin.history.nodes, run.history.nodes)
+                assert np.array_equal(twin.history.states, run.history.states)
 
 
 def test_floor_peaks_are_read_only(response):
@@ -186,7 +186,7 @@ def solution(**changes):
         "time_of_lost_support": 0.0,
         "n_uplifts": 0,
         "n_impacts": 0,
-        "nodes": None,
+        "states": None,
     }
     return Solution(**{**given, **changes})
 

@@ -108,7 +108,7 @@ def test_a_moment_that_culminates_at_a_sample(excess):
     """A triangular pulse pushes a truncated model, whose moment follows it, to a corner at its middle sample."""
     p = block(omega=[200.0], zeta=0.3)
     record = np.concatenate((np.linspace(0.0, 1.0, 41), np.linspace(1.0, 0.0, 41)[1:]))
-    fixed = simulate(p, GroundMotion(record, 0.05), "fixed").history.nodes
+    fixed = simulate(p, GroundMotion(record, 0.05), "fixed").history.states
     vector = np.column_stack((fixed[:, 3:], fixed[:, 2], np.ones(len(fixed))))
     moment = np.abs(vector @ Model().of(p).overturning_moment())
     assert moment.argmax() == 40
@@ -243,4 +243,4 @@ def test_rest_stays_rest():
     run = simulate(Frame(**frame()), quiet_motion(1.0), free_vibration=3600.0)
     assert (run.status, run.n_uplifts, run.max_rotation, run.max_base_shear) == ("no_uplift", 0, 0.0, 0.0)
     assert run.end_time == pytest.approx(3601.0)
-    assert not run.history.nodes[:, 1:].any()
+    assert not run.history.states[:, 1:].any()

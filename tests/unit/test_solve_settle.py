@@ -91,7 +91,7 @@ def test_what_still_rocks_outward_at_the_end_of_the_record_is_decided(factor, st
     assert run.status == status
     assert run.settled == (status == "rocking")
     assert run.max_rotation > 1.5 * cut.max_rotation
-    assert np.array_equal(run.history.nodes[: len(cut.time)], cut.history.nodes)
+    assert np.array_equal(run.history.states[: len(cut.time)], cut.history.states)
 
 
 def test_history_grows_as_long_as_it_takes():
@@ -103,7 +103,7 @@ def test_history_grows_as_long_as_it_takes():
     assert np.all(np.diff(run.time) > -1e-12)
     assert run.time[-1] == pytest.approx(run.end_time, abs=1e-12)
     fixed = simulate(Frame(**frame()), quiet_motion(0.02, dt=0.002), free_vibration=run.end_time - 0.02, initial=start)
-    assert np.array_equal(run.history.nodes, fixed.history.nodes)
+    assert np.array_equal(run.history.states, fixed.history.states)
 
 
 def test_a_single_undamped_mode_settles():

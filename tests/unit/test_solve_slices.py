@@ -68,7 +68,7 @@ def test_slices_say_the_same_bit_for_bit(case, carried):
         for name in ("peaks", "peak_times", "lost_support", "time_of_lost_support"):
             assert np.array_equal(getattr(run, name), getattr(whole, name)), name
         if how.get("history"):
-            assert np.array_equal(run.nodes, whole.nodes)
+            assert np.array_equal(run.states, whole.states)
 
 
 @pytest.mark.parametrize("label", ["MDOF-S", "2DOF-C"])

@@ -165,7 +165,7 @@ def test_no_restitution_is_the_simplified_law(model):
     one, other = (simulate(FRAME, MOTION, model, impact=law) for law in (Restitution(0.0), VVELSimplified()))
     assert one.n_impacts >= 4
     assert one.peaks() == other.peaks()
-    assert np.array_equal(one.history.nodes, other.history.nodes)
+    assert np.array_equal(one.history.states, other.history.states)
 
 
 @pytest.mark.parametrize("model", ["2DOF-S", "MDOF-C", "rigid", "rigid-C"])

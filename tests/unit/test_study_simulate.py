@@ -41,7 +41,7 @@ def test_labels_and_models_are_alike():
 def test_a_label_of_all_modes_is_all_modes():
     one, all_modes = simulate(FRAME, MOTION, "4DOF-S"), simulate(FRAME, MOTION, "MDOF-S")
     assert one.peaks() == {**all_modes.peaks(), "model": "4DOF-S"}
-    assert np.array_equal(one.history.nodes, all_modes.history.nodes)
+    assert np.array_equal(one.history.states, all_modes.history.states)
 
 
 def test_the_name_of_the_motion_is_kept():
@@ -53,7 +53,7 @@ def test_what_a_run_leaves_untouched():
     before = MOTION.acceleration.copy()
     one, other = simulate(FRAME, MOTION), simulate(FRAME, MOTION)
     assert one.peaks() == other.peaks()
-    assert np.array_equal(one.history.nodes, other.history.nodes)
+    assert np.array_equal(one.history.states, other.history.states)
     assert np.array_equal(MOTION.acceleration, before)
     assert not MOTION.acceleration.flags.writeable
 
@@ -133,7 +133,7 @@ def test_where_the_ground_comes_to_rest():
         last = np.flatnonzero(np.abs(run.time - MOTION.duration) < 1e-9)
         assert run.ground_acceleration[last].tolist() == [MOTION.acceleration[-1], 0.0]
         assert not run.ground_acceleration[last[1] :].any()
-        assert np.array_equal(run.history.nodes[: last[1]], alone.history.nodes)
+        assert np.array_equal(run.history.states[: last[1]], alone.history.states)
     ended = GroundMotion(np.append(MOTION.acceleration, 0.0), 0.02)
     run = simulate(FRAME, ended, free_vibration=1.0)
     assert np.count_nonzero(np.abs(run.time - ended.duration) < 1e-9) == 1

@@ -124,7 +124,7 @@ def test_threads_change_nothing(output):
         table = simulate_many(STRUCTURES, MOTIONS, MODELS[:2], output, scales, workers=workers)
         if output == "history":
             for one, other in zip(table.pop("response"), serial["response"], strict=True):
-                assert np.array_equal(one.history.nodes, other.history.nodes)
+                assert np.array_equal(one.history.states, other.history.states)
             pd.testing.assert_frame_equal(table, serial.drop(columns="response"), check_exact=True)
         else:
             pd.testing.assert_frame_equal(table, serial, check_exact=True)
@@ -151,7 +151,7 @@ def test_histories_on_request():
         assert isinstance(response, Response)
         motion = MOTIONS[0] if row["motion"] == "first" else MOTIONS[1]
         alone = simulate(STRUCTURES[0], motion, row["model"])
-        assert np.array_equal(response.history.nodes, alone.history.nodes)
+        assert np.array_equal(response.history.states, alone.history.states)
         assert response.motion == row["motion"]
         assert_row(row, response)
         assert response.floors is not None

@@ -148,7 +148,7 @@ def test_reactions_hold_the_tendons_pull():
         response = rf.simulate(p, MOTION, model)
         free = dataclasses.replace(p, tendons=())
         tied = response.history.model
-        without = rf.History(dataclasses.replace(tied, properties=free), response.history.nodes)
+        without = rf.History(dataclasses.replace(tied, properties=free), response.history.states)
         theta, spin = response.rotation, response.rotation_velocity
         force = response.tendon_force.sum(axis=1)
         contact = response.side == 0.0

@@ -29,7 +29,7 @@ def standing():
 def by_equation_22(run):
     """Least ΣF_z of Eq. 22 along a history, between its nodes too where it comes near zero."""
     history = run.history
-    model, nodes = history.model, history.nodes
+    model, nodes = history.model, history.states
     motion, lasting = ClosedForm(model), np.diff(nodes[:, 0]) > 0.0
     weight = model.properties.m_tot * GRAVITY
     least = math.inf

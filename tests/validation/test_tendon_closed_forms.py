@@ -31,7 +31,7 @@ def tied(stiffness: float, force: float = 0.0) -> rf.Restrained:
 def test_a_tendon_of_nothing_changes_nothing(model):
     nothing = rf.Restrained(FRAME, [rf.Tendon(0.0, 0.0), rf.Tendon(0.0, 0.0, 0.5), rf.Tendon(0.0, 0.0, -0.5)])
     plain, held = rf.simulate(FRAME, EL_CENTRO, model), rf.simulate(nothing, EL_CENTRO, model)
-    np.testing.assert_array_equal(plain.history.nodes, held.history.nodes)
+    np.testing.assert_array_equal(plain.history.states, held.history.states)
     assert plain.peaks() | {"tendon_utilisation": None} == held.peaks() | {"tendon_utilisation": None}
 
 
@@ -39,7 +39,7 @@ def test_a_tendon_of_nothing_changes_nothing_of_a_yielding_structure():
     spring = rf.BoucWen(0.05)
     nothing = rf.Restrained(FRAME, rf.Tendon(0.0, 0.0))
     plain, held = (rf.simulate(s, EL_CENTRO, "2DOF-S", bouc_wen=spring) for s in (FRAME, nothing))
-    np.testing.assert_array_equal(plain.history.nodes, held.history.nodes)
+    np.testing.assert_array_equal(plain.history.states, held.history.states)
 
 
 @pytest.mark.parametrize("model", ["MDOF-S", "2DOF-C", "MDOF-C"])

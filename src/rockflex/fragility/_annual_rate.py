@@ -6,22 +6,21 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import float_array, in_range, instance, positive
 from rockflex._errors import InputError
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._lognormal import LognormalFragility
 
-Float = NDArray[np.float64]
-Curve = Callable[[Float], Float]
+Curve = Callable[[Array], Array]
 SMALLEST = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
 
 
 class Fragility(Protocol):
     """Any curve that gives a probability of failure at a measure."""
 
-    def probability(self, im: Float, /) -> Float:
+    def probability(self, im: Array, /) -> Array:
         """Probability of failure, of the shape of `im`."""
         ...
 
@@ -165,7 +164,7 @@ def _probability(fragility: Fragility | Curve) -> Curve:
             "given."
         )
 
-    def checked(im: Float) -> Float:
+    def checked(im: Array) -> Array:
         given: Any = function(im)
         p = float_array(given)
         if p is None:
@@ -186,7 +185,7 @@ def _covered(hazard: HazardCurve, probability: Curve) -> float:
     start, width = np.log(hazard.im[:-1]), np.diff(np.log(hazard.im))
     k, rates = hazard.slopes, hazard.rate[:-1]
 
-    def segments(t: float) -> Float:
+    def segments(t: float) -> Array:
         return probability(np.exp(start + t * width)) * k * width * rates * np.exp(-k * width * t)
 
     parts, _ = quad_vec(segments, 0.0, 1.0, epsabs=1e-300, epsrel=1e-10, norm="max", limit=2000)
@@ -200,7 +199,7 @@ def _below(hazard: HazardCurve, probability: Curve) -> float:
     im, k, rate = float(hazard.im[0]), float(hazard.slopes[0]), float(hazard.rate[0])
     end = min(SMALLEST, 600.0 / k)  # keeps exp(k s) finite
 
-    def tail(s: float) -> Float:
+    def tail(s: float) -> Array:
         return probability(np.array([im * math.exp(-s)])) * k * rate * math.exp(k * s)
 
     total, _ = quad_vec(tail, 0.0, end, epsabs=1e-12 * rate, epsrel=1e-8, limit=2000, points=(0.01 * end, 0.1 * end))

@@ -3,15 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._checks import finite_vector, float_array, in_range
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 
-
-def log_column(name: str, values: ArrayLike, leave_out: str) -> Float:
+def log_column(name: str, values: ArrayLike, leave_out: str) -> Array:
     """Natural logarithm of a column of positive numbers; `leave_out` says which rows to drop otherwise."""
     column = finite_vector(name, values, "one unit")
     bad = np.flatnonzero(column <= 0.0)
@@ -23,7 +21,7 @@ def log_column(name: str, values: ArrayLike, leave_out: str) -> Float:
     return np.log(column)
 
 
-def log_measures(im: ArrayLike, name: str = "im") -> Float:
+def log_measures(im: ArrayLike, name: str = "im") -> Array:
     """Natural logarithm of a column of intensity measures, at least two different ones."""
     column = log_column(name, im, f"Leave those runs out: keep the rows with {name} > 0.")
     if column.size < 2 or np.ptp(column) == 0.0:
@@ -34,7 +32,7 @@ def log_measures(im: ArrayLike, name: str = "im") -> Float:
     return column
 
 
-def flags(name: str, values: ArrayLike) -> Bool:
+def flags(name: str, values: ArrayLike) -> Bools:
     """Boolean array of a column of true and false, or of 1 and 0."""
     numbers = float_array(values)
     if numbers is None:
@@ -60,7 +58,7 @@ def same_length(**columns: NDArray[np.generic]) -> None:
         )
 
 
-def log_at(im: ArrayLike, name: str = "im") -> Float:
+def log_at(im: ArrayLike, name: str = "im") -> Array:
     """Natural logarithm of the positive numbers, of any shape, at which a fit is evaluated."""
     array = float_array(im)
     if array is None:
@@ -73,7 +71,7 @@ def log_at(im: ArrayLike, name: str = "im") -> Float:
     return np.log(array)
 
 
-def fractions(name: str, values: ArrayLike) -> Float:
+def fractions(name: str, values: ArrayLike) -> Array:
     """Numbers strictly between 0 and 1, of any shape."""
     array = float_array(values)
     if array is None or not ((array > 0.0) & (array < 1.0)).all():

@@ -7,6 +7,7 @@ from typing import Any, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_vector, float_array, whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
@@ -14,7 +15,6 @@ from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, same_length
 from rockflex.fragility._resamples import draws
 
-Float = NDArray[np.float64]
 MOST = 1_000_000  # resamples
 NEEDED = 20  # fewest fitted resamples for meaningful quantiles
 
@@ -51,10 +51,10 @@ class BootstrapBand(Value):
     (0.9, 4)
     """
 
-    at: Float
-    estimate: Float
-    low: Float
-    high: Float
+    at: Array
+    estimate: Array
+    low: Array
+    high: Array
     confidence: float
     n: int
     n_failed: int
@@ -73,7 +73,7 @@ def bootstrap_band(
     confidence: float = 0.9,
     n: SupportsIndex = 1000,
     seed: int = 0,
-    curve: Callable[[Any, Float], Any] | None = None,
+    curve: Callable[[Any, Array], Any] | None = None,
 ) -> BootstrapBand:
     """Percentile band of a fitted curve from resamples of the runs, or of the records that they share.
 
@@ -130,7 +130,7 @@ def bootstrap_band(
         raise InputError("curve must return numbers, one for each of `at`, but it returned something else.")
 
     blocks = _blocks(labels)
-    curves: list[Float] = []
+    curves: list[Array] = []
     failures: list[str] = []
     separated = 0
     for drawn in draws(len(blocks), times, whole_number("seed", seed, 0)):
@@ -156,7 +156,7 @@ def bootstrap_band(
     return BootstrapBand(grid, estimate, low, high, wanted, times, len(failures), separated, len(blocks), note)
 
 
-def _curve(fit: Any, grid: Float) -> Any:
+def _curve(fit: Any, grid: Array) -> Any:
     return fit.probability(grid) if hasattr(fit, "probability") else fit.median(grid)
 
 

@@ -4,13 +4,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.fragility._arguments import flags, log_column, same_length
 from rockflex.fragility._lognormal import LognormalFragility
-
-Float = NDArray[np.float64]
 
 
 def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> LognormalFragility:
@@ -58,7 +57,7 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
     return LognormalFragility(math.exp(mean), beta, covariance, x.size, method)
 
 
-def _maximum_likelihood(known: Float, above: Float) -> tuple[float, float]:
+def _maximum_likelihood(known: Array, above: Array) -> tuple[float, float]:
     from scipy.optimize import fmin
     from scipy.stats import CensoredData, norm
 
@@ -73,7 +72,7 @@ def _maximum_likelihood(known: Float, above: Float) -> tuple[float, float]:
     return shift + scale * float(mean), scale * float(beta)
 
 
-def _covariance(known: Float, above: Float, mean: float, beta: float) -> Float:
+def _covariance(known: Array, above: Array, mean: float, beta: float) -> Array:
     """Inverse of the observed information of (mean, beta) of a normal sample with right-censored values."""
     from scipy.special import log_ndtr
 

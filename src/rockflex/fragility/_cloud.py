@@ -4,15 +4,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
 from rockflex.fragility._regression import fit_lines
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,20 +50,20 @@ class CloudFit(Value):
     dispersion: float
     r2: float
     n: int
-    covariance: Float
+    covariance: Array
 
-    def median(self, im: ArrayLike) -> Float:
+    def median(self, im: ArrayLike) -> Array:
         """Median response exp(c1) IM^c2, of the shape of `im`."""
         with np.errstate(over="ignore"):
             return np.exp(self.c1 + self.c2 * log_at(im))
 
-    def quantile(self, im: ArrayLike, p: ArrayLike) -> Float:
+    def quantile(self, im: ArrayLike, p: ArrayLike) -> Array:
         """Response that a fraction `p` of the runs at `im` stay below; `im` and `p` broadcast."""
         from scipy.special import ndtri
 
         return self.median(im) * np.exp(self.dispersion * ndtri(fractions("p", p)))
 
-    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the median, from Student's t with n - 2 degrees of freedom."""
         from scipy.special import stdtrit
 
@@ -74,7 +73,7 @@ class CloudFit(Value):
         with np.errstate(over="ignore"):
             return np.exp(centre - half), np.exp(centre + half)
 
-    def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Float:
+    def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Array:
         """Probability that the response exceeds `limit` at `im`; the two broadcast."""
         from scipy.special import ndtr
 
@@ -117,7 +116,7 @@ def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
     return fit_line(x, y)[0]
 
 
-def fit_line(x: Float, y: Float) -> tuple[CloudFit, Float]:
+def fit_line(x: Array, y: Array) -> tuple[CloudFit, Array]:
     """Least squares through logarithms of equal length; the fit and its residuals."""
     if x.size < 3 or np.ptp(y) == 0.0:
         raise InputError(

@@ -4,9 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rockflex._arrays import Array
 from rockflex._cases import cases
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
@@ -160,7 +158,7 @@ def _fits(
     return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved))
 
 
-def _line(im: NDArray[np.float64], values: NDArray[np.float64]) -> CloudFit | None:
+def _line(im: Array, values: Array) -> CloudFit | None:
     """The fit, or None if it fails."""
     try:
         return fit_cloud(im, values)

@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -37,8 +36,8 @@ class HazardCurve(Value):
     0.00117, 0.321
     """
 
-    im: Float
-    rate: Float
+    im: Array
+    rate: Array
 
     def __init__(self, im: ArrayLike, rate: ArrayLike) -> None:
         measures, rates = finite_vector("im", im, "one unit"), finite_vector("rate", rate, "1/year")
@@ -61,20 +60,20 @@ class HazardCurve(Value):
         object.__setattr__(self, "rate", rates)
 
     @property
-    def slopes(self) -> Float:
+    def slopes(self) -> Array:
         """Exponent k of λ ∝ IM^-k in each segment, shape (n - 1,)."""
         return -np.diff(np.log(self.rate)) / np.diff(np.log(self.im))
 
-    def rate_at(self, im: ArrayLike) -> Float:
+    def rate_at(self, im: ArrayLike) -> Array:
         """Annual rate at which `im` is exceeded, interpolated linearly in logarithms."""
         return np.exp(_between("im", log_at(im), np.log(self.im), np.log(self.rate)))
 
-    def im_at(self, rate: ArrayLike) -> Float:
+    def im_at(self, rate: ArrayLike) -> Array:
         """Measure that is exceeded at an annual `rate`: the uniform-hazard value (2 % in 50 years is 1/2475)."""
         return np.exp(_between("rate", log_at(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])))
 
 
-def _between(name: str, x: Float, points: Float, values: Float) -> Float:
+def _between(name: str, x: Array, points: Array, values: Array) -> Array:
     margin = 1e-12 * (points[-1] - points[0])
     if (x < points[0] - margin).any() or (x > points[-1] + margin).any():
         raise InputError(

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, SolverError
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
@@ -14,8 +15,6 @@ from rockflex.fragility._predictor import Standardised, standard_error
 from rockflex.fragility._regression import Scoring, fit_curves, information
 from rockflex.fragility._unanimous import UnanimousOutcome
 
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 Method = Literal["maximum likelihood", "Firth"]
 CONVERGED = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
 
@@ -52,7 +51,7 @@ class LogisticFit(Value):
 
     b0: float
     b1: float
-    covariance: Float
+    covariance: Array
     n: int
     n_events: int
     method: Method
@@ -72,13 +71,13 @@ class LogisticFit(Value):
         """
         return 1.0 / self.b1 if self.b1 > 0.0 else math.nan
 
-    def probability(self, im: ArrayLike) -> Float:
+    def probability(self, im: ArrayLike) -> Array:
         """Probability of the outcome, of the shape of `im`."""
         from scipy.special import expit
 
         return expit(self.b0 + self.b1 * log_at(im))
 
-    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the probability: delta method on b0 + b1 log IM, then the curve."""
         from scipy.special import expit, ndtri
 
@@ -153,6 +152,6 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     return LogisticFit(b0, b1, covariance, y.size, int(y.sum()), method, separated, " ".join(notes))
 
 
-def _gap(x: Float, y: Bool) -> tuple[float, float]:
+def _gap(x: Array, y: Bools) -> tuple[float, float]:
     below, above = (~y, y) if x[~y].max() <= x[y].min() else (y, ~y)
     return math.exp(x[below].max()), math.exp(x[above].min())

@@ -4,14 +4,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_matrix, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, fractions, log_at
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +45,7 @@ class LognormalFragility(Value):
 
     median: float
     beta: float
-    covariance: Float | None = None
+    covariance: Array | None = None
     n: int = 0
     method: str = "given"
 
@@ -58,19 +57,19 @@ class LognormalFragility(Value):
             matrix.setflags(write=False)
             object.__setattr__(self, "covariance", matrix)
 
-    def probability(self, im: ArrayLike) -> Float:
+    def probability(self, im: ArrayLike) -> Array:
         """Probability of failure, of the shape of `im`."""
         from scipy.special import ndtr
 
         return ndtr(self._score(im))
 
-    def quantile(self, p: ArrayLike) -> Float:
+    def quantile(self, p: ArrayLike) -> Array:
         """Capacity that a fraction `p` stay below, of the shape of `p`."""
         from scipy.special import ndtri
 
         return self.median * np.exp(self.beta * ndtri(fractions("p", p)))
 
-    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the probability: delta method on ln(IM/median)/beta, then Φ.
 
         Raises
@@ -88,6 +87,6 @@ class LognormalFragility(Value):
         half = ndtri(0.5 + 0.5 * checked_confidence(confidence)) * error
         return ndtr(z - half), ndtr(z + half)
 
-    def _score(self, im: ArrayLike) -> Float:
+    def _score(self, im: ArrayLike) -> Array:
         with np.errstate(over="ignore"):  # a nearly zero dispersion makes a step
             return (log_at(im) - math.log(self.median)) / self.beta

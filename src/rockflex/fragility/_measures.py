@@ -3,8 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility._arguments import log_column, log_measures, same_length
@@ -12,8 +13,6 @@ from rockflex.fragility._cloud import fit_line
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Float = NDArray[np.float64]
 
 
 def compare_measures(
@@ -64,7 +63,7 @@ def compare_measures(
     _check_table("measures", measures)
     if isinstance(response, pd.Series):
         _check_rows("response", response.index, measures.index)
-    columns: dict[str, Float] = {}
+    columns: dict[str, Array] = {}
     if covariates is not None:
         _check_table("covariates", covariates)
         _check_rows("covariates", covariates.index, measures.index)
@@ -110,7 +109,7 @@ def _check_rows(name: str, index: "pd.Index[Any]", expected: "pd.Index[Any]") ->
         )
 
 
-def _numbers(name: str, column: "pd.Series[Any]") -> Float:
+def _numbers(name: str, column: "pd.Series[Any]") -> Array:
     try:
         return column.to_numpy(dtype=np.float64, na_value=np.nan)
     except (TypeError, ValueError) as error:
@@ -119,7 +118,7 @@ def _numbers(name: str, column: "pd.Series[Any]") -> Float:
         ) from error
 
 
-def _p_value(covariate: Float, residuals: Float) -> float:
+def _p_value(covariate: Array, residuals: Array) -> float:
     from scipy.stats import linregress
 
     if covariate.size < 3 or np.ptp(covariate) == 0.0:

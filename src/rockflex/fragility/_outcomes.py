@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Self, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array, Bools
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
@@ -18,8 +19,6 @@ from rockflex.fragility._limit_states import ROCKED
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._unanimous import UnanimousOutcome
 
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 FEW = 10  # fewer runs give a note
 
 
@@ -36,7 +35,7 @@ class Note(str):
 
 
 @dataclass(frozen=True, eq=False)
-class OutcomeProbabilities(Value, Sequence[Float]):
+class OutcomeProbabilities(Value, Sequence[Array]):
     """Probabilities of the three outcomes, which sum to 1; a sequence in this order.
 
     Examples
@@ -50,18 +49,18 @@ class OutcomeProbabilities(Value, Sequence[Float]):
     1
     """
 
-    no_rocking: Float
-    rocking: Float
-    overturning: Float
+    no_rocking: Array
+    rocking: Array
+    overturning: Array
 
     def __len__(self) -> int:
         return 3
 
     @overload
-    def __getitem__(self, index: int) -> Float: ...
+    def __getitem__(self, index: int) -> Array: ...
     @overload
-    def __getitem__(self, index: slice) -> tuple[Float, ...]: ...
-    def __getitem__(self, index: int | slice) -> Float | tuple[Float, ...]:
+    def __getitem__(self, index: slice) -> tuple[Array, ...]: ...
+    def __getitem__(self, index: int | slice) -> Array | tuple[Array, ...]:
         return (self.no_rocking, self.rocking, self.overturning)[index]
 
 
@@ -121,7 +120,7 @@ class OutcomeFragility(Value):
         stands = 1.0 - falls
         return OutcomeProbabilities(_weighted(stands, 1.0 - rocks), _weighted(stands, rocks), falls)
 
-    def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Float:
+    def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Array:
         """Probability that the rotation exceeds `limit` (rad) at `im`; the two broadcast.
 
         P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking), all given IM; NaN if a factor that matters
@@ -209,7 +208,7 @@ def fit_outcomes(
     )
 
 
-def _check(rotations: Float, falls: Bool, threshold: float) -> None:
+def _check(rotations: Array, falls: Bools, threshold: float) -> None:
     negative = np.flatnonzero(rotations < 0.0)
     if negative.size:
         raise InputError(
@@ -224,7 +223,7 @@ def _check(rotations: Float, falls: Bool, threshold: float) -> None:
         )
 
 
-def _curve(name: str, im: Float, outcome: Bool, notes: list[Note]) -> LogisticFit | UnanimousOutcome | None:
+def _curve(name: str, im: Array, outcome: Bools, notes: list[Note]) -> LogisticFit | UnanimousOutcome | None:
     if outcome.size == 0:
         notes.append(Note(f"{name}: all runs overturned, so there is nothing to fit.", name))
         return None
@@ -242,7 +241,7 @@ def _curve(name: str, im: Float, outcome: Bool, notes: list[Note]) -> LogisticFi
     return fit
 
 
-def _cloud(im: Float, rotation: Float, notes: list[Note]) -> CloudFit | None:
+def _cloud(im: Array, rotation: Array, notes: list[Note]) -> CloudFit | None:
     try:
         return fit_cloud(im, rotation)
     except InputError as error:
@@ -250,11 +249,11 @@ def _cloud(im: Float, rotation: Float, notes: list[Note]) -> CloudFit | None:
         return None
 
 
-def total_probability(falls: Float, rocks: Float, beyond: Float) -> Float:
+def total_probability(falls: Array, rocks: Array, beyond: Array) -> Array:
     """P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking)."""
     return falls + _weighted(_weighted(1.0 - falls, rocks), beyond)
 
 
-def _weighted(weight: Float, values: Float) -> Float:
+def _weighted(weight: Array, values: Array) -> Array:
     """The product; zero where the weight is zero, even if the value could not be fitted."""
     return np.where(weight == 0.0, 0.0, weight * values)[()]

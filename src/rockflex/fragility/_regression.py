@@ -7,10 +7,8 @@ row of unit weights.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
+from rockflex._arrays import Array, Bools
 
 NEWTON, SCORING, HALVINGS = 100, 1000, 20  # largest numbers of iterations
 STEP = 1e-8  # of the parameters, at which Newton's method has converged
@@ -31,9 +29,9 @@ class Logistic(NamedTuple):
         Whether Firth's penalty was used: the outcomes are separated, or Newton's method did not converge.
     """
 
-    parameters: Float
-    separated: Bool
-    penalised: Bool
+    parameters: Array
+    separated: Bools
+    penalised: Bools
 
 
 class Scoring(NamedTuple):
@@ -56,7 +54,7 @@ class Scoring(NamedTuple):
     augmented: bool = False
 
 
-def fit_curves(x: Float, outcome: Bool, weights: Float, scoring: Scoring) -> Logistic:
+def fit_curves(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Logistic:
     """Fit logistic curves by maximum likelihood, or with Firth's penalty where that has no finite slope.
 
     Firth 1993, Biometrika 80(1), 27-38; Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419.
@@ -80,14 +78,14 @@ def fit_curves(x: Float, outcome: Bool, weights: Float, scoring: Scoring) -> Log
     return Logistic(parameters, separated, penalised)
 
 
-def are_separated(x: Float, outcome: Bool, weights: Float) -> Bool:
+def are_separated(x: Array, outcome: Bools, weights: Array) -> Bools:
     """Whether some value of x separates the outcomes of each row; runs at that value may have either."""
     low_no, high_no = _range(x, (weights > 0.0) & ~outcome)
     low_yes, high_yes = _range(x, (weights > 0.0) & outcome)
     return (high_no <= low_yes) | (high_yes <= low_no)
 
 
-def information(x: Float, weights: Float, parameters: Float) -> Float:
+def information(x: Array, weights: Array, parameters: Array) -> Array:
     """Fisher information of the parameters without the penalty, shape (m, 2, 2)."""
     one, first, second = _Point(x, weights, parameters).moments
     return np.moveaxis(np.array([[one, first], [first, second]]), -1, 0)
@@ -100,21 +98,21 @@ class Lines(NamedTuple):
     of the weights.
     """
 
-    intercept: Float
-    slope: Float
-    mean: Float
-    size: Float
-    sxx: Float
-    syy: Float
-    residual: Float
+    intercept: Array
+    slope: Array
+    mean: Array
+    size: Array
+    sxx: Array
+    syy: Array
+    residual: Array
 
     @property
-    def dispersion(self) -> Float:
+    def dispersion(self) -> Array:
         """Standard deviation of the residuals, with size - 2 degrees of freedom."""
         return np.sqrt(self.residual / (self.size - 2.0))
 
 
-def fit_lines(x: Float, y: Float, weights: Float) -> Lines:
+def fit_lines(x: Array, y: Array, weights: Array) -> Lines:
     """Fit a line to each row of weights; infinite or NaN where fewer than two different x are left."""
     size = weights.sum(axis=1)
     with np.errstate(all="ignore"):
@@ -129,7 +127,7 @@ def fit_lines(x: Float, y: Float, weights: Float) -> Lines:
 class _Point:
     """Logistic curves at some parameters: eta, p, and the entries of the Fisher information."""
 
-    def __init__(self, x: Float, weights: Float, parameters: Float) -> None:
+    def __init__(self, x: Array, weights: Array, parameters: Array) -> None:
         from scipy.special import expit
 
         self.eta = parameters[:, :1] + parameters[:, 1:] * x
@@ -138,16 +136,16 @@ class _Point:
         self.moments = _moments(x, self.each)
 
 
-def _moments(x: Float, each: Float) -> tuple[Float, Float, Float]:
+def _moments(x: Array, each: Array) -> tuple[Array, Array, Array]:
     return each.sum(axis=1), each @ x, each @ x**2
 
 
-def _determinant(moments: tuple[Float, Float, Float]) -> Float:
+def _determinant(moments: tuple[Array, Array, Array]) -> Array:
     one, first, second = moments
     return one * second - first**2
 
 
-def _step(x: Float, residual: Float, moments: tuple[Float, Float, Float]) -> tuple[Float, Float]:
+def _step(x: Array, residual: Array, moments: tuple[Array, Array, Array]) -> tuple[Array, Array]:
     """Score of the residuals, and the step of the parameters that it makes."""
     one, first, second = moments
     a, b = residual.sum(axis=1), residual @ x
@@ -155,7 +153,7 @@ def _step(x: Float, residual: Float, moments: tuple[Float, Float, Float]) -> tup
     return np.column_stack((a, b)), step / _determinant(moments)[:, None]
 
 
-def _newton(x: Float, outcome: Bool, weights: Float) -> Float:
+def _newton(x: Array, outcome: Bools, weights: Array) -> Array:
     """Maximum likelihood of each row; NaN where Newton's method does not converge."""
     b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
     ridge = RIDGE * weights.sum(axis=1)
@@ -171,7 +169,7 @@ def _newton(x: Float, outcome: Bool, weights: Float) -> Float:
     return np.where(converged[:, None] & np.isfinite(b), b, np.nan)
 
 
-def _firth(x: Float, outcome: Bool, weights: Float, scoring: Scoring) -> Float:
+def _firth(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Array:
     """Maximum of the penalised likelihood of each row; NaN where Fisher scoring does not converge."""
     b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
     bound = scoring.score * weights.sum(axis=1)
@@ -199,11 +197,11 @@ def _firth(x: Float, outcome: Bool, weights: Float, scoring: Scoring) -> Float:
     return np.where(converged[:, None], b, np.nan)
 
 
-def _penalised_likelihood(outcome: Bool, weights: Float, at: _Point) -> Float:
+def _penalised_likelihood(outcome: Bools, weights: Array, at: _Point) -> Array:
     likely = np.where(outcome, -np.logaddexp(0.0, -at.eta), -np.logaddexp(0.0, at.eta))
     return (weights * likely).sum(axis=1) + 0.5 * np.log(_determinant(at.moments))
 
 
-def _range(x: Float, held: Bool) -> tuple[Float, Float]:
+def _range(x: Array, held: Bools) -> tuple[Array, Array]:
     """Smallest and largest x of the runs in each row; infinite where there is none."""
     return np.where(held, x, np.inf).min(axis=1), np.where(held, x, -np.inf).max(axis=1)

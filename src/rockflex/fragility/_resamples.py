@@ -5,13 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex.fragility._limit_states import OVERTURNED, ROCKED
 from rockflex.fragility._outcomes import total_probability
 from rockflex.fragility._predictor import Standardised
 from rockflex.fragility._regression import Scoring, fit_curves, fit_lines
 
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 Integer = NDArray[np.int64]
 
 SCORING = Scoring(1e-8)
@@ -23,7 +22,7 @@ def draws(n_groups: int, n: int, seed: int) -> Iterator[Integer]:
     return (generator.integers(n_groups, size=n_groups) for _ in range(n))
 
 
-def resample_weights(groups: Integer, n: int, seed: int) -> Float:
+def resample_weights(groups: Integer, n: int, seed: int) -> Array:
     """How often each run occurs in each resample of its groups, shape (n, n_runs), drawn as in `bootstrap_band`.
 
     Parameters
@@ -48,8 +47,8 @@ def resample_weights(groups: Integer, n: int, seed: int) -> Float:
 
 
 def resampled_exceedance(
-    im: Float, rotation: Float, overturned: Bool, weights: Float, at: Float, limit: float, threshold: float = ROCKED
-) -> Float:
+    im: Array, rotation: Array, overturned: Bools, weights: Array, at: Array, limit: float, threshold: float = ROCKED
+) -> Array:
     """Probability of exceeding a limit at measures `at`, for each row of weights, shape (n, n_at).
 
     The same as `fit_outcomes` of each resample and its `exceedance`; P(OV) where the limit is π/2. NaN where a factor
@@ -76,7 +75,7 @@ def resampled_exceedance(
     return total_probability(falls, rocks, beyond)
 
 
-def _probability(x: Float, outcome: Bool, weights: Float, nodes: Float) -> Float:
+def _probability(x: Array, outcome: Bools, weights: Array, nodes: Array) -> Array:
     """Logistic curve of each row at `nodes`; 0 or 1 where all outcomes are the same, NaN if all x are."""
     from scipy.special import expit
 
@@ -92,7 +91,7 @@ def _probability(x: Float, outcome: Bool, weights: Float, nodes: Float) -> Float
     return found
 
 
-def _beyond(x: Float, y: Float, weights: Float, at: Float, log_limit: float) -> Float:
+def _beyond(x: Array, y: Array, weights: Array, at: Array, log_limit: float) -> Array:
     """P(θ_max > limit | rocking) of each row at `at`; NaN for fewer than three runs or two x or y."""
     from scipy.special import ndtr
 

@@ -4,15 +4,14 @@ import math
 import warnings
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility._arguments import log_measures, same_length
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._predictor import Standardised
-
-Float = NDArray[np.float64]
 
 
 def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike) -> LognormalFragility:
@@ -78,7 +77,7 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
     )
 
 
-def _counts(name: str, values: ArrayLike, least: int) -> Float:
+def _counts(name: str, values: ArrayLike, least: int) -> Array:
     numbers = finite_vector(name, values, "runs")
     bad = np.flatnonzero((numbers != np.rint(numbers)) | (numbers < least))
     if bad.size:
@@ -88,7 +87,7 @@ def _counts(name: str, values: ArrayLike, least: int) -> Float:
     return numbers
 
 
-def _check_overlap(x: Float, events: Float, total: Float) -> None:
+def _check_overlap(x: Array, events: Array, total: Array) -> None:
     with_events, without = x[events > 0], x[events < total]
     if with_events.size == 0 or without.size == 0:
         word, side = ("No run exceeds", "larger") if with_events.size == 0 else ("All runs exceed", "smaller")

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex.fragility._arguments import checked_confidence, log_at
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -50,11 +49,11 @@ class UnanimousOutcome:
         root = (1.0 - checked_confidence(confidence)) ** (1.0 / self.n)
         return root if self.outcome else 1.0 - root
 
-    def probability(self, im: ArrayLike) -> Float:
+    def probability(self, im: ArrayLike) -> Array:
         """1 or 0 as observed, of the shape of `im`."""
         return np.full_like(log_at(im), 1.0 if self.outcome else 0.0)
 
-    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Float, Float]:
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Observed value and its one-sided bound with the given confidence, the same at every `im`."""
         seen, bound = self.probability(im), np.full_like(log_at(im), self.bound(confidence))
         return (bound, seen) if self.outcome else (seen, bound)

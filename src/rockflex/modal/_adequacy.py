@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._checks import instance, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -12,8 +12,6 @@ from rockflex._values import Value
 from rockflex.modal._adequacy_frequencies import frequency_errors
 from rockflex.modal._adequacy_tolerance import AdequacyTolerance
 from rockflex.modal._rocking import RockingProperties
-
-Float = NDArray[np.float64]
 
 _SLACK = 1e-9  # rounding of sums that are equal when all modes are kept
 _LEFT_OUT = (
@@ -69,12 +67,12 @@ class Adequacy(Value):
     array([0.043, 0.008, 0.002, 0.   , 0.   ])
     """
 
-    base_moment: Float
-    base_shear: Float
-    base_moment_left: Float
-    base_shear_left: Float
-    frequency_error: Float
-    reference_error: Float
+    base_moment: Array
+    base_shear: Array
+    base_moment_left: Array
+    base_shear_left: Array
+    frequency_error: Array
+    reference_error: Array
     mass: float
     base_known: bool
     enough: int | None
@@ -102,7 +100,7 @@ class Adequacy(Value):
         return None if self.enough_for_shear is None else _label(self.enough_for_shear)
 
     @property
-    def frequency_bound(self) -> Float:
+    def frequency_bound(self) -> Array:
         """Upper bound (N, 2) of the error of ω*_1 and ω*_2 with k modes, relative to the whole structure."""
         return (1.0 + self.frequency_error) * (1.0 + self.reference_error) - 1.0
 
@@ -205,7 +203,7 @@ def _mass_above(p: RockingProperties, base_mass: float) -> float:
     return mass
 
 
-def _first(good: NDArray[np.bool_]) -> int | None:
+def _first(good: Bools) -> int | None:
     return int(np.argmax(good)) + 1 if good.any() else None
 
 

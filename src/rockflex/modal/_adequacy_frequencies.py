@@ -4,15 +4,13 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted import lowest_uplifted
 
-Float = NDArray[np.float64]
 
-
-def frequency_errors(p: RockingProperties, missing: float) -> tuple[Float, Float]:
+def frequency_errors(p: RockingProperties, missing: float) -> tuple[Array, Array]:
     """Return `Adequacy.frequency_error` (N, 2) and `reference_error` (2,), the larger values of the two pivots.
 
     Parameters
@@ -27,7 +25,7 @@ def frequency_errors(p: RockingProperties, missing: float) -> tuple[Float, Float
     return largest, reference
 
 
-def _about(p: RockingProperties, missing: float, side: int) -> tuple[Float, Float]:
+def _about(p: RockingProperties, missing: float, side: int) -> tuple[Array, Array]:
     found = np.full((p.n_modes, 2), np.nan)
     for k in range(1, p.n_modes + 1):
         found[k - 1, :k] = lowest_uplifted(p.truncated(k), 2, side)
@@ -37,7 +35,7 @@ def _about(p: RockingProperties, missing: float, side: int) -> tuple[Float, Floa
     return np.maximum(found / found[-1] - 1.0, 0.0), reference
 
 
-def _lowest(p: RockingProperties, inertia: float, side: int) -> Float:
+def _lowest(p: RockingProperties, inertia: float, side: int) -> Array:
     """Return the first two uplifted frequencies if the missing `inertia` in kg m² moves with the last mode."""
     # Two modes with the same frequency: one has the inertia of both, and the rotation does not excite the other.
     if p.n_modes == 1:  # the latter is the lowest

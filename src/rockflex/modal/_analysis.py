@@ -4,15 +4,14 @@ from dataclasses import dataclass, replace
 from typing import SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import mode_count
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
 from rockflex._values import Value
-
-Float = NDArray[np.float64]
 
 # A participation below this fraction of the largest possible one is rounding error of the eigenvectors.
 NO_PARTICIPATION = 1e-10
@@ -57,12 +56,12 @@ class ModalProperties(Value):
     array([10.54, -3.61])
     """
 
-    omega: Float
-    effective_mass: Float
-    effective_height: Float
-    participation: Float
-    shapes: Float
-    heights: Float
+    omega: Array
+    effective_mass: Array
+    effective_height: Array
+    participation: Array
+    shapes: Array
+    heights: Array
 
     @property
     def n_modes(self) -> int:
@@ -70,7 +69,7 @@ class ModalProperties(Value):
         return self.omega.size
 
     @property
-    def period(self) -> Float:
+    def period(self) -> Array:
         """Natural periods T_n = 2π/ω_n in s, shape (n,)."""
         return 2.0 * np.pi / self.omega
 
@@ -162,12 +161,12 @@ def modal_properties(
     )
 
 
-def _mass_normalised_modes(mass: Float, stiffness: Float) -> tuple[Float, Float]:
+def _mass_normalised_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     factor = np.linalg.cholesky(stiffness).T
     if mass.ndim == 1:
         root = np.sqrt(mass)
         _, omega, vectors = np.linalg.svd(factor / root)
-        shapes: Float = vectors.T / root[:, None]
+        shapes: Array = vectors.T / root[:, None]
     else:
         root = np.linalg.cholesky(mass)
         _, omega, vectors = np.linalg.svd(np.linalg.solve(root, factor.T).T)
@@ -180,7 +179,7 @@ def _mass_normalised_modes(mass: Float, stiffness: Float) -> tuple[Float, Float]
     return omega[::-1].copy(), shapes[:, ::-1]
 
 
-def normalising_ordinates(shapes: Float) -> Float:
+def normalising_ordinates(shapes: Array) -> Array:
     """Return the divisor of each mode: its top ordinate, or its largest ordinate if the top hardly moves."""
     magnitude = np.abs(shapes)
     largest = shapes[magnitude.argmax(axis=0), np.arange(shapes.shape[1])]

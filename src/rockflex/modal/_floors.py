@@ -4,12 +4,11 @@ from dataclasses import dataclass
 from typing import SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import dimensions, finite_matrix, finite_vector, mode_count
 from rockflex._values import Value
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -35,9 +34,9 @@ class FloorModes(Value):
         If a value is not finite, or the shapes do not match.
     """
 
-    heights: Float
-    displacement: Float
-    force: Float
+    heights: Array
+    displacement: Array
+    force: Array
 
     def __init__(self, heights: ArrayLike, displacement: ArrayLike, force: ArrayLike) -> None:
         h = finite_vector("floors.heights", heights, "m")

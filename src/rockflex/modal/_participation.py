@@ -6,6 +6,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import mode_count
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -13,8 +14,6 @@ from rockflex._values import Value
 from rockflex.modal._analysis import NO_PARTICIPATION, ModalProperties, normalising_ordinates
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._rocking import RockingProperties
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +48,12 @@ class MassNormalisedModes(Value):
         Rotary inertia in kg m² that rotates with the base but is not included in the modes.
     """
 
-    omega: Float
-    shear: Float
-    moment: Float
-    heights: Float
-    ordinates: Float
-    forces: Float | None
+    omega: Array
+    shear: Array
+    moment: Array
+    heights: Array
+    ordinates: Array
+    forces: Array | None
     mass: float
     first_moment: float
     inertia: float
@@ -83,7 +82,7 @@ class MassNormalisedModes(Value):
 
     @computable("The inertia of the structure with this base")
     def rocking(
-        self, base_mass: float, half_width: float, zeta: Float, n_modes: SupportsIndex | None
+        self, base_mass: float, half_width: float, zeta: Array, n_modes: SupportsIndex | None
     ) -> RockingProperties:
         """Return the parameters on a base that can rock; `zeta` contains one damping ratio per mode.
 

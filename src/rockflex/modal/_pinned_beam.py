@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from typing import Literal, SupportsIndex
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import MOST_MODES, one_of, positive, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +38,8 @@ class PinnedBeam(Value):
     """
 
     rotation_ratio: float
-    ratio: Float
-    roots: Float
+    ratio: Array
+    roots: Array
 
 
 def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_modes: SupportsIndex = 2) -> PinnedBeam:

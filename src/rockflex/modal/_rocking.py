@@ -7,8 +7,9 @@ from functools import cached_property
 from typing import SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import damping_ratios, finite_vector, instance, positive, whole_number
 from rockflex._computable import computable
 from rockflex._constants import GRAVITY
@@ -26,8 +27,6 @@ from rockflex.modal._rocking_checks import (
     tendons_within,
 )
 from rockflex.modal._tendons import Tendon, balanced, tendon_set
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -90,15 +89,15 @@ class RockingProperties(Value):
     3060720
     """
 
-    omega: Float
-    effective_mass: Float
-    effective_height: Float
-    top_ordinate: Float
+    omega: Array
+    effective_mass: Array
+    effective_height: Array
+    top_ordinate: Array
     i_theta: float
     l0r: float
     m_tot: float
     half_width: float
-    zeta: Float
+    zeta: Array
     translational_inertia: float
     floors: FloorModes | None = field(repr=False)
     tendons: tuple[Tendon, ...]
@@ -164,7 +163,7 @@ class RockingProperties(Value):
         return self.omega.size
 
     @property
-    def mass_left_out(self) -> Float:
+    def mass_left_out(self) -> Array:
         """Parts of Σ m_i, Σ m_i h_i and Σ m_i h_i² that the n modes leave out, in kg, kg m and kg m², shape (3,).
 
         The sums exclude the base. Stiff modes that are left out move with the base, and so does this mass. The first

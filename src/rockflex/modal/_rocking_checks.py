@@ -1,8 +1,8 @@
 """Checks that the parameters of a rocking structure are physically possible."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import finite, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -10,13 +10,11 @@ from rockflex.modal._floors import FloorModes
 from rockflex.modal._pivot import pivot_inertia
 from rockflex.modal._tendons import Tendon
 
-Float = NDArray[np.float64]
-
 SLACK = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
 PRINTED = 1e-5  # of I_θ: tolerance for values printed to six digits
 
 
-def check_modes(modes: dict[str, Float]) -> None:
+def check_modes(modes: dict[str, Array]) -> None:
     omega, effective_mass = modes["omega"], modes["effective_mass"]
     for name, values in modes.items():
         if values.size != omega.size:
@@ -43,7 +41,7 @@ def check_modes(modes: dict[str, Float]) -> None:
 
 
 @computable("The inertia of the structure on this eccentric base")
-def checked_eccentricity(modes: dict[str, Float], scalars: dict[str, float], inertia: float, given: float) -> float:
+def checked_eccentricity(modes: dict[str, Array], scalars: dict[str, float], inertia: float, given: float) -> float:
     e, b = finite("eccentricity", given, "m") + 0.0, scalars["half_width"]  # + 0.0 takes the sign from -0.0
     if not abs(e) < b:
         raise InputError(
@@ -84,7 +82,7 @@ def checked_top_height(floors: FloorModes | None, given: float | None) -> float 
     return None if floors is None else float(floors.heights.max())
 
 
-def checked_base_mass(modes: dict[str, Float], m_tot: float, inertia: float, given: float | None) -> float | None:
+def checked_base_mass(modes: dict[str, Array], m_tot: float, inertia: float, given: float | None) -> float | None:
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())
     if given is not None:
@@ -101,7 +99,7 @@ def checked_base_mass(modes: dict[str, Float], m_tot: float, inertia: float, giv
 
 
 @computable("The inertia of the modes, from effective_mass and effective_height,")
-def checked_inertia(modes: dict[str, Float], scalars: dict[str, float], given: float | None) -> float:
+def checked_inertia(modes: dict[str, Array], scalars: dict[str, float], given: float | None) -> float:
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())
     modal_inertia = float(mass @ modes["effective_height"] ** 2)

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from typing import SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import float_array, instance
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -16,7 +17,6 @@ from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted_damping import uplifted_damping
 
-Float = NDArray[np.float64]
 HIGHEST = 1e60  # rad/s, whose fourth power still fits in double precision
 
 _BESIDE = (1e-13, 1e-11, 1e-9)  # relative shifts from a root: the first that gives a regular matrix is used
@@ -58,13 +58,13 @@ class UpliftedModes(Value):
     (array([17.45, 43.9 ]), array([0.024, 0.131]))
     """
 
-    omega: Float
-    ratio: Float
-    damping_ratio: Float
-    shapes: Float
+    omega: Array
+    ratio: Array
+    damping_ratio: Array
+    shapes: Array
     growth_rate: float
     sway_rate: float
-    growth_shape: Float
+    growth_shape: Array
 
 
 @computable("The uplifted modes of the given properties")
@@ -132,7 +132,7 @@ def uplifted_modes(
 
 
 @computable("The uplifted frequencies of the given properties")
-def lowest_uplifted(properties: RockingProperties, count: int, side: int | None = None) -> Float:
+def lowest_uplifted(properties: RockingProperties, count: int, side: int | None = None) -> Array:
     """Return at most the first `count` of `UpliftedModes.omega`, which is faster than computing all."""
     return np.sqrt(_lowest(properties, _pivot(properties, side), min(count, properties.n_modes))[0][1:])
 
@@ -141,7 +141,7 @@ def _pivot(p: RockingProperties, side: int | None) -> Pivot:
     return p.weaker_pivot if side is None else p.pivot(side)
 
 
-def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Float, Float]:
+def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Array, Array]:
     """Return ω² (v + 1,) and (θ, D) (n + 1, v + 1) of the rotation and the lowest v vibrations."""
     # With D_n √m*_n as coordinates the lower block of the mass matrix is the identity.
     root = np.sqrt(p.effective_mass)
@@ -163,7 +163,7 @@ def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Float,
     return squares, motions
 
 
-def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Float) -> Float:
+def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Array) -> Array:
     """Return the modal damping matrix of Eq. 23 for motions (θ, D) as columns, each scaled to unit modal mass."""
     root = np.sqrt(p.effective_mass)
     arm = root * p.effective_height
@@ -173,7 +173,7 @@ def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Float) -> Float:
     return share.T @ ((2.0 * p.zeta * p.omega)[:, None] * share)
 
 
-def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> tuple[Float, Float]:
+def _polished(stiffness: Array, mass: Array, squares: Array, motions: Array) -> tuple[Array, Array]:
     """Restore the digits that small roots lost to rounding of the largest, by one step of inverse iteration each."""
     moved = motions
     for shift in _BESIDE:
@@ -188,7 +188,7 @@ def _polished(stiffness: Float, mass: Float, squares: Float, motions: Float) -> 
     return work / np.einsum("in,in->n", moved, mass @ moved), moved
 
 
-def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side: int | None = None) -> Float:
+def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side: int | None = None) -> Array:
     """Return k_r - ω² I_θ - Σ_n ω⁴ m*_n h*_n²/(ω_n² - ω²), whose zeros are the uplifted frequencies.
 
     k_r is the `rocking_stiffness` of the pivot, which is -L_0^r g without tendons, and I_θ the inertia about it.

@@ -1,12 +1,11 @@
 """Damping of the vibration about one pivot, from complex eigenvalues."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
+from rockflex._arrays import Array
 
 
-def uplifted_damping(squares: Float, damping: Float) -> Float:
+def uplifted_damping(squares: Array, damping: Array) -> Array:
     """Return ζ* (n,) of the vibrations of q'' + C q' + Λ q = 0, without the rotation.
 
     Parameters

@@ -8,12 +8,8 @@ them the same accuracy.
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
-
-Array = NDArray[np.float64]
 
 EXTRA = 4  # components in addition to those of the simplified models
 

@@ -1,8 +1,8 @@
 """Accelerations and values of quantities at the states of a history."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._kernel import python_kernel
 from rockflex.models._field import Field, field_rates
 from rockflex.models._label import RockingModel
@@ -10,8 +10,6 @@ from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import LINEAR, observe_all
 from rockflex.models._quantities import Quantities, rows_of
-
-Array = NDArray[np.float64]
 
 
 def acting_side(states: Array) -> Array:
@@ -66,7 +64,7 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
     return values
 
 
-def _by_side(model: RockingModel, states: Array, side: Array) -> list[tuple[NDArray[np.bool_], tuple[int, ...], Array]]:
+def _by_side(model: RockingModel, states: Array, side: Array) -> list[tuple[Bools, tuple[int, ...], Array]]:
     """Return for each side a mask of its states, its phase, and the vectors that its rows multiply."""
     moving = states[:, HEADER : HEADER + model.layout.moving]
     vector = np.column_stack((moving, states[:, GROUND], np.ones(side.size)))

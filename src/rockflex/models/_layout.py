@@ -2,10 +2,7 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from rockflex._arrays import Array
 
 TIME, SIDE, GROUND, HEADER = 0, 1, 2, 3  # columns that precede the state vector in a history, and their number
 

@@ -3,8 +3,8 @@
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
@@ -13,8 +13,6 @@ from rockflex.models._elements import CLOSED, LEFT, RIGHT, Element, border_of, e
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
 from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key
-
-Array = NDArray[np.float64]
 
 QUARTER_TURN = 0.5 * np.pi
 

@@ -3,14 +3,12 @@
 from collections.abc import Callable, Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
 from rockflex.models._quantities import Quantities, Share, collected, joined
-
-Array = NDArray[np.float64]
 
 
 def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:

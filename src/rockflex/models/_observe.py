@@ -7,13 +7,9 @@ rocks, displacements are nonlinear in the rotation, and forces depend on acceler
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rockflex._arrays import Array
 from rockflex._kernel import kernel, python_kernel
 from rockflex.models._field import ARM, MASS, PULL, Field, pivot_at
-
-Array = NDArray[np.float64]
 
 LINEAR = 0  # the row itself
 SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row gives its u (Eq. 3)

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from rockflex._arrays import Array
 
 FREEDOMS = ("rotation",)  # of the base, in the order of the borders
 

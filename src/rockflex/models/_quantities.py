@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._arrays import Array
 from rockflex.models._elements import CLOSED, RIGHT
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
-
-Array = NDArray[np.float64]
 
 Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by name
 

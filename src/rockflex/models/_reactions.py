@@ -6,16 +6,14 @@ With u_i from the modes kept, Σ m_i u_i = Σ m*_n D_n, so the sums over the mas
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models._kept import acting_side, rates_of
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
-
-Array = NDArray[np.float64]
 
 
 class Reactions(NamedTuple):
@@ -25,35 +23,35 @@ class Reactions(NamedTuple):
     vertical: Array
 
 
-def reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
+def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """Return Σ m_i (a + x''_i), Eq. 21, and Σ m_i (g + z''_i), Eq. 22 with the sign corrected, plus tendon forces.
 
     In the simplified models, consistent with Eq. 23 for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
-    m_tot (g + s B θ''). `nodes` as in `History`; `rates` contains D''_n and θ'' at each node, shape (n, N + 1).
+    m_tot (g + s B θ''). `states` as in `History`; `rates` contains D''_n and θ'' at each state, shape (n, N + 1).
     """
     if model.complete:
-        return _of_large_rotations(model, nodes, rates)
+        return _of_large_rotations(model, states, rates)
     p, layout = model.properties, model.layout
     turn, push = rates[:, -1], rates[:, :-1] @ p.effective_mass
-    side, rotation = acting_side(nodes), layout.of(nodes, layout.rotation)
+    side, rotation = acting_side(states), layout.of(states, layout.rotation)
     vertical = np.full(side.size, p.resting_reaction)
     for each in (1, -1):
         pivot, on = p.pivot(each), side == each
         vertical[on] += each * (p.m_tot * pivot.arm * turn[on] + pivot.axial_stiffness_moment * rotation[on])
-    return Reactions(p.m_tot * nodes[:, GROUND] + p.l0r * turn + push, vertical)
+    return Reactions(p.m_tot * states[:, GROUND] + p.l0r * turn + push, vertical)
 
 
-def printed_reactions(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
+def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """Return Eqs. 21 and 22 as printed, with Σ m_i (-g + z''_i), for every model, plus tendon forces."""
-    x, z = _of_large_rotations(model, nodes, rates)
+    x, z = _of_large_rotations(model, states, rates)
     return Reactions(x, z - 2.0 * model.properties.m_tot * GRAVITY)
 
 
-def _of_large_rotations(model: RockingModel, nodes: Array, rates: Array) -> Reactions:
+def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Reactions:
     field = NonlinearModel(model.label, model.properties, model.lifts, model.law).field()
-    side, motion = acting_side(nodes), np.ascontiguousarray(nodes[:, HEADER:])
-    moving = np.ascontiguousarray(rates_of(model, nodes, rates))
+    side, motion = acting_side(states), np.ascontiguousarray(states[:, HEADER:])
+    moving = np.ascontiguousarray(rates_of(model, states, rates))
     x, z = np.zeros(side.size), np.zeros(side.size)
     for kind, values in ((HORIZONTAL, x), (VERTICAL, z)):
-        observe_all(field, kind, values, 0.0, 0.0, side, nodes[:, GROUND].copy(), motion, moving)
+        observe_all(field, kind, values, 0.0, 0.0, side, states[:, GROUND].copy(), motion, moving)
     return Reactions(x, z)

@@ -1,15 +1,13 @@
 """Stored energies and floor accelerations, for small and for large rotations."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import FloorModes
 from rockflex.models._kept import accelerations, acting_side
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, SIDE
-
-Array = NDArray[np.float64]
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:

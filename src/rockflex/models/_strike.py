@@ -4,15 +4,13 @@ import ctypes
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import finite, finite_vector
 from rockflex._errors import InputError
 from rockflex._kernel import Callback, kernel
 from rockflex.modal import RockingProperties
 from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution, VVELComplete, VVELSimplified
-
-Array = NDArray[np.float64]
 
 SHARED, SCALED, CALLED = 0, 1, 2  # kinds of law: Eq. 25 or a restitution; scaled to Eq. 19; user-defined
 

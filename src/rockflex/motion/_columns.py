@@ -4,16 +4,14 @@ import re
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._direction import direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number
-
-Float = NDArray[np.float64]
 
 SPELLINGS = {
     "g": "g",
@@ -164,7 +162,7 @@ def _check_seconds(file: Path, label: str) -> None:
         )
 
 
-def _step(file: Path, times: Float, lines: list[int], dt: float | None) -> float:
+def _step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
     """Return the common time step in s."""
     if times.size < 3:
         raise InputError(f"{file} has {times.size} samples, but a record needs at least 3.")

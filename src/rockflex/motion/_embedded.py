@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import one_of
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
@@ -101,20 +102,20 @@ def _loaded(name: str) -> Suite:
     return Suite((_motion(entry, samples) for entry, samples in read_embedded(name)), name)
 
 
-def read_embedded(name: str) -> list[tuple[dict[str, Any], NDArray[np.float64]]]:
+def read_embedded(name: str) -> list[tuple[dict[str, Any], Array]]:
     """Return the metadata and the samples in g, shape (npts,), of the records of a suite, in order."""
     entries: list[dict[str, Any]] = json.loads((DATA / f"{name}.json").read_text("utf-8"))["records"]
     with np.load(DATA / f"{name}.npz") as archive:
         return [(entry, decode(archive[entry["name"]])) for entry in entries]
 
 
-def decode(rows: NDArray[np.uint8]) -> NDArray[np.float64]:
+def decode(rows: NDArray[np.uint8]) -> Array:
     """Return samples from the five byte rows (four of the integers, one of the exponents)."""
     integers = np.ascontiguousarray(rows[:4].T).view("<i4")[:, 0]
     return integers / POWERS[rows[4]]
 
 
-def encode(samples: NDArray[np.float64], digits: int) -> NDArray[np.uint8]:
+def encode(samples: Array, digits: int) -> NDArray[np.uint8]:
     """Return byte rows from samples that are decimals with at most `digits` (up to 9) significant digits."""
     with np.errstate(divide="ignore"):
         magnitude = np.floor(np.log10(np.abs(samples)))
@@ -127,6 +128,6 @@ def encode(samples: NDArray[np.float64], digits: int) -> NDArray[np.uint8]:
     return rows
 
 
-def _motion(entry: dict[str, Any], samples: NDArray[np.float64]) -> GroundMotion:
+def _motion(entry: dict[str, Any], samples: Array) -> GroundMotion:
     info = RecordInfo(**entry["info"])
     return GroundMotion(samples * GRAVITY, entry["dt"], name=entry["name"], metadata=info)

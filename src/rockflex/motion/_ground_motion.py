@@ -5,8 +5,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite, finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -16,8 +17,6 @@ from rockflex.motion._record_info import RecordInfo
 
 if TYPE_CHECKING:
     from rockflex.motion._spectrum import ResponseSpectrum
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -56,7 +55,7 @@ class GroundMotion(Value):
     1.909
     """
 
-    acceleration: Float
+    acceleration: Array
     dt: float
     name: str = ""
     metadata: RecordInfo | None = None
@@ -87,7 +86,7 @@ class GroundMotion(Value):
         )
 
     @property
-    def time(self) -> Float:
+    def time(self) -> Array:
         """Time of the samples in s, shape (n,)."""
         return self.dt * np.arange(self.acceleration.size, dtype=np.float64)
 
@@ -97,12 +96,12 @@ class GroundMotion(Value):
         return (self.acceleration.size - 1) * self.dt
 
     @property
-    def velocity(self) -> Float:
+    def velocity(self) -> Array:
         """Ground velocity at the samples in m/s, shape (n,): the exact integral, starting from rest."""
         return _integrals.velocity(self.acceleration, self.dt)
 
     @property
-    def displacement(self) -> Float:
+    def displacement(self) -> Array:
         """Ground displacement at the samples in m, shape (n,): the exact second integral, starting from rest."""
         return _integrals.displacement(self.acceleration, self.dt)
 
@@ -278,5 +277,5 @@ class GroundMotion(Value):
         """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""
         return float(self.spectrum([period], damping_ratio).sa[0])
 
-    def _with(self, acceleration: Float, dt: float | None = None) -> "GroundMotion":
+    def _with(self, acceleration: Array, dt: float | None = None) -> "GroundMotion":
         return GroundMotion(acceleration, self.dt if dt is None else dt, self.name, self.metadata)

@@ -3,28 +3,26 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
-Float = NDArray[np.float64]
 
-
-def velocity(a: Float, dt: float) -> Float:
+def velocity(a: Array, dt: float) -> Array:
     """Velocity at the samples, from rest: the trapezoidal rule, exact for a linear acceleration."""
     return _cumulative(0.5 * dt * (a[:-1] + a[1:]))
 
 
-def displacement(a: Float, dt: float) -> Float:
+def displacement(a: Array, dt: float) -> Array:
     """Displacement at the samples, from rest: Δd = v₀ dt + (2 a₀ + a₁) dt²/6."""
     v = velocity(a, dt)
     return _cumulative(dt * v[:-1] + dt**2 / 6 * (2 * a[:-1] + a[1:]))
 
 
-def peak_velocity(a: Float, dt: float) -> float:
+def peak_velocity(a: Array, dt: float) -> float:
     """Return the largest |v|; between samples v has an extreme where a crosses zero."""
     v = velocity(a, dt)
     k = np.flatnonzero(np.sign(a[:-1]) * np.sign(a[1:]) < 0)
@@ -32,7 +30,7 @@ def peak_velocity(a: Float, dt: float) -> float:
     return float(np.max(np.abs(np.concatenate((v, inside)))))
 
 
-def peak_displacement(a: Float, dt: float) -> float:
+def peak_displacement(a: Array, dt: float) -> float:
     """Return the largest |d|; between samples d has an extreme at the zeros of the quadratic v."""
     v, d = velocity(a, dt), displacement(a, dt)
     # With x = t/dt in [0, 1]: v = c + b x + q x².
@@ -46,12 +44,12 @@ def peak_displacement(a: Float, dt: float) -> float:
     return float(max(np.max(np.abs(d)), np.max(np.abs(extremes))))
 
 
-def arias_intensity(a: Float, dt: float) -> float:
+def arias_intensity(a: Array, dt: float) -> float:
     """Return π/(2g) ∫a² dt over the record (Arias 1970)."""
     return math.pi / (2 * GRAVITY) * float(np.sum(_energies(a, dt)))
 
 
-def cumulative_absolute_velocity(a: Float, dt: float) -> float:
+def cumulative_absolute_velocity(a: Array, dt: float) -> float:
     """Return ∫|a| dt over the record; an interval in which `a` changes sign is split at the zero."""
     left, right = a[:-1], a[1:]
     total = np.abs(left) + np.abs(right)
@@ -61,7 +59,7 @@ def cumulative_absolute_velocity(a: Float, dt: float) -> float:
     return float(np.sum(0.5 * dt * ratio))
 
 
-def significant_duration(a: Float, dt: float, low: float, high: float) -> float:
+def significant_duration(a: Array, dt: float, low: float, high: float) -> float:
     """Time between the first instants at which the fractions `low` and `high` of ∫a² dt are reached."""
     if not 0 <= real_or_nan(low) < real_or_nan(high) <= 1:
         raise InputError(
@@ -74,7 +72,7 @@ def significant_duration(a: Float, dt: float, low: float, high: float) -> float:
     return _time_of(high * energy[-1], energy, a, dt) - _time_of(low * energy[-1], energy, a, dt)
 
 
-def _time_of(target: float, energy: Float, a: Float, dt: float) -> float:
+def _time_of(target: float, energy: Array, a: Array, dt: float) -> float:
     k = int(np.searchsorted(energy, target))
     if k == 0:
         return 0.0
@@ -88,10 +86,10 @@ def _time_of(target: float, energy: Float, a: Float, dt: float) -> float:
     return (k - 1) * dt + min(step, dt)
 
 
-def _energies(a: Float, dt: float) -> Float:
+def _energies(a: Array, dt: float) -> Array:
     left, right = a[:-1], a[1:]
     return dt / 3 * (left**2 + left * right + right**2)
 
 
-def _cumulative(increments: Float) -> Float:
+def _cumulative(increments: Array) -> Array:
     return np.concatenate((np.zeros(1), np.cumsum(increments)))

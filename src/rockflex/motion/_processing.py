@@ -2,18 +2,17 @@
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import positive, real_or_nan, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._integrals import velocity
 
-Float = NDArray[np.float64]
 FINEST = 10_000  # largest number of new steps per old step
 
 
-def refine(a: Float, k: int) -> Float:
+def refine(a: Array, k: int) -> Array:
     """Split every interval into `k` collinear ones."""
     k = whole_number("k", k, 1, FINEST)
     inside = a[:-1, None] + np.diff(a)[:, None] * (np.arange(k) / k)
@@ -35,7 +34,7 @@ def refinement_of(old: float, new: float) -> int:
     )
 
 
-def baseline_correct(a: Float, dt: float, degree: int) -> Float:
+def baseline_correct(a: Array, dt: float, degree: int) -> Array:
     """Remove the polynomial whose exact integral fits the velocity best (least squares at the samples)."""
     degree = whole_number("degree", degree, 0)
     if degree > a.size - 2:
@@ -50,7 +49,7 @@ def baseline_correct(a: Float, dt: float, degree: int) -> Float:
     return a - basis @ weights
 
 
-def band_pass(a: Float, dt: float, low: float, high: float, order: int) -> Float:
+def band_pass(a: Array, dt: float, low: float, high: float, order: int) -> Array:
     """Butterworth filter run forwards and backwards: no phase shift, twice the order."""
     from scipy.signal import butter, sosfiltfilt
 

@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_vector, in_range
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.motion._spectrum_kernel import oscillator_peaks
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,19 +34,19 @@ class ResponseSpectrum(Value):
         Pseudo-acceleration (2π/T)² sd in m/s².
     """
 
-    period: Float
+    period: Array
     damping_ratio: float
-    sd: Float
-    sv: Float
-    sa: Float
+    sd: Array
+    sv: Array
+    sa: Array
 
     @property
-    def psv(self) -> Float:
+    def psv(self) -> Array:
         """Pseudo-velocity (2π/T) sd in m/s, shape (m,); zero at a period of zero."""
         return np.divide(2 * np.pi * self.sd, self.period, out=np.zeros_like(self.sd), where=self.period > 0)
 
 
-def response_spectrum(acceleration: Float, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
+def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
     """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
     period = finite_vector("periods", periods, "s")
     bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))

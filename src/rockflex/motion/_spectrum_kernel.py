@@ -2,9 +2,7 @@
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
 
 
@@ -108,7 +106,7 @@ def _peaks_inside(
 
 
 @kernel
-def oscillator_peaks(acceleration: NDArray[np.float64], dt: float, omega: float, zeta: float) -> tuple[float, float]:
+def oscillator_peaks(acceleration: Array, dt: float, omega: float, zeta: float) -> tuple[float, float]:
     """Largest |u| and |u'| of u'' + 2ζω u' + ω² u = -a(t), from rest, over the record."""
     rate, impulse, step, ramp = unit_responses(omega, zeta, dt)
     keep = rate + 2 * zeta * omega * impulse

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import check_regular
@@ -62,9 +62,7 @@ def number(token: str, file: str | Path, line: int) -> float:
     raise InputError(f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}")
 
 
-def build_motion(
-    file: Path, values: NDArray[np.float64], units: str, dt: float, info: RecordInfo, remedy: str
-) -> GroundMotion:
+def build_motion(file: Path, values: Array, units: str, dt: float, info: RecordInfo, remedy: str) -> GroundMotion:
     """Convert to m/s² and reject amplitudes that indicate a wrong unit."""
     acceleration = values * UNITS[units]
     motion = _named(file, acceleration, dt, info)
@@ -80,7 +78,7 @@ def build_motion(
     return motion
 
 
-def _named(file: Path, acceleration: NDArray[np.float64], dt: float, info: RecordInfo) -> GroundMotion:
+def _named(file: Path, acceleration: Array, dt: float, info: RecordInfo) -> GroundMotion:
     try:
         return GroundMotion(acceleration, dt, name=file.stem, metadata=info)
     except InputError as error:

@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._cases import cases
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -197,7 +197,7 @@ def _draw(axes: Axes, cloud: _Cloud, quantity: str, measure: str, look: Look, ma
         )  # fmt: skip
 
 
-def _mark_fallen(axes: Axes, im: NDArray[np.float64], look: Look, rank: int) -> None:
+def _mark_fallen(axes: Axes, im: Array, look: Look, rank: int) -> None:
     """Crosses of the runs that overturned, in the model's own row at the top."""
     axes.plot(
         im, np.full(im.size, 0.97 - _CROSSES * rank), "x", color=look.color, markersize=2.6, markeredgewidth=0.6,

@@ -5,16 +5,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal
 
 if TYPE_CHECKING:
     from rockflex.response import History, Response
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +50,7 @@ class Curve:
 
     @property
     def balance(self) -> Array:
-        """The same, on the side of the rotation at each node."""
+        """The same, on the side of the rotation at each state."""
         p = self.history.model.properties
         return np.where(self.history.rotation < 0.0, p.pivot(-1).balance_rotation, p.pivot(1).balance_rotation)
 

@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 from rockflex._errors import InputError
 from rockflex.fragility import OVERTURNED, OVERTURNING, beyond, symbol_of_nominal
@@ -18,7 +17,6 @@ from rockflex.plot._units import short
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 _NEEDED = (
     "model",

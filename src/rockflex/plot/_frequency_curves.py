@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, frequency_equation, uplifted_modes
@@ -21,7 +21,6 @@ from rockflex.study import RockingStructure, properties_of
 if TYPE_CHECKING:
     from rockflex.modal import UpliftedModes
 
-Float = NDArray[np.float64]
 
 _POINTS = 300  # of a curve between two poles
 _NAMED_ROOTS = 2
@@ -127,7 +126,7 @@ def _draw_panel(
     for pole in most.omega[most.omega < end * first] / first:
         axes.axvline(float(pole), color=GRAY, linestyle=":", linewidth=0.9, zorder=1.5, label="_pole")
     axes.axhline(0.0, color="#404040", linewidth=0.8, zorder=1.6, label="_zero")
-    ordinates: list[Float] = []
+    ordinates: list[Array] = []
     notes = [(r"zeros, $ω^*_n/ω_1$", "#404040")]
     for label, (p, modes) in models.items():
         look = looks[label]
@@ -156,7 +155,7 @@ def _draw_panel(
         )  # fmt: skip
 
 
-def _between_poles(poles: Float, end: float) -> Float:
+def _between_poles(poles: Array, end: float) -> Array:
     """Frequencies up to `end`, dense beside each pole and with the poles themselves, where the equation is NaN."""
     inside = np.concatenate([[0.0], poles[poles < end], [end]])
     share = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _POINTS)))

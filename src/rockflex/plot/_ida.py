@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._cases import rows_of
 from rockflex._errors import InputError
 from rockflex.fragility import LognormalFragility, fit_capacities
@@ -18,7 +18,6 @@ from rockflex.plot._units import short
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 _NEEDED = (
     *("structure", "model", "motion", "group", "scale", "status", "max_rotation", "overturned", "resurrections"),
@@ -33,7 +32,7 @@ class _Capacities(NamedTuple):
     """Capacities of the records of one structure and model, which of them are only bounds, and the fitted curve."""
 
     reached: Array
-    censored: NDArray[np.bool_]
+    censored: Bools
     resurrected: int
     fit: LognormalFragility | None
 

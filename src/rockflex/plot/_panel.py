@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.plot._curves import Curve, rotation_limit
@@ -29,7 +29,7 @@ class Quantity:
     name: str
     unit: str
     prefixed: bool
-    of: "Callable[[History], NDArray[np.float64]]"
+    of: "Callable[[History], Array]"
 
 
 _QUANTITIES = (

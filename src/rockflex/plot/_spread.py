@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.plot._curves import Curve, curves_of, title_of
 from rockflex.plot._panel import Quantity, quantities_of, scale_of
@@ -17,7 +17,6 @@ from rockflex.plot._style import BLACK, GRAY, SHADE, columns, new_figure, styled
 if TYPE_CHECKING:
     from rockflex.response import Response
 
-Array = NDArray[np.float64]
 
 _POINTS = 2000  # across the panel, more than it has dots
 

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import LIMIT_STATES, LognormalFragility, beyond, fit_stripes
 from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
@@ -15,7 +15,6 @@ from rockflex.plot._style import Look, columns, styled
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 _POINTS = 400
 

@@ -10,14 +10,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, stored_energies, tendon_energy
 from rockflex.solve import ClosedForm
-
-Array = NDArray[np.float64]
 
 REACH = 8.0  # radians of the fastest mode covered by one Gauss rule, which then has at most 20 points
 MOST_PIECES = 10_000  # per interval: a minute of quadrature for a record of a thousand samples
@@ -25,7 +23,7 @@ MOST_PIECES = 10_000  # per interval: a minute of quadrature for a record of a t
 
 @dataclass(frozen=True, eq=False)
 class EnergyLedger(Value):
-    """Energies in J at every node of a history, relative to the moving ground; read-only arrays of shape (n_nodes,).
+    """Energies in J at every state of a history, relative to the moving ground; read-only arrays of shape (n_states,).
 
     ``kinetic + strain + gravity + tendons + damped + yielded + lost - input`` is constant; `residual` is its numerical
     deviation from the initial value.
@@ -37,13 +35,13 @@ class EnergyLedger(Value):
     tendons
         Energy stored in the tendons, relative to the base in contact.
     damped, input
-        Energy dissipated by modal damping, and work of the ground, up to each node; found by quadrature of the exact
+        Energy dissipated by modal damping, and work of the ground, up to each state; found by quadrature of the exact
         states, or integrated with the motion.
     yielded
         Energy absorbed by the hysteretic spring of a Bouc-Wen superstructure; `strain` is then that of its elastic
         part.
     lost
-        Energy lost in impacts up to each node.
+        Energy lost in impacts up to each state.
     impact_losses
         Energy lost in each impact, shape (n_impacts,).
 
@@ -73,7 +71,7 @@ class EnergyLedger(Value):
 
     @property
     def residual(self) -> Array:
-        """Error of the energy balance at each node, in J."""
+        """Error of the energy balance at each state, in J."""
         total = self.stored + self.damped + self.yielded + self.lost - self.input
         return total - total[0]
 
@@ -90,31 +88,31 @@ class EnergyLedger(Value):
         return float(np.max(np.abs(self.residual))) / scale if scale > 0.0 else 0.0
 
 
-def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
-    """Return the energy ledger of a history; `nodes` as in `History`.
+def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
+    """Return the energy ledger of a history; `states` as in `History`.
 
     Raises
     ------
     InputError
         If the model is too fast for the sampling: too many quadratures would be needed.
     """
-    kinetic, strain, gravity = stored_energies(model, nodes)
-    impact = np.flatnonzero(is_impact(model, nodes))
+    kinetic, strain, gravity = stored_energies(model, states)
+    impact = np.flatnonzero(is_impact(model, states))
     losses = kinetic[impact] - kinetic[impact + 1]
-    lost = np.zeros(nodes.shape[0])
+    lost = np.zeros(states.shape[0])
     np.add.at(lost, impact + 1, losses)
-    damped, work = _work(model, nodes)
+    damped, work = _work(model, states)
     yielded = np.zeros(damped.size)
     if model.integrated:
-        integrated = (nodes[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
-        counted = np.diff(nodes[:, HEADER + model.layout.damped : HEADER + model.layout.yielded + 1], axis=0)
+        integrated = (states[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
+        counted = np.diff(states[:, HEADER + model.layout.damped : HEADER + model.layout.yielded + 1], axis=0)
         # The counters are not advanced while contact is solved in closed form, and resume when it ends.
         damped, work, yielded = np.where(integrated, counted.T, (damped, work, yielded))
     return EnergyLedger(
         kinetic=kinetic,
         strain=strain,
         gravity=gravity,
-        tendons=tendon_energy(model, nodes),
+        tendons=tendon_energy(model, states),
         damped=np.concatenate(([0.0], np.cumsum(damped))),
         yielded=np.concatenate(([0.0], np.cumsum(yielded))),
         input=np.concatenate(([0.0], np.cumsum(work))),
@@ -123,30 +121,30 @@ def energy_ledger(model: RockingModel, nodes: Array) -> EnergyLedger:
     )
 
 
-def is_impact(model: RockingModel, nodes: Array) -> NDArray[np.bool_]:
-    """Return True for the interval between the two nodes of every impact, shape (n_nodes - 1,)."""
-    spin = model.layout.of(nodes, model.layout.spin)
-    time, side = nodes[:, TIME], nodes[:, SIDE]
+def is_impact(model: RockingModel, states: Array) -> Bools:
+    """Return True for the interval between the two states of every impact, shape (n_states - 1,)."""
+    spin = model.layout.of(states, model.layout.spin)
+    time, side = states[:, TIME], states[:, SIDE]
     same_time, rocking = time[1:] == time[:-1], side[:-1] != 0.0
     return same_time & rocking & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
 
 
-def _work(model: RockingModel, nodes: Array) -> tuple[Array, Array]:
-    """Return the damped and the input energy between adjacent nodes, (n_nodes - 1,) each, by Gauss quadrature."""
+def _work(model: RockingModel, states: Array) -> tuple[Array, Array]:
+    """Return the damped and the input energy between adjacent states, (n_states - 1,) each, by Gauss quadrature."""
     p = model.properties
     n = p.n_modes
-    nodes = nodes[:, : HEADER + model.layout.core]
+    states = states[:, : HEADER + model.layout.core]
     motion = ClosedForm(model)
-    span = np.diff(nodes[:, TIME])
+    span = np.diff(states[:, TIME])
     places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
     drag = 2.0 * p.zeta * p.omega * p.effective_mass
     damped, work = np.zeros(span.size), np.zeros(span.size)
     for place, weight in zip(places, weights, strict=True):
-        states = motion.between(nodes, float(place))
-        v = states[:, n : 2 * n]
-        acceleration = nodes[:-1, GROUND] + place * np.diff(nodes[:, GROUND])
+        inside = motion.between(states, float(place))
+        v = inside[:, n : 2 * n]
+        acceleration = states[:-1, GROUND] + place * np.diff(states[:, GROUND])
         damped += weight * span * (v**2 @ drag)
-        work -= weight * span * acceleration * (p.l0r * states[:, -1] + v @ p.effective_mass)
+        work -= weight * span * acceleration * (p.l0r * inside[:, -1] + v @ p.effective_mass)
     return damped, work
 
 

@@ -79,7 +79,7 @@ def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: 
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
         scalars["tendons"] = [asdict(tendon) for tendon in model.properties.tendons]
-        arrays["nodes"] = history.nodes
+        arrays["states"] = history.states
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
         if model.properties.floors is not None:
             arrays |= {f"floor_modes.{name}": getattr(model.properties.floors, name) for name in FLOOR_MODES}
@@ -115,8 +115,10 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
             raise InputError(f"{name} must be of type float64, but is of type {values.dtype}.")
     peaks = {name: _typed(scalars, name, kind) for name, kind in kinds.items()}
     floors = history = None
-    if "nodes" in arrays:
-        history = History(_model(scalars, arrays), arrays["nodes"])
+    if "nodes" in arrays:  # as older versions named the states
+        arrays = arrays | {"states": arrays["nodes"]}
+    if "states" in arrays:
+        history = History(_model(scalars, arrays), arrays["states"])
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
         if floors.story_drift.shape != arrays["floor_modes.heights"].shape:

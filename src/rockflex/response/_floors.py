@@ -1,12 +1,10 @@
 """Floor histories: drifts, shears, accelerations and displacements."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models import RockingModel, floor_accelerations, floor_quantities, values_of
-
-Array = NDArray[np.float64]
 
 NAMES = ("story_drift", "story_shear", "total_floor_displacement")
 

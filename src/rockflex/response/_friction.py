@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -23,11 +24,9 @@ from rockflex.models import (
 from rockflex.response._energy import is_impact
 from rockflex.solve import ClosedForm
 
-Array = NDArray[np.float64]
-
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
 TURN = 0.2  # radians of the fastest mode between adjacent evaluation points
-FEWEST, MOST = 4, 2000  # evaluation points in the interval between adjacent nodes
+FEWEST, MOST = 4, 2000  # evaluation points in the interval between adjacent states
 
 
 def friction_coefficient(mu: float) -> float:
@@ -49,17 +48,17 @@ class Friction:
 
     Parameters
     ----------
-    model, nodes
+    model, states
         As in `History`.
     printed
         Use Eqs. 21 and 22 as printed, for every model: with the magnitude of Σ m_i (-g + z''_i).
     """
 
-    def __init__(self, model: RockingModel, nodes: Array, *, printed: bool = False) -> None:
+    def __init__(self, model: RockingModel, states: Array, *, printed: bool = False) -> None:
         self._model = model
-        self._nodes = nodes
+        self._states = states
         self._printed = printed
-        self._rates = accelerations(model, nodes)
+        self._rates = accelerations(model, states)
         self._linear = None if model.bouc_wen is not None else ClosedForm(model)
         p = model.properties
         # Upper bound of the factor by which uplift increases the frequencies.
@@ -68,12 +67,12 @@ class Friction:
 
     @cached_property
     def reactions(self) -> Reactions:
-        """Ground reactions at the nodes."""
-        return self._reactions_at(self._nodes, self._rates)
+        """Ground reactions at the states."""
+        return self._reactions_at(self._states, self._rates)
 
     @cached_property
     def demand(self) -> Array:
-        """|ΣF_x| / ΣF_z at the nodes, shape (n_nodes,); infinite if the ground would have to pull."""
+        """|ΣF_x| / ΣF_z at the states, shape (n_states,); infinite if the ground would have to pull."""
         return _coefficient(self._angle(self.reactions))
 
     def required(self, window: float = 0.0) -> float:
@@ -112,11 +111,11 @@ class Friction:
         coefficient = friction_coefficient(mu)
         limit = math.atan(coefficient)
         if not self._stretches.size:
-            return float(self._nodes[0, TIME]) if self.demand[0] > coefficient else None
+            return float(self._states[0, TIME]) if self.demand[0] > coefficient else None
         for k in np.flatnonzero(self._looks.max(axis=0) + self._rise > limit).tolist():
             place = self._first_above(k, limit)
             if place is not None:
-                begin, end = self._nodes[self._stretches[k] : self._stretches[k] + 2, TIME]
+                begin, end = self._states[self._stretches[k] : self._stretches[k] + 2, TIME]
                 return float(begin + place * (end - begin))
         return None
 
@@ -150,12 +149,12 @@ class Friction:
 
     @cached_property
     def _stretches(self) -> NDArray[np.intp]:
-        """First nodes of the intervals of positive length; events have zero length."""
-        return np.flatnonzero(np.diff(self._nodes[:, TIME]) > 0.0)
+        """First states of the intervals of positive length; events have zero length."""
+        return np.flatnonzero(np.diff(self._states[:, TIME]) > 0.0)
 
     @cached_property
     def _places(self) -> Array:
-        longest = float(np.diff(self._nodes[:, TIME]).max(initial=0.0))
+        longest = float(np.diff(self._states[:, TIME]).max(initial=0.0))
         pieces = max(math.ceil(self._fastest * longest / TURN), FEWEST)
         if pieces > MOST:
             raise InputError(
@@ -169,7 +168,7 @@ class Friction:
     def _looks(self) -> Array:
         """Angles at places from 0 to 1 of every interval, shape (n_places, n_intervals)."""
         rates = self._rates
-        return np.stack([self._angles(self._nodes, rates, float(place)) for place in self._places])
+        return np.stack([self._angles(self._states, rates, float(place)) for place in self._places])
 
     @cached_property
     def _rise(self) -> Array:
@@ -178,53 +177,53 @@ class Friction:
 
     def _after(self, window: float) -> Array:
         """Return the place in each interval where the window after the last impact ends: 0 before, above 1 beyond."""
-        time = self._nodes[:, TIME]
+        time = self._states[:, TIME]
         begin, length = time[self._stretches], np.diff(time)[self._stretches]
-        impacts = np.append(-np.inf, time[1:][is_impact(self._model, self._nodes)])
+        impacts = np.append(-np.inf, time[1:][is_impact(self._model, self._states)])
         last = impacts[np.searchsorted(impacts, begin, side="right") - 1]
         return np.maximum((last + window - begin) / length, 0.0)
 
     def _angle_at(self, k: int, place: float) -> float:
         """Return the angle at a place of one interval."""
         pair = slice(self._stretches[k], self._stretches[k] + 2)
-        return float(self._angles(self._nodes[pair], self._rates[pair], place)[0])
+        return float(self._angles(self._states[pair], self._rates[pair], place)[0])
 
-    def _angles(self, nodes: Array, rates: Array, place: float) -> Array:
+    def _angles(self, states: Array, rates: Array, place: float) -> Array:
         """Return the angles at a place of every interval of positive length."""
-        lasting = np.diff(nodes[:, TIME]) > 0.0
-        rows, moved = self._between(nodes, rates, place)
+        lasting = np.diff(states[:, TIME]) > 0.0
+        rows, moved = self._between(states, rates, place)
         rows = rows[lasting]
         if moved is None:
             return self._angle(self._reactions_at(rows, accelerations(self._model, rows)))
         return self._angle(self._reactions_at(rows, moved[lasting]))
 
-    def _between(self, nodes: Array, rates: Array, place: float) -> tuple[Array, Array | None]:
+    def _between(self, states: Array, rates: Array, place: float) -> tuple[Array, Array | None]:
         """Return states at a place of every interval, and accelerations if these do not follow from the states.
 
         The latter is the case for a hysteretic spring. Linear models are exact; otherwise a polynomial of fifth degree
-        through both nodes is used.
+        through both states is used.
         """
         layout = self._model.layout
         n = layout.modes
-        rows = nodes[:-1].copy()
-        rows[:, TIME] += place * np.diff(nodes[:, TIME])
-        rows[:, GROUND] += place * np.diff(nodes[:, GROUND])
+        rows = states[:-1].copy()
+        rows[:, TIME] += place * np.diff(states[:, TIME])
+        rows[:, GROUND] += place * np.diff(states[:, GROUND])
         end = HEADER + layout.core
         if self._linear:
-            rows[:, HEADER:end] = self._linear.between(nodes[:, :end], place)
+            rows[:, HEADER:end] = self._linear.between(states[:, :end], place)
             if not self._model.integrated:
                 return rows, None
         turn, spin = HEADER + layout.rotation, HEADER + layout.spin
         where, velocity = [*range(HEADER, HEADER + n), turn], [*range(HEADER + n, HEADER + 2 * n), spin]
-        value, slope, bend = _quintic(nodes[:, where], nodes[:, velocity], rates, np.diff(nodes[:, TIME]), place)
-        integrated = (nodes[:-1, SIDE] != 0.0) | (self._linear is None)
+        value, slope, bend = _quintic(states[:, where], states[:, velocity], rates, np.diff(states[:, TIME]), place)
+        integrated = (states[:-1, SIDE] != 0.0) | (self._linear is None)
         rows[np.ix_(integrated, where)] = value[integrated]
         rows[np.ix_(integrated, velocity)] = slope[integrated]
         rows[:, end:] = 0.0
         return rows, bend if self._linear is None else None
 
-    def _reactions_at(self, nodes: Array, rates: Array) -> Reactions:
-        return (printed_reactions if self._printed else reactions)(self._model, nodes, rates)
+    def _reactions_at(self, states: Array, rates: Array) -> Reactions:
+        return (printed_reactions if self._printed else reactions)(self._model, states, rates)
 
     def _angle(self, forces: Reactions) -> Array:
         """Return the angle of the reaction from the vertical, 0 to π; unlike its tangent μ it is always finite."""

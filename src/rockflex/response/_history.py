@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_rows
 from rockflex._values import Value
 from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, accelerations, quantities, values_of
@@ -16,8 +16,6 @@ from rockflex.response._global import GLOBAL
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._tendons import tendon_forces
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class History(Value):
@@ -27,8 +25,8 @@ class History(Value):
     ----------
     model
         The model of the run.
-    nodes
-        Shape (n_nodes, 2N + 5); each row contains time (s), side of rocking, ground acceleration (m/s²), D (m), D'
+    states
+        Shape (n_states, 2N + 5); each row contains time (s), side of rocking, ground acceleration (m/s²), D (m), D'
         (m/s), θ (rad) and θ' (rad/s). An event is two rows at the same time. Nonlinear models have four more columns: z
         of Eq. 38, and the damped, input and hysteretic energy (J), which are known where the motion was integrated.
         Stored as a copy.
@@ -36,7 +34,7 @@ class History(Value):
     Raises
     ------
     InputError
-        If `nodes` has another shape or a value that is not finite.
+        If `states` has another shape or a value that is not finite.
 
     Examples
     --------
@@ -53,78 +51,77 @@ class History(Value):
     """
 
     model: RockingModel
-    nodes: Array
+    states: Array
 
     def __post_init__(self) -> None:
         columns = HEADER + self.model.layout.size
-        object.__setattr__(self, "nodes", finite_rows("nodes", self.nodes, "SI units", columns))
+        object.__setattr__(self, "states", finite_rows("states", self.states, "SI units", columns))
 
     def __repr__(self) -> str:
         duration = self.time[-1] - self.time[0]
-        return (
-            f"History({self.model.label}, {self.time.size} nodes over {duration:g} s, {self.uplift_times.size} uplifts)"
-        )
+        states, uplifts = self.time.size, self.uplift_times.size
+        return f"History({self.model.label}, {states} states over {duration:g} s, {uplifts} uplifts)"
 
     @property
     def time(self) -> Array:
-        """Time of the nodes in s, shape (n_nodes,); the time of an event occurs twice."""
-        return self.nodes[:, TIME]
+        """Time of the states in s, shape (n_states,); the time of an event occurs twice."""
+        return self.states[:, TIME]
 
     @property
     def side(self) -> Array:
         """Side of rocking: +1 about the right pivot (θ > 0), -1 about the left pivot, 0 in contact."""
-        return self.nodes[:, SIDE]
+        return self.states[:, SIDE]
 
     @property
     def ground_acceleration(self) -> Array:
-        """Ground acceleration in m/s², shape (n_nodes,)."""
-        return self.nodes[:, GROUND]
+        """Ground acceleration in m/s², shape (n_states,)."""
+        return self.states[:, GROUND]
 
     @property
     def modal_displacement(self) -> Array:
-        """D_n in m, shape (n_nodes, N)."""
-        return self.model.layout.displacements(self.nodes)
+        """D_n in m, shape (n_states, N)."""
+        return self.model.layout.displacements(self.states)
 
     @property
     def modal_velocity(self) -> Array:
-        """D'_n in m/s, shape (n_nodes, N)."""
-        return self.model.layout.velocities(self.nodes)
+        """D'_n in m/s, shape (n_states, N)."""
+        return self.model.layout.velocities(self.states)
 
     @property
     def rotation(self) -> Array:
-        """θ in rad, shape (n_nodes,)."""
-        return self.model.layout.of(self.nodes, self.model.layout.rotation)
+        """θ in rad, shape (n_states,)."""
+        return self.model.layout.of(self.states, self.model.layout.rotation)
 
     @property
     def rotation_velocity(self) -> Array:
-        """θ' in rad/s, shape (n_nodes,)."""
-        return self.model.layout.of(self.nodes, self.model.layout.spin)
+        """θ' in rad/s, shape (n_states,)."""
+        return self.model.layout.of(self.states, self.model.layout.spin)
 
     @property
     def modal_acceleration(self) -> Array:
-        """D''_n in m/s², shape (n_nodes, N)."""
+        """D''_n in m/s², shape (n_states, N)."""
         return self._accelerations[:, :-1]
 
     @property
     def rotation_acceleration(self) -> Array:
-        """θ'' in rad/s², shape (n_nodes,)."""
+        """θ'' in rad/s², shape (n_states,)."""
         return self._accelerations[:, -1]
 
     @property
     def yielding(self) -> Array:
-        """Hysteretic variable z of the Bouc-Wen model (Eq. 38), dimensionless, shape (n_nodes,); zero if elastic."""
+        """Hysteretic variable z of the Bouc-Wen model (Eq. 38), dimensionless, shape (n_states,); zero if elastic."""
         if not self.model.integrated:
-            return np.zeros(self.nodes.shape[0])
-        return self.model.layout.of(self.nodes, self.model.layout.hysteresis)
+            return np.zeros(self.states.shape[0])
+        return self.model.layout.of(self.states, self.model.layout.hysteresis)
 
     @property
     def top_displacement(self) -> Array:
-        """u_top = Σ Γ_n φ_top,n D_n relative to the rotating base, in m, shape (n_nodes,)."""
+        """u_top = Σ Γ_n φ_top,n D_n relative to the rotating base, in m, shape (n_states,)."""
         return self._global[:, 0]
 
     @property
     def total_top_displacement(self) -> Array:
-        """Horizontal displacement of the top relative to the ground in m, shape (n_nodes,).
+        """Horizontal displacement of the top relative to the ground in m, shape (n_states,).
 
         u_top + h_top θ; in the complete models by Eq. 3, relative to the position before uplift.
         """
@@ -137,12 +134,12 @@ class History(Value):
 
     @property
     def base_moment(self) -> Array:
-        """M_b = Σ m*_n h*_n ω_n² D_n (or by Eq. 37) in N m, shape (n_nodes,); models with -R add the mass left out."""
+        """M_b = Σ m*_n h*_n ω_n² D_n (or by Eq. 37) in N m, shape (n_states,); models with -R add the mass left out."""
         return self._global[:, 1]
 
     @property
     def base_shear(self) -> Array:
-        """V_b = Σ m*_n ω_n² D_n (or by Eq. 37) in N, shape (n_nodes,); models with -R add the mass left out."""
+        """V_b = Σ m*_n ω_n² D_n (or by Eq. 37) in N, shape (n_states,); models with -R add the mass left out."""
         return self._global[:, 2]
 
     @property
@@ -153,36 +150,36 @@ class History(Value):
     @property
     def impact_times(self) -> Array:
         """Times of impact, when the rotation returns to zero, in s, shape (n_impacts,)."""
-        return self.time[1:][is_impact(self.model, self.nodes)]
+        return self.time[1:][is_impact(self.model, self.states)]
 
     @property
     def story_drift(self) -> Array:
-        """Displacement of each floor minus that of the floor below, relative to the base, in m, (n_nodes, N_floors)."""
+        """Displacement of each floor minus the one below in m, relative to the base, (n_states, N_floors)."""
         return self._floors[0]
 
     @property
     def story_shear(self) -> Array:
-        """Sum of the elastic forces at and above each floor, in N, shape (n_nodes, N_floors)."""
+        """Sum of the elastic forces at and above each floor, in N, shape (n_states, N_floors)."""
         return self._floors[1]
 
     @property
     def floor_acceleration(self) -> Array:
-        """Total horizontal acceleration of each floor, in m/s², shape (n_nodes, N_floors)."""
+        """Total horizontal acceleration of each floor, in m/s², shape (n_states, N_floors)."""
         return self._floors[2]
 
     @property
     def total_floor_displacement(self) -> Array:
-        """Horizontal displacement of each floor relative to the ground, as for the top, in m, (n_nodes, N_floors)."""
+        """Horizontal displacement of each floor relative to the ground, as for the top, in m, (n_states, N_floors)."""
         return self._floors[3]
 
     @property
     def tendon_force(self) -> Array:
-        """Force of each tendon in N, in the order of `RockingProperties.tendons`, shape (n_nodes, n_tendons)."""
-        return tendon_forces(self.model, self.nodes)
+        """Force of each tendon in N, in the order of `RockingProperties.tendons`, shape (n_states, n_tendons)."""
+        return tendon_forces(self.model, self.states)
 
     @property
     def horizontal_reaction(self) -> Array:
-        """Horizontal ground reaction Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_nodes,).
+        """Horizontal ground reaction Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_states,).
 
         In the simplified models, for small rotations: m_tot a + L_0^r θ'' + Σ m* D''.
         """
@@ -190,7 +187,7 @@ class History(Value):
 
     @property
     def vertical_reaction(self) -> Array:
-        """Vertical ground reaction Σ m_i (g + z''_i), in N, positive upwards, shape (n_nodes,).
+        """Vertical ground reaction Σ m_i (g + z''_i), in N, positive upwards, shape (n_states,).
 
         This is Eq. 22 with the sign of the weight corrected; as printed, it is smaller by 2 m_tot g. Tendon forces are
         included. In the simplified models, for small rotations: m_tot (g + s B θ'').
@@ -199,12 +196,12 @@ class History(Value):
 
     @property
     def friction_demand(self) -> Array:
-        """|ΣF_x| / ΣF_z of Eq. 20, dimensionless, shape (n_nodes,); infinite if the base would lose contact."""
+        """|ΣF_x| / ΣF_z of Eq. 20, dimensionless, shape (n_states,); infinite if the base would lose contact."""
         return self._friction.demand
 
     @cached_property
     def required_friction(self) -> float:
-        """Largest friction demand of the run, including between nodes; infinite if the base would lose contact.
+        """Largest friction demand of the run, including between states; infinite if the base would lose contact.
 
         Raises
         ------
@@ -256,26 +253,26 @@ class History(Value):
         InputError
             If the model is too fast for the sampling: too many quadratures would be needed.
         """
-        return energy_ledger(self.model, self.nodes)
+        return energy_ledger(self.model, self.states)
 
     @cached_property
     def _global(self) -> Array:
-        values = values_of(self.model, quantities(self.model, GLOBAL), self.nodes)
+        values = values_of(self.model, quantities(self.model, GLOBAL), self.states)
         values.setflags(write=False)
         return values
 
     @cached_property
     def _accelerations(self) -> Array:
-        values = accelerations(self.model, self.nodes)
+        values = accelerations(self.model, self.states)
         values.setflags(write=False)
         return values
 
     @cached_property
     def _friction(self) -> Friction:
-        return Friction(self.model, self.nodes)
+        return Friction(self.model, self.states)
 
     def _friction_by(self, printed: bool) -> Friction:
-        return Friction(self.model, self.nodes, printed=True) if printed else self._friction
+        return Friction(self.model, self.states, printed=True) if printed else self._friction
 
     @cached_property
     def _floors(self) -> tuple[Array, Array, Array, Array]:
@@ -286,7 +283,7 @@ class History(Value):
                 "accelerations or floor displacements. Simulate a Frame or a LumpedStructure, or give "
                 "RockingProperties their floors."
             )
-        histories = floor_histories(self.model, floors, self.nodes)
+        histories = floor_histories(self.model, floors, self.states)
         for values in histories:
             values.setflags(write=False)
         return histories

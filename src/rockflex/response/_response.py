@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, Generic, Self, TypeVar, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._files import path_of
 from rockflex._values import Value
 from rockflex.models import RockingModel, floor_accelerations
@@ -22,7 +22,6 @@ from rockflex.response._tendons import largest_tendon_force
 from rockflex.response._warnings import warnings_of
 from rockflex.solve import Solution
 
-Array = NDArray[np.float64]
 Quantity = TypeVar("Quantity")
 
 
@@ -258,7 +257,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         end_time=solution.end_time,
         settled=solution.settled,
         floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
-        history=None if solution.nodes is None else History(model, solution.nodes),
+        history=None if solution.states is None else History(model, solution.states),
     )
 
 
@@ -266,7 +265,7 @@ def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> Floor
     names = tracked_of_floors(model)
     found = dict(zip(names, np.split(peaks, len(names)), strict=True))
     floors = model.properties.floors
-    if "floor_acceleration" not in found and floors is not None and solution.nodes is not None:
+    if "floor_acceleration" not in found and floors is not None and solution.states is not None:
         # Not a linear functional for large rotations: take the largest value at samples and events.
-        found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.nodes)).max(axis=0)
+        found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.states)).max(axis=0)
     return FloorPeaks(**found)

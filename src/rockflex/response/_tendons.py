@@ -3,19 +3,17 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.models import RockingModel, stretch_per_arm
 
-Array = NDArray[np.float64]
 
-
-def tendon_forces(model: RockingModel, nodes: Array) -> Array:
-    """Return the force of each tendon in N, shape (n_nodes, n_tendons); `nodes` as in `History`."""
+def tendon_forces(model: RockingModel, states: Array) -> Array:
+    """Return the force of each tendon in N, shape (n_states, n_tendons); `states` as in `History`."""
     p = model.properties
-    rotation = model.layout.of(nodes, model.layout.rotation)
+    rotation = model.layout.of(states, model.layout.rotation)
     stretch = stretch_per_arm(model, np.abs(rotation))
-    forces = np.empty((nodes.shape[0], len(p.tendons)))
+    forces = np.empty((states.shape[0], len(p.tendons)))
     for k, tendon in enumerate(p.tendons):
         side = np.where(rotation < 0.0, -1.0, 1.0)
         arm = np.where(side < 0.0, p.pivot(-1).arm, p.pivot(1).arm) - side * tendon.position

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rockflex._arrays import Array
 from rockflex.models import RockingModel
-from rockflex.solve.layout import Array
 
 LOOKS = 0.8  # into a sample, per radian beyond the first by which the phase of the fastest vibration advances
 SEARCH = 0.1  # looks into a sample in any case

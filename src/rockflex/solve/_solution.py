@@ -2,15 +2,12 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from rockflex._arrays import Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solution:
-    """The result of one run: the peaks of all rows, event counts and, optionally, the nodes of the history.
+    """The result of one run: the peaks of all rows, event counts and, optionally, the states of the history.
 
     Parameters
     ----------
@@ -25,9 +22,9 @@ class Solution:
         its time in s.
     n_uplifts, n_impacts
         Number of uplifts and of impacts.
-    nodes
-        One row per node: time, side, ground acceleration, D (N), D' (N), θ, θ'. There are nodes before and after every
-        jump. None if only peaks were requested.
+    states
+        One row per state: time, side, ground acceleration, D (N), D' (N), θ, θ'. There are states before and after
+        every jump. None if only peaks were requested.
     """
 
     overturned: bool
@@ -39,4 +36,4 @@ class Solution:
     time_of_lost_support: float
     n_uplifts: int
     n_impacts: int
-    nodes: Array | None
+    states: Array | None

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.models import HEADER, RockingModel
 from rockflex.solve._pace import Pace, Work, pace_of
@@ -42,7 +42,7 @@ class Task:
 
     model: RockingModel
     pace: Pace
-    record: NDArray[np.float64]
+    record: Array
     dt: float
     free_vibration: float | None = 0.0
     history: bool = False
@@ -80,12 +80,12 @@ class Task:
         if self.history:
             self.check_room(self.record.size + (0.0 if self.free_vibration is None else self.free_vibration / self.dt))
 
-    def check_room(self, nodes: float) -> None:
-        """Raise `WorkLimitError` if a history with this number of nodes takes too much memory."""
-        size = 8.0 * nodes * (HEADER + self.model.layout.core)
+    def check_room(self, states: float) -> None:
+        """Raise `WorkLimitError` if a history with this number of states takes too much memory."""
+        size = 8.0 * states * (HEADER + self.model.layout.core)
         if size > HISTORY:
             raise WorkLimitError(
-                f"The history of {self.model.label} would have {nodes:.3g} states and take {size / 1e9:.3g} GB, but "
+                f"The history of {self.model.label} would have {states:.3g} states and take {size / 1e9:.3g} GB, but "
                 f'the limit is {HISTORY / 1e9:g} GB. Use output="peaks", less free_vibration, or a longer time step.'
             )
 

@@ -7,6 +7,7 @@ series only.
 
 import math
 
+from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates, inertia_left
 from rockflex.solve.adaptive.curves import is_curved, raise_curves
@@ -25,7 +26,6 @@ from rockflex.solve.layout import (
     GUARD,
     LEVERAGE,
     OMEGA2,
-    Array,
     Log,
     Motion,
     Progress,

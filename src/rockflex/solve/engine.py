@@ -6,8 +6,8 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
@@ -25,7 +25,6 @@ from rockflex.solve.layout import (
     KEPT,
     LEFT,
     UPLIFTS,
-    Array,
     Course,
     Log,
     Motion,
@@ -94,14 +93,14 @@ class Engine:
         return pace_of(self.model, self._n_rows)
 
     def task(
-        self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None = 0.0, *, history: bool = False
+        self, acceleration: Array, dt: float, free_vibration: float | None = 0.0, *, history: bool = False
     ) -> Task:
         """Return the task of a run with these arguments, which estimates its work."""
         return Task(self.model, self.pace, acceleration, dt, free_vibration, history)
 
     def run(
         self,
-        acceleration: NDArray[np.float64],
+        acceleration: Array,
         dt: float,
         *,
         free_vibration: float | None = 0.0,
@@ -184,7 +183,7 @@ class Engine:
         with preparing(self.model):
             return self._phases.place(key)
 
-    def _course(self, acceleration: NDArray[np.float64], dt: float, free_vibration: float | None) -> Course:
+    def _course(self, acceleration: Array, dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
         return Course(
             record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),  # the compiled type
@@ -234,7 +233,7 @@ class Engine:
             time_of_lost_support=float(log.times[-1]),
             n_uplifts=int(log.tally[UPLIFTS]),
             n_impacts=int(log.tally[IMPACTS]),
-            nodes=log.history[: log.tally[KEPT]] if history else None,
+            states=log.history[: log.tally[KEPT]] if history else None,
         )
 
     def _spent(self, at: Progress, dt: float, state: Array, task: Task, work_limit: float | None) -> None:

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.solve.layout import GUARD, Array, Progress, System
+from rockflex.solve.layout import GUARD, Progress, System
 from rockflex.solve.polynomials import evaluate, first_descent
 
 LOW, HIGH = 0, 1  # the limits of a guard

@@ -1,8 +1,9 @@
 """Storing the states of a history: at every sample, and before and after every jump."""
 
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
 from rockflex.models import GROUND, HEADER, SIDE, TIME
-from rockflex.solve.layout import KEPT, Array, Log
+from rockflex.solve.layout import KEPT, Log
 
 MARGIN = 8  # largest number of states added between two pauses
 

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
 from rockflex.models import StateLayout
 
-Array = NDArray[np.float64]
 Progress = Any  # a record of `_PROGRESS`
 
 # Indices in `Log.work`: the work left in this slice, and the price of each kind of work in s, see `solve._pace`.
@@ -137,7 +137,7 @@ class Motion(NamedTuple):
     values: (
         Array  # (4, F): lower and upper limits of the rows, and their values at the start and at the end of the step
     )
-    flags: NDArray[np.bool_]  # (2, F): rows that may leave their limits inside the step, and rows to examine
+    flags: Bools  # (2, F): rows that may leave their limits inside the step, and rows to examine
     clear: NDArray[np.int64]  # (F,): point of the grid up to which the search for peaks is done
     series: Array  # (N + b, terms)
     polys: Array  # (F + 1, terms): polynomials of the rows, and one for work

@@ -1,7 +1,8 @@
 """The peaks of a run, updated wherever the motion is examined."""
 
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.solve.layout import GUARD, Array, Log, Motion, Span, System
+from rockflex.solve.layout import GUARD, Log, Motion, Span, System
 from rockflex.solve.polynomials import bend, evaluate, first_descent
 
 ROUNDING = 1e-16

@@ -5,10 +5,11 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
-from rockflex.solve.layout import BESIDE, EVENT, FOLLOWING, FOLLOWS, LINKS, Array, System
+from rockflex.solve.layout import BESIDE, EVENT, FOLLOWING, FOLLOWS, LINKS, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance
 CAPACITY = 3  # initial number of phases: contact, and rocking on either side

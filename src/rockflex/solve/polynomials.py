@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.solve.layout import Array
 
 SHIFT = 40  # steps after which a polynomial is expanded about a new point
 MOST_STEPS = 10_000  # usually a few suffice; only a multiple root takes more, and this is then close enough

@@ -7,6 +7,7 @@ advanced event by event. The kernel returns when its slice of work is used up, a
 
 import math
 
+from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel, python_kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.curves import values_of_rows
@@ -17,21 +18,7 @@ from rockflex.solve.events import CROSSED, PAUSED
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.probe import NOTHING
 from rockflex.solve.history import MARGIN, keep, room_left
-from rockflex.solve.layout import (
-    CARRY,
-    EVENTS,
-    GUARD,
-    LEFT,
-    NOW,
-    VALUES,
-    Array,
-    Course,
-    Log,
-    Motion,
-    Progress,
-    Span,
-    System,
-)
+from rockflex.solve.layout import CARRY, EVENTS, GUARD, LEFT, NOW, VALUES, Course, Log, Motion, Progress, Span, System
 from rockflex.solve.peaks import raise_row, raise_to_state
 from rockflex.solve.sample import cross_sample
 from rockflex.solve.status import Status

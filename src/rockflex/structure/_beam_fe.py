@@ -1,15 +1,13 @@
 """Modes of a beam by finite elements."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, diags_array
 
+from rockflex._arrays import Array
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 from rockflex.structure._lowest_modes import lowest_modes
 from rockflex.structure._sections import Sections
-
-Float = NDArray[np.float64]
 
 _POINTS = 4  # exact for cubic shapes with linearly varying mass and stiffness
 _HEAVIEST = 1e40  # times the mass of the beam: for a heavier body, rounding decides whether the modes are found
@@ -77,7 +75,7 @@ def _check_bodies(beam: Sections, mass: float) -> None:
         )
 
 
-def _elements(beam: Sections, nodes: Float) -> tuple[Float, Float, float]:
+def _elements(beam: Sections, nodes: Array) -> tuple[Array, Array, float]:
     """Return the stiffness factors (E, 2, 4), the mass matrices (E, 4, 4), and the integral of the rotary inertia."""
     z, w = gauss(nodes, _POINTS)
     length = np.diff(nodes)
@@ -124,14 +122,14 @@ def _elements(beam: Sections, nodes: Float) -> tuple[Float, Float, float]:
     return roots, masses, float((w * rotary).sum())
 
 
-def _assembled_rows(elements: Float, n_nodes: int) -> csc_array:
+def _assembled_rows(elements: Array, n_nodes: int) -> csc_array:
     rows = np.arange(2 * len(elements)).reshape(-1, 2, 1) + np.zeros((1, 1, 4), dtype=int)
     columns = 2 * np.arange(len(elements))[:, None, None] + np.arange(4)[None, None, :] + np.zeros((1, 2, 1), dtype=int)
     where = (rows.ravel(), columns.ravel())
     return csc_array(coo_array((elements.ravel(), where), shape=(2 * len(elements), 2 * n_nodes)))
 
 
-def _assembled(elements: Float, n_nodes: int) -> csc_array:
+def _assembled(elements: Array, n_nodes: int) -> csc_array:
     freedoms = 2 * np.arange(len(elements))[:, None] + np.arange(4)
     rows = np.repeat(freedoms, 4, axis=1).ravel()
     columns = np.tile(freedoms, (1, 4)).ravel()

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import dimensions, finite_vector, float_array, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -13,8 +14,6 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.structure._based import Assembled
 from rockflex.structure._lumped import LumpedStructure
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -65,10 +64,10 @@ class FishBone(Assembled, Value):
     array([0.398, 0.122])
     """
 
-    story_heights: Float
-    masses: Float
-    column_stiffness: Float
-    beam_stiffness: Float
+    story_heights: Array
+    masses: Array
+    column_stiffness: Array
+    beam_stiffness: Array
     base_mass: float
     half_width: float
     damping_ratio: ArrayLike
@@ -126,7 +125,7 @@ class FishBone(Assembled, Value):
 
 
 @computable("The stiffness of a frame with these story heights, column and beam stiffnesses")
-def condensed_stiffness(story_heights: Float, column_stiffness: Float, beam_stiffness: Float) -> Float:
+def condensed_stiffness(story_heights: Array, column_stiffness: Array, beam_stiffness: Array) -> Array:
     """Return the condensed lateral stiffness of the floors in N/m, shape (N, N); arguments as in `FishBone`."""
     n = story_heights.size
     sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
@@ -142,7 +141,7 @@ def condensed_stiffness(story_heights: Float, column_stiffness: Float, beam_stif
     return 0.5 * (stiffness + stiffness.T)
 
 
-def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:
+def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
     if dimensions(values) == 0:
         filled = np.full(n, positive(name, values, unit))  # pyright: ignore[reportArgumentType]
         filled.setflags(write=False)
@@ -156,13 +155,13 @@ def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Float:
     return array
 
 
-def _check_signs(name: str, array: Float, unit: str) -> None:
+def _check_signs(name: str, array: Array, unit: str) -> None:
     if array.min(initial=np.inf) <= 0.0:
         i = int(np.argmin(array))
         raise InputError(f"{name} must be positive, but {name}[{i}] = {array[i]:g} {unit} was given.", field=name)
 
 
-def _beams(values: ArrayLike, n: int) -> Float:
+def _beams(values: ArrayLike, n: int) -> Array:
     given = float_array(values)
     array = np.full(n, np.nan) if given is None else given
     if array.ndim == 0:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import MOST_STORIES, in_range, positive, real_or_nan, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -15,8 +15,6 @@ from rockflex.modal import ModalProperties, modal_properties
 from rockflex.structure._based import Assembled
 from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -137,7 +135,7 @@ class Frame(Assembled):
 
 @lru_cache(maxsize=128)
 @computable("The modes of the frame with this stiffness_ratio", field="stiffness_ratio")
-def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Float, ModalProperties]:
+def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Array, ModalProperties]:
     """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
     one = np.ones(n_stories)
     stiffness = condensed_stiffness(one, one, 12.0 * stiffness_ratio * one)

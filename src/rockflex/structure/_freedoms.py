@@ -7,12 +7,12 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._checks import finite_vector, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._matrix_files import Given, numbers
 
-Float = NDArray[np.float64]
 Heights = Given | Mapping[int, float]
 """Height of every degree of freedom in m, or a map {index: height} of those that translate horizontally."""
 
@@ -34,7 +34,7 @@ class Freedoms:
     """
 
     translates: NDArray[np.intp]
-    heights: Float
+    heights: Array
     rotates: NDArray[np.intp]
     size: int
 
@@ -84,7 +84,7 @@ class Freedoms:
         order = np.argsort(values, kind="stable")
         return cls(np.array(where, dtype=np.intp)[order], values[order], np.array(turning, dtype=np.intp), size)
 
-    def kept(self, keep: NDArray[np.bool_]) -> "Freedoms":
+    def kept(self, keep: Bools) -> "Freedoms":
         """Return the degrees of freedom of the structure reduced to some of them.
 
         Raises
@@ -104,7 +104,7 @@ class Freedoms:
             number[self.translates[moves]], self.heights[moves], number[self.rotates[turns]], int(keep.sum())
         )
 
-    def modes(self, omega: Float, shapes: Float, mass: Float) -> MassNormalisedModes:
+    def modes(self, omega: Array, shapes: Array, mass: Array) -> MassNormalisedModes:
         """Return the modes, with φ^T M φ = 1, and their participation; `mass` is (N, N).
 
         Degrees of freedom at the same height form one station, with their mean ordinate and the sum of their forces. If

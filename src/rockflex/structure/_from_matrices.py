@@ -5,8 +5,9 @@ from dataclasses import replace
 from typing import SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import damping_ratios, dimensions, finite_matrix, finite_vector, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -15,8 +16,6 @@ from rockflex.modal import MassNormalisedModes, modes_that_take_part
 from rockflex.structure._freedoms import Freedoms, Heights
 from rockflex.structure._matrix_files import Given, numbers
 from rockflex.structure._modal_structure import ModalStructure
-
-Float = NDArray[np.float64]
 
 _ORTHOGONAL = 1e-5  # tolerance for values with few printed digits
 
@@ -203,7 +202,7 @@ def _structure(
     )
 
 
-def _mass_matrix(given: ArrayLike, size: int) -> Float:
+def _mass_matrix(given: ArrayLike, size: int) -> Array:
     if dimensions(given) == 2:
         m = finite_matrix("mass", given, "kg", (size, size))
     else:
@@ -221,7 +220,7 @@ def _mass_matrix(given: ArrayLike, size: int) -> Float:
     return m
 
 
-def _modes(stiffness: Float, mass: Float) -> tuple[Float, Float]:
+def _modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     """Return the frequencies as singular values of C^T L^-T, with K = C C^T and M = L L^T, and the mode shapes."""
     root = np.linalg.cholesky(mass)
     _, omega, vectors = np.linalg.svd(np.linalg.solve(root, np.linalg.cholesky(stiffness)).T)

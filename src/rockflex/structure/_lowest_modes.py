@@ -4,11 +4,10 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigsh, splu
 
-Float = NDArray[np.float64]
+from rockflex._arrays import Array
 
 _MISFIT = 1e-6
 _SPREAD = 1e6  # of ω² in one search: rounding in the lowest mode then leaves ten digits of the highest
@@ -16,7 +15,7 @@ _RESTARTS = 100  # modes of a light beam that are below the rounding of a heavy 
 _REMOVALS = 4  # each leaves 1e-16 of the removed part: enough for any beam that `finite_element_modes` accepts
 
 
-def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) -> tuple[Float, Float]:
+def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) -> tuple[Array, Array]:
     """Return ω (n,) and mass-normalised shapes (F, n) of the lowest modes, from the stiffness A^T A and the mass.
 
     `root` is A (F, F); the degrees of freedom are alternating deflections and rotations, from the base up.
@@ -36,7 +35,7 @@ def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) 
     except RuntimeError as error:
         raise np.linalg.LinAlgError(str(error)) from error
 
-    def flexibility(force: Float) -> Float:
+    def flexibility(force: Array) -> Array:
         return upper.solve(lower.solve(np.ravel(force)))
 
     stiffness = csc_array(root.T @ root)
@@ -56,8 +55,8 @@ def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) 
 
 
 def _beside(
-    known: Float, stiffness: csc_array, mass: csc_array, flexibility: Callable[[Float], Float], wanted: int
-) -> Float:
+    known: Array, stiffness: csc_array, mass: csc_array, flexibility: Callable[[Array], Array], wanted: int
+) -> Array:
     """Return the lowest modes other than the known ones: as many as wanted, or only the first if they lie far apart.
 
     A heavy body on a light column gives a first mode so flexible that its rounding error exceeds the flexibility of all
@@ -65,12 +64,12 @@ def _beside(
     """
     moved = mass @ known
 
-    def without_known(shape: Float) -> Float:
+    def without_known(shape: Array) -> Array:
         for _ in range(_REMOVALS):
             shape = shape - known @ (moved.T @ shape)
         return shape
 
-    def bent(force: Float) -> Float:
+    def bent(force: Array) -> Array:
         force = np.ravel(force)
         for _ in range(_REMOVALS):
             force = force - moved @ (known.T @ force)
@@ -91,5 +90,5 @@ def _beside(
     lowest = squares[squares > 0.0].min(initial=np.inf)
     if not np.isfinite(lowest):
         raise np.linalg.LinAlgError("no mode was found")
-    kept: Float = shapes[:, (squares > 0.0) & (squares <= _SPREAD * lowest)]
+    kept: Array = shapes[:, (squares > 0.0) & (squares <= _SPREAD * lowest)]
     return kept / np.sqrt(np.einsum("in,in->n", kept, np.asarray(mass @ kept)))

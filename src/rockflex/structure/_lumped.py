@@ -4,15 +4,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import SupportsIndex
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import damping_ratios, positive
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness
 from rockflex._values import Value
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -57,12 +55,12 @@ class LumpedStructure(Value):
     array([4.854])
     """
 
-    masses: Float
-    stiffness: Float
-    heights: Float
+    masses: Array
+    stiffness: Array
+    heights: Array
     base_mass: float
     half_width: float
-    damping_ratio: Float
+    damping_ratio: Array
 
     def __init__(
         self,

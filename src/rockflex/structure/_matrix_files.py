@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._files import check_regular, path_of
 from rockflex.structure._matrix_market import read_matrix_market
 
-Float = NDArray[np.float64]
 Given: TypeAlias = ArrayLike | str | Path
 """Numbers, or the path of a file that contains them."""
 
@@ -55,7 +55,7 @@ def checksum(name: str, path: Path) -> str:
     return digest.hexdigest()
 
 
-def _from_npz(name: str, path: Path) -> Float:
+def _from_npz(name: str, path: Path) -> Array:
     with np.load(path, allow_pickle=False) as content:
         keys = content.files
         if "format" in keys and "data" in keys:
@@ -69,11 +69,11 @@ def _from_npz(name: str, path: Path) -> Float:
         return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
 
 
-def _from_mtx(name: str, path: Path) -> Float:
+def _from_mtx(name: str, path: Path) -> Array:
     return _dense(name, path, read_matrix_market(path))
 
 
-def _dense(name: str, path: Path, matrix: Any) -> Float:
+def _dense(name: str, path: Path, matrix: Any) -> Array:
     if max(matrix.shape) > MOST:
         raise InputError(
             f"{name}: {path} contains a sparse matrix of shape {matrix.shape}, but matrices are treated as dense, with "
@@ -84,7 +84,7 @@ def _dense(name: str, path: Path, matrix: Any) -> Float:
     return np.asarray(matrix.toarray(), dtype=np.float64)
 
 
-def _from_csv(_: str, path: Path) -> Float:
+def _from_csv(_: str, path: Path) -> Array:
     return np.loadtxt(path, delimiter=",", ndmin=2)
 
 

@@ -3,13 +3,9 @@
 from dataclasses import dataclass
 from typing import SupportsIndex
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rockflex._arrays import Array
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes, ModalProperties, RockingProperties
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +38,7 @@ class ModalStructure(Value):
     modes: MassNormalisedModes
     base_mass: float
     half_width: float
-    damping_ratio: Float
+    damping_ratio: Array
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
         """Return the first `n_modes` modes on a fixed base (default: all).

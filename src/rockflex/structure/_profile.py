@@ -5,15 +5,14 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
 
-Float = NDArray[np.float64]
-
-Along: TypeAlias = float | Callable[[Float], ArrayLike] | tuple[ArrayLike, ArrayLike]
+Along: TypeAlias = float | Callable[[Array], ArrayLike] | tuple[ArrayLike, ArrayLike]
 """A number, a function of heights (n,) that returns values (n,), or a table (heights, values) to interpolate."""
 
 _LOOKS = 65
@@ -26,7 +25,7 @@ class Constant:
 
     value: float
 
-    def __call__(self, z: Float) -> Float:
+    def __call__(self, z: Array) -> Array:
         return np.full(z.shape, self.value)
 
 
@@ -34,10 +33,10 @@ class Constant:
 class Interpolated(Value):
     """A table of values (n,) at heights (n,) in m, linear between its rows."""
 
-    heights: Float
-    values: Float
+    heights: Array
+    values: Array
 
-    def __call__(self, z: Float) -> Float:
+    def __call__(self, z: Array) -> Array:
         return np.interp(z, self.heights, self.values)
 
 
@@ -59,8 +58,8 @@ class Profile(Value):
 
     name: str
     unit: str
-    function: Callable[[Float], ArrayLike]
-    kinks: Float
+    function: Callable[[Array], ArrayLike]
+    kinks: Array
     zero: bool
 
     @property
@@ -72,7 +71,7 @@ class Profile(Value):
             return self.function.heights, self.function.values
         return self.function
 
-    def at(self, z: Float) -> Float:
+    def at(self, z: Array) -> Array:
         """Return the values at heights `z`, in the shape of `z`.
 
         Raises

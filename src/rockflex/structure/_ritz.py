@@ -5,9 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import eigh
 
+from rockflex._arrays import Array
 from rockflex._checks import MOST_MODES, positive, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -15,8 +16,6 @@ from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 from rockflex.structure._sections import Sections
-
-Float = NDArray[np.float64]
 
 _PANELS, _POINTS = 64, 8
 _CLOSE = 1e-6  # of the largest ordinate
@@ -52,11 +51,11 @@ class RitzShapes(Value):
     array([0.281])
     """
 
-    value: Callable[[Float], ArrayLike]
-    slope: Callable[[Float], ArrayLike]
-    curvature: Callable[[Float], ArrayLike]
+    value: Callable[[Array], ArrayLike]
+    slope: Callable[[Array], ArrayLike]
+    curvature: Callable[[Array], ArrayLike]
 
-    def at(self, z: Float) -> tuple[Float, Float, Float]:
+    def at(self, z: Array) -> tuple[Array, Array, Array]:
         """Return ψ, ψ' and ψ'' at heights (P,), each of shape (P, n).
 
         Raises
@@ -64,7 +63,7 @@ class RitzShapes(Value):
         InputError
             If a function does not return such an array of finite numbers.
         """
-        rows: list[Float] = []
+        rows: list[Array] = []
         for name in ("value", "slope", "curvature"):
             with np.errstate(all="ignore"):  # values that are not finite are rejected below
                 array = np.asarray(getattr(self, name)(z), dtype=np.float64)
@@ -112,23 +111,23 @@ class RitzShapes(Value):
 class CosineShapes(Value):
     """1 - cos(r z) at heights (P,), one column per rate r in rad/m."""
 
-    rates: Float
+    rates: Array
 
-    def __call__(self, z: Float) -> Float:
+    def __call__(self, z: Array) -> Array:
         return 1.0 - np.cos(np.outer(z, self.rates))
 
 
 class CosineSlopes(CosineShapes):
     """The first derivative of `CosineShapes`."""
 
-    def __call__(self, z: Float) -> Float:
+    def __call__(self, z: Array) -> Array:
         return self.rates * np.sin(np.outer(z, self.rates))
 
 
 class CosineCurvatures(CosineShapes):
     """The second derivative of `CosineShapes`."""
 
-    def __call__(self, z: Float) -> Float:
+    def __call__(self, z: Array) -> Array:
         return self.rates**2 * np.cos(np.outer(z, self.rates))
 
 
@@ -199,7 +198,7 @@ def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalis
     )
 
 
-def _check_independent(mass: Float) -> None:
+def _check_independent(mass: Array) -> None:
     size = np.sqrt(np.diag(mass))
     smallest = float(np.linalg.eigvalsh(mass / np.outer(size, size))[0]) if size.all() else 0.0
     if smallest < _INDEPENDENT:

@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.structure._profile import Profile
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -44,9 +43,9 @@ class LumpedMasses(Value):
     array([1.669, 0.12 ])
     """
 
-    heights: Float
-    masses: Float
-    rotary: Float
+    heights: Array
+    masses: Array
+    rotary: Array
 
     def __init__(self, heights: ArrayLike, masses: ArrayLike, rotary: ArrayLike | None = None) -> None:
         z = finite_vector("lumped_masses.heights", heights, "m", field="lumped_masses")
@@ -105,12 +104,12 @@ class Sections(Value):
         return f"height = {self.height:g} m, and mass = {masses:g} kg/m and EI = {stiffness:g} N m² at its base"
 
     @property
-    def kinks(self) -> Float:
+    def kinks(self) -> Array:
         """Heights in m of the rows of all tables."""
         each = (self.mass, self.bending_stiffness, self.shear_stiffness, self.rotary_inertia)
         return np.concatenate([profile.kinks for profile in each if profile is not None])
 
-    def rotary_at(self, z: Float) -> Float:
+    def rotary_at(self, z: Array) -> Array:
         """Return the rotary inertia in kg m at heights in m."""
         return np.zeros_like(z) if self.rotary_inertia is None else self.rotary_inertia.at(z)
 

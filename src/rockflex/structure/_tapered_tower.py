@@ -6,8 +6,9 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import one_of, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
@@ -15,8 +16,6 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.structure._based import Assembled
 from rockflex.structure._beam import Beam
-
-Float = NDArray[np.float64]
 
 _N_ELEMENTS = 2000  # as in the paper
 
@@ -133,7 +132,7 @@ class _Ring:
     wall: float
     factor: float
 
-    def radii(self, z: Float) -> tuple[Float, Float]:
+    def radii(self, z: Array) -> tuple[Array, Array]:
         outer = self.base_radius + (self.top_radius - self.base_radius) * z / self.height
         return outer, np.maximum(outer - self.wall, 0.0)
 
@@ -141,7 +140,7 @@ class _Ring:
 class _Area(_Ring):
     """The factor times the area in m²."""
 
-    def __call__(self, z: Float) -> Float:
+    def __call__(self, z: Array) -> Array:
         outer, inner = self.radii(z)
         return self.factor * (math.pi * (outer**2 - inner**2))
 
@@ -149,6 +148,6 @@ class _Area(_Ring):
 class _SecondMoment(_Ring):
     """The factor times the second moment of the area in m⁴."""
 
-    def __call__(self, z: Float) -> Float:
+    def __call__(self, z: Array) -> Array:
         outer, inner = self.radii(z)
         return self.factor * (math.pi * (outer**2 - inner**2)) * ((outer**2 + inner**2) / 4.0)

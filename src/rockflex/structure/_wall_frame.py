@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from rockflex._arrays import Array
 from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._values import Value
@@ -15,8 +16,6 @@ from rockflex.modal import MassNormalisedModes
 from rockflex.structure._based import Assembled
 from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
 from rockflex.structure._modal_structure import ModalStructure
-
-Float = NDArray[np.float64]
 
 _PANELS, _POINTS = 64, 8
 _LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
@@ -148,7 +147,7 @@ def _root(n: int, alpha: float) -> float:
     return float(brentq(frequency, max((n - 1) * math.pi, 1e-6), n * math.pi, xtol=1e-15, rtol=1e-14))
 
 
-def _shape(x: Float, g: float, alpha: float) -> Float:
+def _shape(x: Array, g: float, alpha: float) -> Array:
     """Return sin γx - η cos γx - (γ/β) sinh βx + η cosh βx, with the growing exponential measured from the top."""
     if math.isinf(alpha):
         return np.sin(g * x)

@@ -4,15 +4,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockflex._arrays import Array
 from rockflex._checks import finite_vector, within
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.models import RockingModel
-
-Array = NDArray[np.float64]
 
 LARGEST = 1e9  # m, m/s or rad/s: beyond any structure, and far from where numbers overflow
 

@@ -4,8 +4,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
 from rockflex.fragility import (
@@ -31,7 +31,6 @@ from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, sha
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 GRID = 60  # points of a curve
 FEWEST = 12  # runs before a curve is fitted
@@ -128,7 +127,7 @@ def _median(grid: Array, p: Array) -> float | None:
 
 
 def _band(
-    part: "pd.DataFrame", im: Array, rotation: Array, fallen: NDArray[np.bool_], choice: CloudChoice, grid: Array
+    part: "pd.DataFrame", im: Array, rotation: Array, fallen: Bools, choice: CloudChoice, grid: Array
 ) -> tuple[Array, Array]:
     """Return the percentile band over resampled recordings: the total probability has no closed form for it."""
 
@@ -148,7 +147,7 @@ def _band(
     return band.low, band.high
 
 
-def _observed(im: Array, over: NDArray[np.bool_], bins: int = 8) -> list[list[float]]:
+def _observed(im: Array, over: Bools, bins: int = 8) -> list[list[float]]:
     """Return the share of runs beyond the limit in groups of similar intensity, at their geometric means."""
     order = np.argsort(im, kind="stable")
     parts = [part for part in np.array_split(order, bins) if part.size]

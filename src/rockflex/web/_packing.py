@@ -6,6 +6,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._arrays import Array
+
 
 def pack(values: ArrayLike) -> str:
     """Encode an array as base64 of little-endian single precision, which is enough for a figure."""
@@ -13,7 +15,7 @@ def pack(values: ArrayLike) -> str:
         return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
 
 
-def envelope(curves: list[NDArray[np.float64]], most: int) -> NDArray[np.intp]:
+def envelope(curves: list[Array], most: int) -> NDArray[np.intp]:
     """Return the indices of about `most` points that include the extremes of every curve in every interval.
 
     Parameters

@@ -24,8 +24,6 @@ from rockflex.web._state import State
 from rockflex.web._structures import Built, build
 from rockflex.web._uploads import Uploads
 
-Array = NDArray[np.float64]
-
 POINTS = 2000  # of a history, events aside
 EVENTS = 600  # nodes of events that are retained, at most
 LEDGER = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`

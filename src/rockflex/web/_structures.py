@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
@@ -40,8 +40,8 @@ class Built:
     structure: Structure | RockingProperties
     properties: RockingProperties
     modes: ModalProperties | None
-    heights: NDArray[np.float64]
-    shapes: NDArray[np.float64]
+    heights: Array
+    shapes: Array
 
 
 def build(entry: StructureEntry) -> Built:
@@ -77,7 +77,7 @@ def _build(text: str) -> Built:
     return Built(structure, properties, modes, heights[order], shapes[order])
 
 
-def _straight(entry: StructureEntry, p: RockingProperties) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _straight(entry: StructureEntry, p: RockingProperties) -> tuple[Array, Array]:
     """Shape of a structure with only a known displacement of the top: a straight line."""
     if p.n_modes:
         height = float(np.abs(p.effective_height).max()) * 1.25

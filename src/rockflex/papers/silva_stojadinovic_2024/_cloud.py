@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._number import Interval
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
@@ -15,7 +16,6 @@ from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTUR
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 PGV = 0.4  # m/s, for which the text gives the differences
 THRESHOLD = 1e-4  # rad, above which a run rocks

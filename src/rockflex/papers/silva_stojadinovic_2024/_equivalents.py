@@ -8,16 +8,14 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq, root
 
+from rockflex._arrays import Array
 from rockflex._checks import damping_ratios, in_range, positive, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, modal_properties
 from rockflex.structure import LumpedStructure
-
-Float = NDArray[np.float64]
 
 _SPACING = (1.25, 1.7)  # outside, positive masses barely meet both ratios of S1, or do not exist
 
@@ -139,7 +137,7 @@ def equivalent_s1(
     ).rocking()
 
 
-def tipped_cantilever(tip: float, n_modes: int) -> tuple[Float, Float, Float, Float]:
+def tipped_cantilever(tip: float, n_modes: int) -> tuple[Array, Array, Array, Array]:
     """Return the modes of a uniform Euler-Bernoulli cantilever of unit length with `tip` times its mass at the tip.
 
     Returns
@@ -175,17 +173,17 @@ def _tip_mass_ratio(share: float) -> float:
 
 
 @lru_cache(maxsize=32)
-def _five_masses(spacing: float) -> tuple[Float, Float]:
+def _five_masses(spacing: float) -> tuple[Array, Array]:
     """Return heights (largest 1) and masses (sum 1) that meet the two ratios of S1."""
     x = (np.arange(1, 6) / 5.0) ** spacing
 
     stiffness = _cantilever_stiffness(x)
 
-    def masses(logarithms: Float) -> Float:
+    def masses(logarithms: Array) -> Array:
         m = np.array([math.exp(logarithms[0]), 1.0, 1.0, 1.0, math.exp(logarithms[1])])
         return m / m.sum()
 
-    def missing(logarithms: Float) -> list[float]:
+    def missing(logarithms: Array) -> list[float]:
         m = masses(logarithms)
         unit = modal_properties(m, stiffness, x)
         mass, height = float(unit.effective_mass[0]), float(unit.effective_height[0])
@@ -202,7 +200,7 @@ def _five_masses(spacing: float) -> tuple[Float, Float]:
     return x, m
 
 
-def _cantilever_stiffness(x: Float) -> Float:
+def _cantilever_stiffness(x: Array) -> Array:
     """Return the stiffness of a uniform cantilever with EI = 1, condensed to the heights `x`."""
     low, high = np.minimum.outer(x, x), np.maximum.outer(x, x)
     stiffness = np.linalg.inv(low**2 * (3.0 * high - low) / 6.0)

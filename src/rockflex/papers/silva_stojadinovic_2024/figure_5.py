@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024._cloud import THRESHOLD, cloud
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
@@ -15,7 +15,6 @@ from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTUR
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 TITLE = "Fragility curves of rocking"
 PLACE = "Section 3.2"
@@ -73,7 +72,7 @@ def _gaps(runs: "pd.DataFrame") -> tuple[Interval, Interval, Interval]:
     return Interval(*one), Interval(*two), Interval(*three)
 
 
-def _curve(pgv: Array, rocks: NDArray[np.bool_], grid: Array) -> Array:
+def _curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
     """Return the probability on the grid; constant if all runs have the same outcome."""
     if rocks.all() or not rocks.any():
         return np.full(grid.size, float(rocks[0]))

@@ -4,9 +4,9 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
@@ -16,7 +16,6 @@ from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTUR
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 TITLE = "Friction that prevents sliding of the prototypes"
 PLACE = "Section 3.2"

@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._beside import check
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
@@ -48,7 +48,7 @@ def reproduce(_: Records) -> Result:
     return Result("table-2", TITLE, note=note, checks=tuple(checks))
 
 
-def _first_mode(frame: rf.Frame) -> tuple[float, NDArray[np.float64]]:
+def _first_mode(frame: rf.Frame) -> tuple[float, Array]:
     """Return first frequency and shape of the shear building in closed form, sin((2i − 1)…); T_1 is given."""
     n = frame.n_stories
     turn = math.pi / (2 * n + 1)

@@ -6,6 +6,7 @@ afterwards, which is done only for rows that are close to their peaks.
 
 import numpy as np
 
+from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import LINEAR, SWAY, VERTICAL, field_rates, observe, posture_of
 from rockflex.solve.adaptive.layout import (
@@ -23,7 +24,7 @@ from rockflex.solve.adaptive.layout import (
 )
 from rockflex.solve.adaptive.step import choose_branch, place_at
 from rockflex.solve.exact.probe import cubic_range
-from rockflex.solve.layout import Array, Log, Span, System
+from rockflex.solve.layout import Log, Span, System
 from rockflex.solve.peaks import raise_row, size_of
 
 STRAY = 0.2

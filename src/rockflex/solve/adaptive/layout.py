@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
-from rockflex.solve.layout import Array, Progress
+from rockflex.solve.layout import Progress
 
 TERMS = 8  # of the polynomial over a step
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates
 from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, TERMS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
-from rockflex.solve.layout import LEFT, STEP, Array, Span, System
+from rockflex.solve.layout import LEFT, STEP, Span, System
 
 SHORTEST = 1e-13  # s: if a shorter step is needed, the motion cannot be integrated
 FAILED = -1.0

@@ -1,11 +1,12 @@
 """The fast path of the integrated phases: step by step, sample by sample, while no event or peak can occur inside."""
 
+from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.check import nothing_hides
 from rockflex.solve.adaptive.layout import Flow, Stages
 from rockflex.solve.adaptive.step import FAILED, step_over, take_step
 from rockflex.solve.history import keep, room_left
-from rockflex.solve.layout import CARRY, LEFT, Array, Log, Progress, Span, System
+from rockflex.solve.layout import CARRY, LEFT, Log, Progress, Span, System
 
 
 @inlined_kernel

@@ -1,8 +1,8 @@
 """Sums of stages, unrolled: loops over so few weights would cost more than the arithmetic."""
 
+from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.tableau import A
-from rockflex.solve.layout import Array
 
 
 @inlined_kernel

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.models import FREEDOMS, Arrow, RockingModel
-from rockflex.solve.layout import Array
 
 WORST_CONDITION = 1e5  # of the eigenvectors in energy scale: beyond it five digits are lost
 

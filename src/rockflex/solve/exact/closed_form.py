@@ -5,10 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
+from rockflex._arrays import Array
 from rockflex.models import GROUND, HEADER, SIDE, TIME, LinearModel, RockingModel
 from rockflex.solve.exact.basis import Basis, basis_of
 from rockflex.solve.exact.tables import propagate
-from rockflex.solve.layout import Array
 
 
 class ClosedForm:

@@ -2,6 +2,7 @@
 
 import math
 
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
 from rockflex.solve.exact.probe import NOTHING, examine, probe, set_limits
 from rockflex.solve.history import keep
@@ -17,7 +18,6 @@ from rockflex.solve.layout import (
     UPPER,
     VALUES,
     ZERO,
-    Array,
     Log,
     Motion,
     Progress,

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from scipy.linalg import expm
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.models import FREEDOMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis
@@ -31,7 +32,6 @@ from rockflex.solve.layout import (
     STIFFNESS,
     SWING,
     VALUES,
-    Array,
     System,
 )
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._checks import in_range, positive, whole_number
 from rockflex._errors import InputError
 from rockflex.fragility import (
@@ -26,8 +27,7 @@ from rockflex.study.design._limits import rotation_of
 if TYPE_CHECKING:
     import pandas as pd
 
-Float = NDArray[np.float64]
-Curve = Callable[[Float], Float]
+Curve = Callable[[Array], Array]
 
 NODES = 12  # of Gauss and Legendre in a segment of a hazard curve
 FEWEST = 20  # resamples
@@ -54,8 +54,8 @@ class Question:
     """
 
     hazard: HazardCurve | None
-    nodes: Float
-    weights: Float
+    nodes: Array
+    weights: Array
 
     def answer(self, curve: Curve) -> tuple[float, float]:
         """Probability at the level and zero, or annual rate and an upper bound on the rate beyond the hazard curve."""
@@ -89,9 +89,9 @@ class Question:
 class Runs(NamedTuple):
     """The solved runs of one design and model, and the rotation of the limit."""
 
-    im: Float
-    rotation: Float
-    fallen: NDArray[np.bool_]
+    im: Array
+    rotation: Array
+    fallen: Bools
     groups: NDArray[Any]
     limit: float
 

@@ -5,15 +5,14 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._checks import positive
 from rockflex._errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Float = NDArray[np.float64]
 
 NEEDED = ("model", "tendon", "half_width", "prestress_ratio", "stiffness_ratio", "high")
 
@@ -100,7 +99,7 @@ def _common(column: "pd.Series[Any]") -> float:
     return first if np.allclose(column, first, rtol=1e-9, atol=0.0) else math.nan
 
 
-def _least(widths: Float, values: Float, target: float) -> _Least:
+def _least(widths: Array, values: Array, target: float) -> _Least:
     """Least width, outcome and notes, from values at rising widths."""
     known = np.isfinite(values)
     notes = [] if known.all() else [f"{int((~known).sum())} of {known.size} bases have no value and were left out."]
@@ -128,7 +127,7 @@ def _least(widths: Float, values: Float, target: float) -> _Least:
     return _Least(width, outcome, not rises, " ".join(notes))
 
 
-def _between(b: Float, y: Float, target: float) -> float:
+def _between(b: Array, y: Array, target: float) -> float:
     """Width at which a line through two values, the second at most the target, reaches it."""
     if y[1] > 0.0:
         y, target = np.log(y), math.log(target)

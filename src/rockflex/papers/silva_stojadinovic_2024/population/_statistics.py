@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array, Bools
 from rockflex._checks import in_range, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
@@ -15,7 +15,6 @@ from rockflex.study._results import STATUSES
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 FEWEST = 3  # pairs for a comparison
 SUMS = 6  # per comparison, from which slope and R² follow
@@ -82,7 +81,7 @@ class _Comparison:
     estimate: str
     x: Array
     y: Array
-    kept: NDArray[np.bool_]
+    kept: Bools
 
 
 def population_statistics(

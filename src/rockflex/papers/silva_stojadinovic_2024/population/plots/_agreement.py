@@ -10,10 +10,10 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.papers.silva_stojadinovic_2024.population.plots._pairs import (
     BEHAVIOURS,
-    Array,
     determination,
     groups_of,
     number,

@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockflex.papers.silva_stojadinovic_2024.population.plots._pairs import BEHAVIOURS, Array
+from rockflex._arrays import Array
+from rockflex.papers.silva_stojadinovic_2024.population.plots._pairs import BEHAVIOURS
 from rockflex.plot._study_tables import check_columns, measure_name
 from rockflex.plot._style import BLUE, RED, letter, new_figure, styled
 

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.papers.silva_stojadinovic_2024.population.plots._pairs import (
     BEHAVIOURS,
-    Array,
     determination,
     groups_of,
     number,

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.plot._study_tables import check_columns
 from rockflex.plot._style import GRAY, SMALL
@@ -15,7 +15,6 @@ from rockflex.plot._style import GRAY, SMALL
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 BEHAVIOURS = {"shear": r"shear, $ρ=\infty$", "flexure": r"flexure, $ρ=0$"}
 _FEWEST = 3  # pairs for a comparison, as in `population_statistics`

@@ -1,0 +1,7 @@
+"""The arrays that the package computes with."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
