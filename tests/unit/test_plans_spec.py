@@ -143,7 +143,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
             "free_vibration must be the free vibration after the record, a number in s",
         ),
         (CLOUD.replace('suites = ["el-centro-1940"]', ""), "[records]: no record is named. Give suites = "),
-        (CLOUD.replace("el-centro-1940", "el-centro"), "No embedded suite is named 'el-centro';"),
+        (CLOUD.replace("el-centro-1940", "el-centro"), "No embedded suite is named 'el-centro'. The suites are"),
         (
             CLOUD.replace("[records]", '[records]\ninclude = ["X*"]'),
             "[records] include: no record's name fits 'X*'.",

@@ -40,6 +40,14 @@ def read_structure(path: str | Path) -> Built:
     InputError
         If the file cannot be read, a key is unknown or missing, or a value is wrong; the message names file, table
         and key.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> length = Path("block.toml").write_text("block = { slenderness = 0.2, half_diagonal = 2.5, mass = 5e3 }")
+    >>> round(rf.read_structure("block.toml").resisting_moment)  # m g b in N m
+    24362
     """
     file = path_of("path", path)
     content = {key: value for key, value in read_toml(file, "structure").items() if key not in _FOR_RUNS}
