@@ -9,7 +9,6 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,13 +21,6 @@ pytest.importorskip("uvicorn", reason="the web page needs the packages of rockfl
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "web: drives a real Chromium; skipped, with the reason, where there is none")
-
-
-def pytest_collection_modifyitems(items):
-    here = Path(__file__).parent
-    for item in items:
-        if here in item.path.parents:  # one worker, so that servers and browsers do not keep each other waiting
-            item.add_marker(pytest.mark.xdist_group("web"))
 
 
 class Client:
