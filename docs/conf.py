@@ -53,7 +53,8 @@ html_static_path = ["_static"]
 html_css_files = ["rockflex.css"]
 html_copy_source = False
 
-copybutton_prompt_text = "$ "
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
 
 sphinx_gallery_conf = {
     "examples_dirs": str(HERE.parent / "examples" / "gallery"),
