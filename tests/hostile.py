@@ -274,9 +274,9 @@ def fits() -> Calls:
         "fit_cloud": (rf.fit_cloud, {"im": IM, "response": [0.01, 0.02, 0.05, 0.08, 0.02]}),
         "cloud.quantile": (cloud.quantile, {"im": [0.2], "p": 0.5}),
         "cloud.exceedance": (cloud.exceedance, {"im": [0.2], "limit": 0.5}),
-        "cloud.band": (cloud.band, {"im": [0.2], "level": 0.9}),
+        "cloud.band": (cloud.band, {"im": [0.2], "confidence": 0.9}),
         "fit_logistic": (rf.fit_logistic, {"im": IM, "outcome": OUTCOME}),
-        "logistic.band": (logistic.band, {"im": [0.2], "level": 0.9}),
+        "logistic.band": (logistic.band, {"im": [0.2], "confidence": 0.9}),
         "fit_capacities": (rf.fit_capacities, {"im": IM, "censored": OUTCOME}),
         "fit_stripes": (
             rf.fit_stripes,
@@ -286,7 +286,7 @@ def fits() -> Calls:
         "bootstrap_band": (
             rf.bootstrap_band,
             {"fit_function": rf.fit_cloud, "im": IM, "outcome_or_response": [0.01, 0.02, 0.05, 0.08, 0.02],
-             "groups": None, "at": [0.2], "level": 0.9, "n": 20, "seed": 0, "curve": lambda fit, im: fit.median(im)},
+             "groups": None, "at": [0.2], "confidence": 0.9, "n": 20, "seed": 0, "curve": lambda fit, im: fit.median(im)},
         ),
     }  # fmt: skip
 

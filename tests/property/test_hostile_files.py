@@ -95,7 +95,9 @@ def judged(read: Callable[[Path], Any], path: Path, content: bytes) -> None:
     if message is not None:
         assert len(message) < 2000
         # The numbers of a matrix are checked beside those that do not come from its file.
-        assert str(path.parent) in message or (path.stem == "k" and re.search("stiffness|freedoms", message)), message
+        assert str(path.parent) in message or (
+            path.stem == "k" and re.search("stiffness|degrees of freedom", message)
+        ), message
 
 
 def damaged(draw: st.DataObject, content: bytes) -> bytes:

@@ -206,6 +206,6 @@ def test_the_command_of_another_study(tmp_path):
     file.write_text(STUDY.format(question="level = 0.5", hazard=""), "utf-8")
     done = invoke("cloud", file)
     assert done.exit_code == 2
-    assert f'{file} says study = "design". Use rockflex design {file}.' in done.stderr
+    assert f'{file} has study = "design". Use rockflex design {file}.' in done.stderr
     assert "72 runs in 1 parts, 6 records; about" in invoke("design", file, "--dry-run").stdout
     assert "rockflex design study.toml --dry-run" in invoke("design", "--help").stdout

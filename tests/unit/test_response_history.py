@@ -1,4 +1,4 @@
-"""Quantities of a history: mechanics that ties them to one another, and nodes."""
+"""Quantities of a history: mechanics that ties them to one another, and its states."""
 
 import copy
 import pickle
@@ -108,7 +108,7 @@ def test_the_first_mode_alone_has_its_own_shape():
 
 
 def test_floor_accelerations_are_those_of_the_velocities(response):
-    """Between neighbouring nodes of one phase the total velocity changes by the mean acceleration."""
+    """Between neighbouring states of one phase the total velocity changes by the mean acceleration."""
     p = response.history.model.properties
     t, a = response.time, response.ground_acceleration
     ground = np.concatenate(([0.0], np.cumsum(np.diff(t) * 0.5 * (a[1:] + a[:-1]))))
@@ -123,7 +123,7 @@ def test_floor_accelerations_are_those_of_the_velocities(response):
     assert np.all(np.abs(np.diff(velocity, axis=0)[inside] / step - middle) <= allowed)
 
 
-def test_nodes_of_a_history(response):
+def test_states_of_a_history(response):
     history, time = response.history, response.time
     n = history.model.properties.n_modes
     assert history.states.shape == (len(time), 2 * n + 5)
@@ -181,7 +181,7 @@ def test_no_floors_no_story_drifts():
 
 
 def test_what_is_observed_does_not_change_the_motion(response):
-    """Neither the peaks that are tracked nor the nodes that are kept."""
+    """Neither the peaks that are tracked nor the states that are kept."""
     without = simulate(bare(FRAME), MOTION, free_vibration=1.0)
     size = np.abs(response.history.states).max(axis=0)
     np.testing.assert_allclose(without.history.states / size, response.history.states / size, rtol=0.0, atol=1e-15)
@@ -222,26 +222,26 @@ def test_histories_are_read_only(response):
 
 
 def test_a_history_in_short(response):
-    text = f"History(MDOF-S, {len(response.time)} nodes over 8.98 s, {response.n_uplifts} uplifts)"
+    text = f"History(MDOF-S, {len(response.time)} states over 8.98 s, {response.n_uplifts} uplifts)"
     assert repr(response.history) == text
     start = InitialState(rotation=0.01)
     run = simulate(FRAME, quiet_motion(0.05, dt=0.01), "2DOF-S", initial=start)
-    assert repr(run.history) == "History(2DOF-S, 6 nodes over 0.05 s, 0 uplifts)"
+    assert repr(run.history) == "History(2DOF-S, 6 states over 0.05 s, 0 uplifts)"
 
 
 @pytest.mark.parametrize(
     ("change", "text"),
     [
         (
-            lambda nodes: nodes[:, 1:],
-            r"nodes must have the shape \(\d+, 13\), but an array of shape \(\d+, 12\) was given",
+            lambda states: states[:, 1:],
+            r"states must have the shape \(\d+, 13\), but an array of shape \(\d+, 12\) was given",
         ),
-        (lambda nodes: nodes[:0], r"nodes must have the shape \(1, 13\), but an array of shape \(0, 13\)"),
-        (lambda nodes: 3.0, r"nodes must have the shape \(1, 13\), but an array of shape \(\)"),
-        (lambda nodes: nodes + np.inf, r"nodes must be finite, but its entry \[0, 0\] is inf"),
-        (lambda nodes: "none", "nodes must be a matrix of numbers in SI units, but str was given"),
+        (lambda states: states[:0], r"states must have the shape \(1, 13\), but an array of shape \(0, 13\)"),
+        (lambda states: 3.0, r"states must have the shape \(1, 13\), but an array of shape \(\)"),
+        (lambda states: states + np.inf, r"states must be finite, but its entry \[0, 0\] is inf"),
+        (lambda states: "none", "states must be a matrix of numbers in SI units, but str was given"),
     ],
 )
-def test_nodes_that_are_none(response, change, text):
+def test_states_that_are_none(response, change, text):
     with pytest.raises(InputError, match=text):
         History(response.history.model, change(response.history.states))

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._number import Interval
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
+
+Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
     import pandas as pd

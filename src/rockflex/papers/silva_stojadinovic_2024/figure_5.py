@@ -3,14 +3,16 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex._arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024._cloud import THRESHOLD, cloud
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES
+
+Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,7 +74,7 @@ def _gaps(runs: "pd.DataFrame") -> tuple[Interval, Interval, Interval]:
     return Interval(*one), Interval(*two), Interval(*three)
 
 
-def _curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
+def _curve(pgv: Array, rocks: NDArray[np.bool_], grid: Array) -> Array:
     """Return the probability on the grid; constant if all runs have the same outcome."""
     if rocks.all() or not rocks.any():
         return np.full(grid.size, float(rocks[0]))

@@ -4,14 +4,16 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
+
+Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
     import pandas as pd
