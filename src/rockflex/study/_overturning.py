@@ -15,11 +15,12 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
-from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.motion import GroundMotion
 from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
     RockingStructure,
+    check_motion,
     check_options,
     described,
     positive_numbers,
@@ -27,7 +28,7 @@ from rockflex.study._arguments import (
     work_limit_of,
 )
 from rockflex.study._case import Case
-from rockflex.study._runs import map_runs
+from rockflex.study._runs import in_order
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -111,9 +112,7 @@ def overturning_scales(
     """
     tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
-    if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
-    check_horizontal(motion)
+    check_motion(motion)
     return _search(_runner(structure, model, impact, work_limit), motion, tried, width)
 
 
@@ -191,16 +190,9 @@ def overturning_spectrum(
                 f"pulse must make a GroundMotion of an amplitude and a period, but it made {described(made)}. "
                 "Give one_sine_pulse, for instance."
             )
-    found: list[OverturningScales | None] = [None] * len(pulses)
-
-    def work(row: int) -> None:
-        found[row] = _search(run, pulses[row], tried, width)
-
-    for _ in map_runs(work, range(len(pulses)), workers):
-        pass
+    rows = in_order(lambda made: _search(run, made, tried, width), pulses, workers)
     import pandas as pd
 
-    rows = [row for row in found if row is not None]
     return pd.DataFrame(
         {
             "frequency_ratio": ratios,

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from rockflex.study.plan._tables import Row
+from rockflex.study._tables import Row
 
 
 def rungs(smallest: float, largest: float, growth: float) -> list[float]:

@@ -13,12 +13,12 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import intensity
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._subjects import Models, Motions, Structures
+from rockflex.study._tables import Columns, Row
 from rockflex.study.incremental._ladder import Ladder, rungs, steps_between, steps_from_rest
 from rockflex.study.plan._bench import Bench, bench_of
 from rockflex.study.plan._chunked import run_plan
 from rockflex.study.plan._cross import CrossPlan
-from rockflex.study.plan._spec import StructuresSpec
-from rockflex.study.plan._tables import Columns, Row
+from rockflex.study.plan._spec import FreeVibration, StructuresSpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,9 +46,7 @@ class IncrementalStudy(StructuresSpec):
     """
 
     study: Literal["incremental"] = Field("incremental", description='"incremental"')
-    free_vibration: float | Literal["settle"] = Field(
-        "settle", description='the free vibration after the record, a number in s or "settle"'
-    )
+    free_vibration: FreeVibration = "settle"
     smallest_scale: float = Field(0.1, description="the first factor on the acceleration, a number")
     largest_scale: float = Field(20.0, description="the last factor on the acceleration, a number")
     growth: float = Field(1.15, description="each factor over the one before, a number above 1")

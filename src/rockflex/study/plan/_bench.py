@@ -22,10 +22,10 @@ from rockflex.study._arguments import (
 from rockflex.study._case import Case
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
+from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study._yielding import hysteresis_of
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
-from rockflex.study.plan._tables import Columns, Row, kinds_of
 
 
 @dataclass(frozen=True)

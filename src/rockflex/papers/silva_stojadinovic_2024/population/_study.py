@@ -18,10 +18,10 @@ from rockflex.study._case import Case
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Motions, motions_of
+from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study.plan._bench import record_columns, record_facts
 from rockflex.study.plan._chunked import ChunkedPlan, run_plan
 from rockflex.study.plan._spec import Spec
-from rockflex.study.plan._tables import Columns, Row, kinds_of
 
 if TYPE_CHECKING:
     import pandas as pd
