@@ -193,16 +193,9 @@ def overturning_spectrum(
     rows = in_order(lambda made: _search(run, made, tried, width), pulses, workers)
     import pandas as pd
 
-    return pd.DataFrame(
-        {
-            "frequency_ratio": ratios,
-            "period": periods,
-            "lowest": [row.lowest for row in rows],
-            "amplitude": [row.lowest * unit for row in rows],
-            "highest_standing": [row.highest_standing for row in rows],
-            "impacts": [row.impacts for row in rows],
-        }
-    )
+    table = pd.DataFrame(rows).assign(frequency_ratio=ratios, period=periods)
+    table["amplitude"] = table["lowest"] * unit
+    return table[["frequency_ratio", "period", "lowest", "amplitude", "highest_standing", "impacts"]]
 
 
 Run = Callable[[GroundMotion, float], Response]

@@ -20,7 +20,7 @@ from rockflex.study.cloud._study import CloudPlan, Factors
 from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
 from rockflex.study.design._limits import check_limit, check_same_for_all, rotation_of
 from rockflex.study.design._table import design_table
-from rockflex.study.plan._bench import Bench, bench_of
+from rockflex.study.plan._bench import Bench, bench_of, check_lifts
 from rockflex.study.plan._chunked import run_plan
 from rockflex.study.plan._spec import FreeVibration, StructuresSpec, checked_by
 
@@ -131,11 +131,7 @@ class DesignPlan(CloudPlan):
     """The cross product of designs, records, models and scales, cut into chunks."""
 
     def __init__(self, bench: Bench, designs: Sequence[Design], scales: Sequence[float], per_chunk: int) -> None:
-        for model in bench.assumptions.models:
-            if not model.lifts:
-                raise InputError(
-                    f"models: {model.label} has a fixed base, so the base width has no effect. Leave it out."
-                )
+        check_lifts(bench, "a fixed base, so the base width has no effect")
         self._tendons = list(dict.fromkeys(design.tendon for design in designs))
         self._facts = [self._facts_of(design) for design in designs]
         made = Bench({each.name: each.properties for each in designs}, bench.motions, bench.assumptions)

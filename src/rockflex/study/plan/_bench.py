@@ -159,6 +159,13 @@ def check_different(name: str, values: Sequence[str]) -> None:
         raise InputError(f"{name}: {shown(repeated[0])} occurs more than once. Give each once.")
 
 
+def check_lifts(bench: Bench, what: str) -> None:
+    """Raise an InputError if the base of a model cannot lift; `what` it has, and why the study is not for it."""
+    for model in bench.assumptions.models:
+        if not model.lifts:
+            raise InputError(f"models: {model.label} has {what}. Leave it out.")
+
+
 def record_facts(motions: Suite) -> list[Row]:
     """Return the columns that describe each record; its name and group are codes."""
     groups = list(dict.fromkeys(record_group(motion) for motion in motions))
