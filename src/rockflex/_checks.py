@@ -60,6 +60,14 @@ def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None 
     return array
 
 
+def all_positive(name: str, values: Array, unit: str, hint: str = "", *, field: str | None = None) -> None:
+    """Raise an InputError unless all `values` are positive; `field` as in `in_range`."""
+    if values.min(initial=math.inf) <= 0.0:
+        i = int(np.argmin(values))
+        message = f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. {hint}"
+        raise InputError(message.rstrip(), field=field or name)
+
+
 def finite(name: str, value: float, unit: str) -> float:
     """Return `value` as a finite float."""
     number = _float_or_none(value)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import dimensions, finite_matrix, finite_vector
+from rockflex._checks import all_positive, dimensions, finite_matrix, finite_vector
 from rockflex._computable import computable
 from rockflex._errors import InputError
 
@@ -49,13 +49,7 @@ def checked_mass(mass: ArrayLike, size: int, *, field: str = "mass") -> Array:
             "Give the mass of the base as base_mass.",
             field=field,
         )
-    if m.min() <= 0.0:
-        i = int(np.argmin(m))
-        raise InputError(
-            f"mass must be positive, but mass[{i}] = {m[i]:g} kg was given. "
-            "Condense massless floors out of the stiffness matrix first.",
-            field=field,
-        )
+    all_positive("mass", m, "kg", "Condense massless floors out of the stiffness matrix first.", field=field)
     return m
 
 

@@ -56,8 +56,7 @@ class HazardCurve(Value):
                 f"rate must be positive and fall from point to point, but rate[{bad[0]}] = {rates[bad[0]]:g} does not. "
                 "Give annual rates of exceedance; drop the points at which the rate is zero."
             )
-        object.__setattr__(self, "im", measures)
-        object.__setattr__(self, "rate", rates)
+        vars(self).update(im=measures, rate=rates)
 
     @property
     def slopes(self) -> Array:

@@ -50,12 +50,12 @@ class LognormalFragility(Value):
     method: str = "given"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "median", positive("median", self.median, "the unit of IM"))
-        object.__setattr__(self, "beta", positive("beta", self.beta, "natural logarithms"))
+        median = positive("median", self.median, "the unit of IM")
+        vars(self).update(median=median, beta=positive("beta", self.beta, "natural logarithms"))
         if self.covariance is not None:
             matrix = finite_matrix("covariance", self.covariance, "natural logarithms squared", (2, 2))
             matrix.setflags(write=False)
-            object.__setattr__(self, "covariance", matrix)
+            vars(self).update(covariance=matrix)
 
     def probability(self, im: ArrayLike) -> Array:
         """Probability of failure, of the shape of `im`."""

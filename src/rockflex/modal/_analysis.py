@@ -143,21 +143,28 @@ def modal_properties(
     omega, shapes = _mass_normalised_modes(m, k)
     omega, shapes = omega[:n], shapes[:, :n]
     moved = mass_times(m, shapes)
-    shear, moment = moved.sum(axis=0), h @ moved
-    no_shear = np.abs(shear) <= NO_PARTICIPATION * np.sqrt(mass_times(m, np.ones_like(h)).sum())
-    no_moment = np.abs(moment) <= NO_PARTICIPATION * np.sqrt(h @ mass_times(m, h))
-    shear[no_shear] = 0.0
+    total, inertia = float(mass_times(m, np.ones_like(h)).sum()), float(h @ mass_times(m, h))
+    return participating(omega, moved.sum(axis=0), h @ moved, total, inertia, h, shapes)
+
+
+def participating(
+    omega: Array, shear: Array, moment: Array, mass: float, inertia: float, heights: Array, shapes: Array
+) -> ModalProperties:
+    """Return mass-normalised modes with a top ordinate of 1; arguments as in `MassNormalisedModes`."""
+    no_shear = np.abs(shear) <= NO_PARTICIPATION * np.sqrt(mass)
+    no_moment = np.abs(moment) <= NO_PARTICIPATION * np.sqrt(inertia)
+    shear = np.where(no_shear, 0.0, shear)
     height = np.where(no_moment, np.nan, np.copysign(np.inf, moment))
     np.divide(moment, shear, out=height, where=~no_shear)
 
-    scale = normalising_ordinates(shapes)
+    scale = _normalising_ordinates(shapes)
     return ModalProperties(
         omega=omega,
         effective_mass=shear**2,
         effective_height=height,
         participation=shear * scale,
         shapes=shapes / scale,
-        heights=h,
+        heights=heights,
     )
 
 
@@ -179,7 +186,7 @@ def _mass_normalised_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]
     return omega[::-1].copy(), shapes[:, ::-1]
 
 
-def normalising_ordinates(shapes: Array) -> Array:
+def _normalising_ordinates(shapes: Array) -> Array:
     """Return the divisor of each mode: its top ordinate, or its largest ordinate if the top hardly moves."""
     magnitude = np.abs(shapes)
     largest = shapes[magnitude.argmax(axis=0), np.arange(shapes.shape[1])]

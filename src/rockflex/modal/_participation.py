@@ -11,7 +11,7 @@ from rockflex._checks import mode_count
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.modal._analysis import NO_PARTICIPATION, ModalProperties, normalising_ordinates
+from rockflex.modal._analysis import ModalProperties, participating
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._rocking import RockingProperties
 
@@ -62,23 +62,9 @@ class MassNormalisedModes(Value):
     @computable("The participation of the modes")
     def modal(self) -> ModalProperties:
         """Return the modes, normalised to a top ordinate of 1."""
-        shear, moment = self.shear.copy(), self.moment
-        no_shear = np.abs(shear) <= NO_PARTICIPATION * np.sqrt(self.mass)
-        no_moment = np.abs(moment) <= NO_PARTICIPATION * np.sqrt(self.inertia)
-        shear[no_shear] = 0.0
-        height = np.where(no_moment, np.nan, np.copysign(np.inf, moment))
-        np.divide(moment, shear, out=height, where=~no_shear)
         above = self.heights > 0.0
-        shapes = self.ordinates[above]
-        scale = normalising_ordinates(shapes)
-        return ModalProperties(
-            omega=self.omega.copy(),
-            effective_mass=shear**2,
-            effective_height=height,
-            participation=shear * scale,
-            shapes=shapes / scale,
-            heights=self.heights[above],
-        )
+        stations, shapes = self.heights[above], self.ordinates[above]
+        return participating(self.omega, self.shear, self.moment, self.mass, self.inertia, stations, shapes)
 
     @computable("The inertia of the structure with this base")
     def rocking(

@@ -294,6 +294,4 @@ class RockingProperties(Value):
             top_ordinate=self.top_ordinate[:k],
             zeta=self.zeta[:k],
             floors=None if self.floors is None or k == 0 else self.floors.truncated(k),
-            top_height=self.top_height,
-            base_mass=self.base_mass,
         )

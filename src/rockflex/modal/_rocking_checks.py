@@ -3,7 +3,7 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import finite, positive
+from rockflex._checks import all_positive, finite, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal._floors import FloorModes
@@ -23,13 +23,7 @@ def check_modes(modes: dict[str, Array]) -> None:
                 field=name,
             )
     for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
-        if values.min(initial=np.inf) <= 0.0:
-            i = int(np.argmin(values))
-            raise InputError(
-                f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. "
-                "Leave out modes that do not participate.",
-                field=name,
-            )
+        all_positive(name, values, unit, "Leave out modes that do not participate.")
     falls = np.flatnonzero(omega[1:] < omega[:-1])
     if falls.size:
         i = int(falls[0])

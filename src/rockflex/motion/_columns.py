@@ -13,21 +13,7 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number
 
-SPELLINGS = {
-    "g": "g",
-    "m/s2": "m/s2",
-    "m/s/s": "m/s2",
-    "m/sec2": "m/s2",
-    "m/sec/sec": "m/s2",
-    "ms-2": "m/s2",
-    "cm/s2": "cm/s2",
-    "cm/s/s": "cm/s2",
-    "cm/sec2": "cm/s2",
-    "cm/sec/sec": "cm/s2",
-    "cms-2": "cm/s2",
-    "gal": "cm/s2",
-    "gals": "cm/s2",
-}
+SPELLING = re.compile(r"g|gals?|(c?m)(?:s-2|/(s|sec)(?:2|/\2))")  # with g, m or cm, and gal for cm/s²
 SECONDS = ("s", "sec", "secs", "second", "seconds")
 BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 
@@ -134,7 +120,8 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
     bracket = BRACKET.search(label, 0, _after_brackets(label))
     written = bracket[1] if bracket else ""
     plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-"))
-    stated = SPELLINGS.get(plain)
+    spelling = SPELLING.fullmatch(plain)
+    stated = spelling and ("g" if plain == "g" else f"{spelling[1] or 'cm'}/s2")
     if written and stated is None:
         raise InputError(
             f"{file}: the column header gives the unit {shown(written)}, which is not known. "

@@ -74,10 +74,7 @@ class GroundMotion(Value):
                 f"metadata must be a RecordInfo or None, but {type(metadata).__name__} was given. "
                 "Write metadata=RecordInfo(event=..., year=...)."
             )
-        object.__setattr__(self, "acceleration", samples)
-        object.__setattr__(self, "dt", positive("dt", dt, "s"))
-        object.__setattr__(self, "name", name)
-        object.__setattr__(self, "metadata", metadata)
+        vars(self).update(acceleration=samples, dt=positive("dt", dt, "s"), name=name, metadata=metadata)
 
     def __repr__(self) -> str:
         return (

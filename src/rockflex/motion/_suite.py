@@ -63,8 +63,7 @@ class Suite(Value, Sequence[GroundMotion]):
                 f"The motions of a suite need different names, but {names} occurs more than once. "
                 "Rename: dataclasses.replace(motion, name=...), or rename the files."
             )
-        object.__setattr__(self, "motions", members)
-        object.__setattr__(self, "name", name)
+        vars(self).update(motions=members, name=name)
 
     @property
     def names(self) -> tuple[str, ...]:

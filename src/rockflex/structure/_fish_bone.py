@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import dimensions, finite_vector, float_array, positive
+from rockflex._checks import all_positive, dimensions, finite_vector, float_array, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -85,7 +85,7 @@ class FishBone(Assembled, Value):
     ) -> None:
         lengths = finite_vector("story_heights", story_heights, "m")
         n = lengths.size
-        _check_signs("story_heights", lengths, "m")
+        all_positive("story_heights", lengths, "m")
         if n == 0:
             raise InputError(
                 "story_heights must contain at least one height in m, but none was given.", field="story_heights"
@@ -151,14 +151,8 @@ def _one_a_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
         raise InputError(
             f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given.", field=name
         )
-    _check_signs(name, array, unit)
+    all_positive(name, array, unit)
     return array
-
-
-def _check_signs(name: str, array: Array, unit: str) -> None:
-    if array.min(initial=np.inf) <= 0.0:
-        i = int(np.argmin(array))
-        raise InputError(f"{name} must be positive, but {name}[{i}] = {array[i]:g} {unit} was given.", field=name)
 
 
 def _beams(values: ArrayLike, n: int) -> Array:

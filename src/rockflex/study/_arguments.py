@@ -10,7 +10,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
-from rockflex.motion import GroundMotion
+from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.study._initial import InitialState
 
 Output = Literal["history", "peaks"]
@@ -27,12 +27,6 @@ class RockingStructure(Protocol):
     def rocking(self, n_modes: int | None = None) -> RockingProperties:
         """Return the properties of the first `n_modes` modes, or of all."""
         ...
-
-
-def check_output(output: str) -> None:
-    """Raise an InputError unless `output` is known."""
-    if not one_of(output, get_args(Output)):
-        raise InputError(f'output must be "history" or "peaks", but {shown(output)} was given.')
 
 
 def properties_of(structure: RockingStructure | RockingProperties) -> RockingProperties:
@@ -118,13 +112,37 @@ def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
         )
 
 
-def check_initial(initial: InitialState | None) -> None:
-    """Raise an InputError unless `initial` is a state or None."""
+def case_options(
+    output: str, free_vibration: float | Literal["settle"], initial: InitialState | None, work_limit: float | None
+) -> dict[str, Any]:
+    """Return the arguments of a `Case` other than its model.
+
+    Raises
+    ------
+    InputError
+        If one of them is out of range or of the wrong kind.
+    """
+    if not one_of(output, get_args(Output)):
+        raise InputError(f'output must be "history" or "peaks", but {shown(output)} was given.')
     if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
             f"initial must be an InitialState or None, but {shown(initial)} was given. "
             "Write InitialState(rotation=...)."
         )
+    return {
+        "free_vibration": free_vibration_time(free_vibration),
+        "initial": initial,
+        "work_limit": work_limit_of(work_limit),
+        "history": output == "history",
+        "floors": output == "history",
+    }
+
+
+def check_motion(motion: GroundMotion) -> None:
+    """Raise an InputError unless `motion` is a horizontal ground motion."""
+    if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
+    check_horizontal(motion)
 
 
 def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: str) -> list[Any]:

@@ -15,11 +15,12 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
-from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.motion import GroundMotion
 from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
     RockingStructure,
+    check_motion,
     check_options,
     described,
     positive_numbers,
@@ -27,7 +28,7 @@ from rockflex.study._arguments import (
     work_limit_of,
 )
 from rockflex.study._case import Case
-from rockflex.study._runs import map_runs
+from rockflex.study._runs import in_order
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -111,9 +112,7 @@ def overturning_scales(
     """
     tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
-    if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
-    check_horizontal(motion)
+    check_motion(motion)
     return _search(_runner(structure, model, impact, work_limit), motion, tried, width)
 
 
@@ -191,26 +190,12 @@ def overturning_spectrum(
                 f"pulse must make a GroundMotion of an amplitude and a period, but it made {described(made)}. "
                 "Give one_sine_pulse, for instance."
             )
-    found: list[OverturningScales | None] = [None] * len(pulses)
-
-    def work(row: int) -> None:
-        found[row] = _search(run, pulses[row], tried, width)
-
-    for _ in map_runs(work, range(len(pulses)), workers):
-        pass
+    rows = in_order(lambda made: _search(run, made, tried, width), pulses, workers)
     import pandas as pd
 
-    rows = [row for row in found if row is not None]
-    return pd.DataFrame(
-        {
-            "frequency_ratio": ratios,
-            "period": periods,
-            "lowest": [row.lowest for row in rows],
-            "amplitude": [row.lowest * unit for row in rows],
-            "highest_standing": [row.highest_standing for row in rows],
-            "impacts": [row.impacts for row in rows],
-        }
-    )
+    table = pd.DataFrame(rows).assign(frequency_ratio=ratios, period=periods)
+    table["amplitude"] = table["lowest"] * unit
+    return table[["frequency_ratio", "period", "lowest", "amplitude", "highest_standing", "impacts"]]
 
 
 Run = Callable[[GroundMotion, float], Response]

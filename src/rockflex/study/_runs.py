@@ -22,3 +22,15 @@ def map_runs(
             return function(task)
 
     return map_threads(guarded, tasks, workers, left.set)
+
+
+def in_order(
+    function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
+) -> list[Result]:
+    """Return the results of `map_runs` in the order of the tasks."""
+
+    def numbered(task: tuple[int, Task]) -> tuple[int, Result]:
+        return task[0], function(task[1])
+
+    found = dict(map_runs(numbered, enumerate(tasks), workers))
+    return [found[place] for place in range(len(found))]

@@ -2,22 +2,18 @@
 
 from typing import Literal
 
-from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, parse_model
-from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.motion import GroundMotion
 from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
     Output,
     RockingStructure,
-    check_initial,
+    case_options,
+    check_motion,
     check_options,
-    check_output,
-    described,
-    free_vibration_time,
     properties_of,
-    work_limit_of,
 )
 from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
@@ -93,12 +89,8 @@ def simulate(
     >>> response.status, round(response.max_rotation, 4)
     ('rocking', 0.0198)
     """
-    check_output(output)
+    options = case_options(output, free_vibration, initial, work_limit)
     check_options(bouc_wen, impact)
     tied = parse_model(model).of(properties_of(structure), impact, bouc_wen)
-    if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
-    check_horizontal(motion)
-    check_initial(initial)
-    free, limit, whole = free_vibration_time(free_vibration), work_limit_of(work_limit), output == "history"
-    return Case(tied, free, initial, limit, history=whole, floors=whole).run(motion)
+    check_motion(motion)
+    return Case(tied, **options).run(motion)

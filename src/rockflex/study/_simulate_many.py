@@ -1,7 +1,10 @@
 """The cross product of structures, motions, scales and models, with one row per run."""
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Literal, SupportsIndex
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._errors import InputError, SolverError
 from rockflex.models import BoucWen, ImpactLaw
@@ -10,19 +13,17 @@ from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
     Output,
-    check_initial,
+    case_options,
     check_options,
-    check_output,
     factors_of,
-    free_vibration_time,
     properties_of,
-    work_limit_of,
 )
 from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
-from rockflex.study._runs import map_runs
+from rockflex.study._results import RESULTS, STATUSES, results_of
+from rockflex.study._runs import in_order
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
-from rockflex.study._table import RunTable
+from rockflex.study._tables import ArrowTable, Row, tabulate, to_frame
 from rockflex.study._yielding import hysteresis_of
 
 if TYPE_CHECKING:
@@ -96,29 +97,24 @@ def simulate_many(
     2  MDOF-S    0.5  rocking
     3  MDOF-S    1.0  rocking
     """
-    check_output(output)
+    options = case_options(output, free_vibration, initial, work_limit)
     check_options(bouc_wen, impact)
-    check_initial(initial)
     everything, names = structures_of(structures)
     records = motions_of(motions)
     check_horizontal(*records)
     chosen = models_of(models)
     yielding = hysteresis_of(chosen, bouc_wen)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
-    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
     refused: list[WorkLimitError] = []
     shape = (len(everything), len(records), len(chosen), len(factors))
     inner = len(chosen) * len(factors)  # runs of one structure under one motion
     each = len(records) * inner
-    table = RunTable(len(everything) * each, keep=output == "history")
-
-    whole = output == "history"
+    responses = np.full(len(everything) * each if options["history"] else 0, None, dtype=object)
 
     def case_of(index: int, which: int) -> Case | str:
         """Return the case of a structure and a model, or the reason why there is none."""
         try:
-            tied = chosen[which].of(properties_of(everything[index]), impact, yielding[which])
-            return Case(tied, free, initial, limit, history=whole, floors=whole)
+            return Case(chosen[which].of(properties_of(everything[index]), impact, yielding[which]), **options)
         except InputError as error:
             return str(error)
 
@@ -128,24 +124,49 @@ def simulate_many(
             for first in range(0, each, CHUNK):
                 yield index, first, min(first + CHUNK, each), cases
 
-    def work(task: tuple[int, int, int, list[Case | str | None]]) -> None:
-        index, first, last, cases = task
-        for place in range(first, last):
-            row = index * each + place
-            motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
-            case = cases[which] = cases[which] or case_of(index, which)
-            if isinstance(case, str):
-                table.errors[row] = case
-                continue
-            try:
-                table.enter(row, case.run(motion, factors[factor]))
-            except (SolverError, InputError) as error:
-                table.errors[row] = str(error)
-                if isinstance(error, WorkLimitError):
-                    refused.append(error)
+    def result_of(index: int, place: int, cases: list[Case | str | None]) -> Row:
+        motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
+        case = cases[which] = cases[which] or case_of(index, which)
+        if isinstance(case, str):
+            return {"error": case}
+        try:
+            response = case.run(motion, factors[factor])
+        except (SolverError, InputError) as error:
+            if isinstance(error, WorkLimitError):
+                refused.append(error)
+            return {"error": str(error)}
+        if responses.size:
+            responses[index * each + place] = response
+        return results_of(response) | {"status": STATUSES.index(response.status)}
 
-    for _ in map_runs(work, tasks(), workers):
-        pass
-    if len(refused) == table.status.size:
+    def work(task: tuple[int, int, int, list[Case | str | None]]) -> ArrowTable:
+        index, first, last, cases = task
+        return tabulate([result_of(index, place, cases) for place in range(first, last)], columns)
+
+    columns = {"status": STATUSES, "error": str, **RESULTS}
+    results = to_frame(*in_order(work, tasks(), workers))
+    if len(refused) == len(results):
         raise refused[0]
-    return table.frame(shape, names, [motion.name for motion in records], factors, [model.label for model in chosen])
+
+    import pandas as pd
+
+    structure, motion, model, scale = (axis.ravel() for axis in np.indices(shape, dtype=np.int32))
+    table = pd.DataFrame(
+        {
+            "structure": structure if names is None else _category(structure, names),
+            "motion": _category(motion, [record.name for record in records]),
+            "scale": np.asarray(factors)[scale],
+            "model": _category(model, [each.label for each in chosen]),
+            **results,
+        }
+    )
+    return table.assign(response=responses) if responses.size else table
+
+
+def _category(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
+    """Return a categorical column; names that occur twice share a category."""
+    import pandas as pd
+
+    categories = list(dict.fromkeys(names))
+    places = np.array([categories.index(name) for name in names], dtype=np.int32)
+    return pd.Categorical.from_codes(places[codes], dtype=pd.CategoricalDtype(categories))

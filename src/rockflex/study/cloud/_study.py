@@ -1,9 +1,9 @@
 """Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
-from pydantic import Field, field_validator
+from pydantic import AfterValidator, Field
 
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion
@@ -16,6 +16,14 @@ from rockflex.study.plan._spec import StructuresSpec
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
+Factors = Annotated[
+    list[float],
+    Field(min_length=1, description="a list of factors on the acceleration"),
+    AfterValidator(lambda scales: factors_of(scales, QUIET)),
+]
 
 
 class CloudStudy(StructuresSpec):
@@ -37,15 +45,10 @@ class CloudStudy(StructuresSpec):
     """
 
     study: Literal["cloud"] = Field("cloud", description='"cloud"')
-    scales: list[float] = Field([1.0], min_length=1, description="a list of factors on the acceleration")
+    scales: Factors = Field([1.0])
     friction: bool = Field(
         False, description="true or false: whether to find the required friction too, which takes time"
     )
-
-    @field_validator("scales")
-    @classmethod
-    def _finite(cls, scales: list[float]) -> list[float]:
-        return factors_of(scales, QUIET)
 
     def plan(self) -> "CloudPlan":
         """Build the structures, load the records, and divide the study into chunks.
@@ -56,9 +59,6 @@ class CloudStudy(StructuresSpec):
             If a structure cannot be built or a record cannot be read; see also `run_cloud`.
         """
         return CloudPlan(self.bench(friction=self.friction), self.scales, self.runs_per_chunk)
-
-
-QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
 
 
 class CloudPlan(CrossPlan):

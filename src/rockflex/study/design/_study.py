@@ -1,7 +1,7 @@
 """Design of a base: how wide it must be, and which tendon holds it down (Section 4.1)."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
 from pydantic import Field, field_validator, model_validator
@@ -13,16 +13,16 @@ from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, Table
-from rockflex.study._arguments import WORK_LIMIT, RockingStructure, described, factors_of
+from rockflex.study._arguments import WORK_LIMIT, RockingStructure, described
 from rockflex.study._subjects import Models, Motions
-from rockflex.study.cloud._study import QUIET, CloudPlan
+from rockflex.study._tables import Columns, Row
+from rockflex.study.cloud._study import CloudPlan, Factors
 from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
 from rockflex.study.design._limits import check_limit, check_same_for_all, rotation_of
 from rockflex.study.design._table import design_table
-from rockflex.study.plan._bench import Bench, bench_of
+from rockflex.study.plan._bench import Bench, bench_of, check_lifts
 from rockflex.study.plan._chunked import run_plan
-from rockflex.study.plan._spec import StructuresSpec
-from rockflex.study.plan._tables import Columns, Row
+from rockflex.study.plan._spec import FreeVibration, StructuresSpec, checked_by
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -63,9 +63,7 @@ class DesignStudy(StructuresSpec):
 
     study: Literal["design"] = Field("design", description='"design"')
     structures: list[StructureEntry] = Field(min_length=1, max_length=1, description="one table [[structures]]")
-    free_vibration: float | Literal["settle"] = Field(
-        "settle", description='the free vibration after the record, a number in s or "settle"'
-    )
+    free_vibration: FreeVibration = "settle"
     half_widths: list[float] = Field(
         description="a list of half widths B in m, or a range {smallest = 1.0, largest = 3.0, count = 9}"
     )
@@ -75,11 +73,13 @@ class DesignStudy(StructuresSpec):
     base_mass_per_width: float = Field(
         0.0, description="the mass that the base gains for each metre of its width 2 B, a number in kg/m"
     )
-    scales: list[float] = Field([1.0], min_length=1, description="a list of factors on the acceleration")
-    limits: list[float | str] = Field(
+    scales: Factors = Field([1.0])
+    limits: Annotated[list[float | str], checked_by(lambda limits: [*map(check_limit, limits)])] = Field(
         ["overturning"], min_length=1, description='a list of limits, such as [0.02, "0.5 nominal", "overturning"]'
     )
-    measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"')
+    measure: Annotated[str, checked_by(check_same_for_all)] = Field(
+        "pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"'
+    )
     level: float | None = Field(None, description="the level of the measure, in SI units")
     hazard: HazardTable | None = Field(None, description="a table of the lists im and rate")
     target: float | None = Field(
@@ -90,24 +90,6 @@ class DesignStudy(StructuresSpec):
     @classmethod
     def _widths(cls, given: object) -> object:
         return half_widths_of(given) if isinstance(given, list | dict) else given
-
-    @field_validator("scales")
-    @classmethod
-    def _finite(cls, scales: list[float]) -> list[float]:
-        return factors_of(scales, QUIET)
-
-    @field_validator("limits")
-    @classmethod
-    def _limits(cls, limits: list[float | str]) -> list[float | str]:
-        for limit in limits:
-            check_limit(limit)
-        return limits
-
-    @field_validator("measure")
-    @classmethod
-    def _measure(cls, measure: str) -> str:
-        check_same_for_all(measure)
-        return measure
 
     @model_validator(mode="after")
     def _question(self) -> "DesignStudy":
@@ -149,11 +131,7 @@ class DesignPlan(CloudPlan):
     """The cross product of designs, records, models and scales, cut into chunks."""
 
     def __init__(self, bench: Bench, designs: Sequence[Design], scales: Sequence[float], per_chunk: int) -> None:
-        for model in bench.assumptions.models:
-            if not model.lifts:
-                raise InputError(
-                    f"models: {model.label} has a fixed base, so the base width has no effect. Leave it out."
-                )
+        check_lifts(bench, "a fixed base, so the base width has no effect")
         self._tendons = list(dict.fromkeys(design.tendon for design in designs))
         self._facts = [self._facts_of(design) for design in designs]
         made = Bench({each.name: each.properties for each in designs}, bench.motions, bench.assumptions)

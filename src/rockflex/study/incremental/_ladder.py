@@ -4,8 +4,18 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import NamedTuple
 
-from rockflex.study.plan._tables import Row
+from rockflex.study._tables import Row
+
+
+class Steps(NamedTuple):
+    """The first and the last scale, each over the one before, and the width to which bisection narrows a boundary."""
+
+    smallest: float
+    largest: float
+    growth: float
+    tolerance: float
 
 
 def rungs(smallest: float, largest: float, growth: float) -> list[float]:

@@ -13,12 +13,12 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import intensity
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._subjects import Models, Motions, Structures
-from rockflex.study.incremental._ladder import Ladder, rungs, steps_between, steps_from_rest
-from rockflex.study.plan._bench import Bench, bench_of
+from rockflex.study._tables import Columns, Row
+from rockflex.study.incremental._ladder import Ladder, Steps, rungs, steps_between, steps_from_rest
+from rockflex.study.plan._bench import Bench, bench_of, check_lifts
 from rockflex.study.plan._chunked import run_plan
 from rockflex.study.plan._cross import CrossPlan
-from rockflex.study.plan._spec import StructuresSpec
-from rockflex.study.plan._tables import Columns, Row
+from rockflex.study.plan._spec import FreeVibration, StructuresSpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,9 +46,7 @@ class IncrementalStudy(StructuresSpec):
     """
 
     study: Literal["incremental"] = Field("incremental", description='"incremental"')
-    free_vibration: float | Literal["settle"] = Field(
-        "settle", description='the free vibration after the record, a number in s or "settle"'
-    )
+    free_vibration: FreeVibration = "settle"
     smallest_scale: float = Field(0.1, description="the first factor on the acceleration, a number")
     largest_scale: float = Field(20.0, description="the last factor on the acceleration, a number")
     growth: float = Field(1.15, description="each factor over the one before, a number above 1")
@@ -68,15 +66,8 @@ class IncrementalStudy(StructuresSpec):
         InputError
             If a structure cannot be built, a record cannot be read, or a model's base cannot lift.
         """
-        return IncrementalPlan(
-            self.bench(),
-            self.smallest_scale,
-            self.largest_scale,
-            self.growth,
-            self.tolerance,
-            self.limit,
-            self.runs_per_chunk,
-        )
+        steps = Steps(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
+        return IncrementalPlan(self.bench(), steps, self.limit, self.runs_per_chunk)
 
 
 class IncrementalPlan(CrossPlan):
@@ -84,25 +75,12 @@ class IncrementalPlan(CrossPlan):
 
     exact_count = False
 
-    def __init__(
-        self,
-        bench: Bench,
-        smallest: float,
-        largest: float,
-        growth: float,
-        tolerance: float,
-        limit: Limit,
-        runs_per_chunk: int,
-    ) -> None:
-        check_ladder(smallest, largest, growth, tolerance)
-        for model in bench.assumptions.models:
-            if not model.lifts:
-                raise InputError(
-                    f"models: {model.label} has a base that cannot lift, so nothing overturns it. Leave it out."
-                )
-        self.growth, self.tolerance, self.limit = growth, tolerance, limit
-        self.scales = rungs(smallest, largest, growth)
-        most = len(self.scales) + steps_between(growth, tolerance) + steps_from_rest(tolerance)
+    def __init__(self, bench: Bench, steps: Steps, limit: Limit, runs_per_chunk: int) -> None:
+        check_ladder(*steps)
+        check_lifts(bench, "a base that cannot lift, so nothing overturns it")
+        self.steps, self.limit = steps, limit
+        self.scales = rungs(steps.smallest, steps.largest, steps.growth)
+        most = len(self.scales) + steps_between(steps.growth, steps.tolerance) + steps_from_rest(steps.tolerance)
         self._most = most
         super().__init__(bench, 1, max(1, runs_per_chunk // most))
 
@@ -134,7 +112,7 @@ class IncrementalPlan(CrossPlan):
                 return row | {"overturned": None}
             return row | {"overturned": OVERTURNING.exceeded(row) or state.exceeded(row)}
 
-        return Ladder(run, self.scales, self.growth, self.tolerance).climb()
+        return Ladder(run, self.scales, self.steps.growth, self.steps.tolerance).climb()
 
 
 def check_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
@@ -209,8 +187,8 @@ def run_incremental(
     bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     if not one_of(limit, ("overturning", "nominal")):
         raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
-    plan = IncrementalPlan(bench, smallest_scale, largest_scale, growth, tolerance, limit, 64)
-    return run_plan(plan, workers)
+    steps = Steps(smallest_scale, largest_scale, growth, tolerance)
+    return run_plan(IncrementalPlan(bench, steps, limit, 64), workers)
 
 
 def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.DataFrame":

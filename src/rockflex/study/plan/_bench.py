@@ -22,10 +22,10 @@ from rockflex.study._arguments import (
 from rockflex.study._case import Case
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
+from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study._yielding import hysteresis_of
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
-from rockflex.study.plan._tables import Columns, Row, kinds_of
 
 
 @dataclass(frozen=True)
@@ -157,6 +157,13 @@ def check_different(name: str, values: Sequence[str]) -> None:
     repeated = [value for place, value in enumerate(values) if value in values[:place]]
     if repeated:
         raise InputError(f"{name}: {shown(repeated[0])} occurs more than once. Give each once.")
+
+
+def check_lifts(bench: Bench, what: str) -> None:
+    """Raise an InputError if the base of a model cannot lift; `what` it has, and why the study is not for it."""
+    for model in bench.assumptions.models:
+        if not model.lifts:
+            raise InputError(f"models: {model.label} has {what}. Leave it out.")
 
 
 def record_facts(motions: Suite) -> list[Row]:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, ClassVar, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex.motion import Suite, check_horizontal
-from rockflex.study._runs import map_runs
+from rockflex.study._runs import in_order
+from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
 from rockflex.study.plan._records import checksums
-from rockflex.study.plan._tables import ArrowTable, Columns, Row, tabulate, to_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,11 +92,4 @@ def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.Dat
         The rows of all chunks; see the study for its columns.
     """
     plan.check_work()
-    tables: dict[int, ArrowTable] = {}
-
-    def work(number: int) -> None:
-        tables[number] = plan.chunk(number)
-
-    for _ in map_runs(work, range(plan.n_chunks), workers):
-        pass
-    return to_frame(*(tables[number] for number in range(plan.n_chunks)))
+    return to_frame(*in_order(plan.chunk, range(plan.n_chunks), workers))

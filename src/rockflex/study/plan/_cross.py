@@ -3,9 +3,9 @@
 from abc import abstractmethod
 from collections.abc import Iterable
 
+from rockflex.study._tables import Columns, Row
 from rockflex.study.plan._bench import Bench
 from rockflex.study.plan._chunked import ChunkedPlan
-from rockflex.study.plan._tables import Columns, Row
 
 
 class CrossPlan(ChunkedPlan):

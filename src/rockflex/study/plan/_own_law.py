@@ -2,6 +2,7 @@
 
 import hashlib
 import inspect
+import math
 import sys
 from collections.abc import Mapping
 from typing import Any, cast
@@ -49,6 +50,8 @@ def law_checksum(law: ImpactLaw) -> dict[str, str]:
 
 
 def _said(name: str, value: Any, kind: type) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
     if value is None or isinstance(value, str | bool | int | float):
         return value
     if isinstance(value, np.ndarray | np.generic):

@@ -1,12 +1,13 @@
 """The specification of a study: the keys that all kinds share."""
 
-import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, PrivateAttr, ValidationError, field_validator
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from rockflex._errors import InputError
+from rockflex._json import plain
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
@@ -17,6 +18,23 @@ from rockflex.study.plan._bench import Assumptions, Bench, check_different
 from rockflex.study.plan._chunked import ChunkedPlan
 from rockflex.study.plan._own_law import law_checksum, law_document
 from rockflex.study.plan._records import Records
+
+
+def checked_by(check: Callable[[Any], object]) -> AfterValidator:
+    """Return a validator that raises what `check` raises, and keeps the value as it is."""
+
+    def checked(value: Any) -> Any:
+        check(value)
+        return value
+
+    return AfterValidator(checked)
+
+
+FreeVibration = Annotated[
+    float | Literal["settle"],
+    Field(description='the free vibration after the record, a number in s or "settle"'),
+    checked_by(free_vibration_time),
+]
 
 
 class Spec(Table):
@@ -33,7 +51,7 @@ class Spec(Table):
     runs_per_chunk: int = Field(
         256, ge=1, description="about how many runs to compute and store together, a whole number of at least 1"
     )
-    work_limit: float | Literal["none"] = Field(
+    work_limit: Annotated[float | Literal["none"], checked_by(work_limit_of)] = Field(
         WORK_LIMIT, description='the most computing that one run may take, a number in s or "none"'
     )
 
@@ -44,12 +62,6 @@ class Spec(Table):
             super().__init__(**content)
         except ValidationError as error:
             raise InputError(" ".join(problems(error, content, type(self)))) from error
-
-    @field_validator("work_limit")
-    @classmethod
-    def _limit(cls, value: float | Literal["none"]) -> float | Literal["none"]:
-        work_limit_of(value)
-        return value
 
     @property
     def kind(self) -> str:
@@ -62,7 +74,7 @@ class Spec(Table):
 
     def document(self) -> dict[str, Any]:
         """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out."""
-        return _plain(self.model_dump(exclude_none=True))
+        return plain(self.model_dump(exclude_none=True))
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of the numbers in each file that a structure names, by its key in the document."""
@@ -78,23 +90,10 @@ class StructuresSpec(Assumed, Spec):
     """A study of given structures: the structures, the models, and the options of the runs."""
 
     structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
-    models: list[str] = Field(["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
-    free_vibration: float | Literal["settle"] = Field(
-        0.0, description='the free vibration after the record, a number in s or "settle"'
+    models: Annotated[list[str], checked_by(lambda labels: [*map(parse_model, labels)])] = Field(
+        ["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]'
     )
-
-    @field_validator("models")
-    @classmethod
-    def _labels(cls, labels: list[str]) -> list[str]:
-        for label in labels:
-            parse_model(label)
-        return labels
-
-    @field_validator("free_vibration")
-    @classmethod
-    def _seconds(cls, value: float | Literal["settle"]) -> float | Literal["settle"]:
-        free_vibration_time(value)
-        return value
+    free_vibration: FreeVibration = 0.0
 
     def document(self) -> dict[str, Any]:
         """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out.
@@ -106,7 +105,7 @@ class StructuresSpec(Assumed, Spec):
         """
         if self.impact is None or isinstance(self.impact, str):
             return super().document()
-        return self.model_copy(update={"impact": None}).document() | {"impact": _plain(law_document(self.impact))}
+        return self.model_copy(update={"impact": None}).document() | {"impact": law_document(self.impact)}
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of the numbers in each file that a structure names, and of a user-defined impact law.
@@ -146,13 +145,3 @@ class StructuresSpec(Assumed, Spec):
         limit = work_limit_of(self.work_limit)
         assumptions = Assumptions(models, free, self.law(), self.hysteresis(), friction, limit)
         return Bench(properties, self.records.load(self._folder), assumptions)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    return value

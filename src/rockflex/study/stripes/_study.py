@@ -12,10 +12,10 @@ from rockflex._shown import shown
 from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, beyond
 from rockflex.motion import intensity
 from rockflex.study._arguments import positive_numbers
+from rockflex.study._tables import Columns, Row
 from rockflex.study.plan._bench import Bench
 from rockflex.study.plan._cross import CrossPlan
 from rockflex.study.plan._spec import StructuresSpec
-from rockflex.study.plan._tables import Columns, Row
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from rockflex._checks import whole_number
 from rockflex._constants import GRAVITY
@@ -18,10 +18,10 @@ from rockflex.study._case import Case
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Motions, motions_of
+from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study.plan._bench import record_columns, record_facts
 from rockflex.study.plan._chunked import ChunkedPlan, run_plan
-from rockflex.study.plan._spec import Spec
-from rockflex.study.plan._tables import Columns, Row, kinds_of
+from rockflex.study.plan._spec import FreeVibration, Spec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,15 +53,7 @@ class PopulationStudy(Spec):
         1000, ge=1, le=MOST, description="the number of random structures, a whole number from 1 to 4294967295"
     )
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
-    free_vibration: float | Literal["settle"] = Field(
-        0.0, description='the free vibration after the record, a number in s or "settle"'
-    )
-
-    @field_validator("free_vibration")
-    @classmethod
-    def _seconds(cls, value: float | Literal["settle"]) -> float | Literal["settle"]:
-        free_vibration_time(value)
-        return value
+    free_vibration: FreeVibration = 0.0
 
     def plan(self) -> "PopulationPlan":
         """Load the records, and divide the study into chunks.
