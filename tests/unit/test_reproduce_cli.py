@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from page import check_page
 from rockflex.cli import app
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, _population, reproduce
+from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, _pool, reproduce
 
 
 def invoke(*arguments):
@@ -104,7 +104,7 @@ def test_force_needs_a_folder():
 
 
 def test_records_of_ones_own(at2, monkeypatch):
-    monkeypatch.setattr(_population, "PAIRS", 30)
+    monkeypatch.setattr(_pool, "PAIRS", 30)
     done = invoke("figure-6", "--records", at2)
     assert done.exit_code == 0, done.stderr
     assert f"8 records of the folder {at2.name}, in place of the paper's 210" in done.stderr

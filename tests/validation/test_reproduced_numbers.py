@@ -13,7 +13,7 @@ import pytest
 
 import rockflex as rf
 from drawing import drawn
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _population, reproduce
+from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _pool, reproduce
 from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, places
 from rockflex.papers.silva_stojadinovic_2024._number import Interval
 from rockflex.papers.silva_stojadinovic_2024._pool import intervals, pool
@@ -48,7 +48,7 @@ OWN = {"figure-8": 10, "figure-11": 1, "table-2": 8, "figure-3": 4, "figure-4": 
 @pytest.fixture(scope="module")
 def records():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_population, "PAIRS", PAIRS)
+        patch.setattr(_pool, "PAIRS", PAIRS)
         yield Records(seeds=10)
 
 
@@ -235,11 +235,11 @@ def test_draws_of_a_population_spread_as_populations_do(records):
 
 def test_a_measure_that_few_draws_have_is_none(records, monkeypatch):
     calls = iter(range(10**6))
-    monkeypatch.setattr(_population, "DRAWS", 20)
+    monkeypatch.setattr(_pool, "DRAWS", 20)
     monkeypatch.setattr(
-        _population, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
+        _pool, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
     )
-    found = _population.intervals.__wrapped__(records)
+    found = _pool.intervals.__wrapped__(records)
     assert found["y"] == Interval(1.0, 1.0, 1.0)
     assert all(np.isnan(found["x"]))
 

@@ -30,7 +30,7 @@ def to_csv(document: "Document") -> str:
             writer.writerow(
                 (
                     section.name, line.place, line.name, line.printed, ours, line.unit, line.difference_as_text,
-                    line.criterion, str(line.verdict), line.note,
+                    line.criterion, line.verdict, line.note,
                 )
             )  # fmt: skip
     return out.getvalue()

@@ -40,7 +40,7 @@ def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
     verdicts = list(document.verdicts)
     last = len(verdicts) - 1
     looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
-    failing = [line for s in document.sections for line in s.numbers if str(line.verdict) == verdicts[-1]]
+    failing = [line for s in document.sections for line in s.numbers if line.verdict == verdicts[-1]]
     return _template().render(
         document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
     )

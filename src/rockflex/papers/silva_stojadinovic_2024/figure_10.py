@@ -3,11 +3,11 @@
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._number import Number, stated
+from rockflex.papers.silva_stojadinovic_2024._number import stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import BEHAVIOURS, MARK, tall_frame
 from rockflex.papers.silva_stojadinovic_2024._uplifted import errors, ratio
+from rockflex.report import Number, Result
 
 TITLE = "Uplifted over fixed-base frequencies"
 PLACE = "Section 3.4"

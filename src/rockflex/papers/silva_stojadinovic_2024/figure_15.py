@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared, stated
+from rockflex.papers.silva_stojadinovic_2024._number import compared, stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Number, Remark, Result
 
 TITLE = "Chimney under El Centro times 2"
 PLACE = "Section 4.1.1"

@@ -6,12 +6,11 @@ from typing import Any
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Check, Kind, Remark, check
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared, stated
+from rockflex.papers.silva_stojadinovic_2024._number import check, compared, stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._specimens import TWO_HZ, histories, nominal, spread, widest
-from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind, Verdict
+from rockflex.report import Check, Number, Remark, Result
 
 TITLE = "Specimen 2Hz-Long Base(14) under an antisymmetric Ricker pulse, by an equivalent"
 LABEL = "Equivalent of 2Hz-Long Base(14), not the specimen; Ricker pulse 0.1 g, 0.5 s"

@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Check, check
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared, stated
+from rockflex.papers.silva_stojadinovic_2024._number import check, compared, stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
-from rockflex.papers.silva_stojadinovic_2024._shown import shown
 from rockflex.papers.silva_stojadinovic_2024._specimens import S1, combinations, histories, nominal, spread, widest
 from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
+from rockflex.report import Check, Number, Result
+from rockflex.report._line import as_text
 
 TITLE = "Specimen S1 in free vibration from 0.11 rad, by an equivalent"
 LABEL = "Equivalent of S1, not the specimen; released at 0.11 rad; $h^*_1$ = 1 m is assumed"
@@ -75,7 +74,7 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
         holds(
             "friction that MDOF-S needs, Eq. 22 as printed", PLACE, "force ratios higher than 2", friction, "> 2",
             note="∞: the vertical sum passes through zero; with the corrected sign of the weight "
-            f"{shown(every.required_friction, 1)}",
+            f"{as_text(every.required_friction, 1)}",
         ),
     ]  # fmt: skip
 

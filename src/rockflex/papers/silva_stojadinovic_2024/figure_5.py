@@ -9,8 +9,8 @@ from rockflex._arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024._cloud import THRESHOLD, cloud
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES
+from rockflex.report import Result
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -3,11 +3,11 @@
 from functools import partial
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, percent, places
 from rockflex.papers.silva_stojadinovic_2024._number import statistic
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Remark, Result
 
 TITLE = "Clouds of the rotation of the runs that rock and stand"
 PLACE = "Section 3.2, PGV = 0.4 m/s"

@@ -4,7 +4,7 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, percent, places
 from rockflex.papers.silva_stojadinovic_2024._number import statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.report import Result
 
 TITLE = "Clouds of the relative top displacement of the runs that rock and stand"
 PLACE = "Section 3.2, PGV = 0.4 m/s"

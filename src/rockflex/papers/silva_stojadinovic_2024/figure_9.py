@@ -5,9 +5,8 @@ from functools import partial
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
-from rockflex.papers.silva_stojadinovic_2024._number import Number, statistic, tendency
+from rockflex.papers.silva_stojadinovic_2024._number import statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._pool import (
     DRAWS,
     PAIRS,
@@ -17,8 +16,9 @@ from rockflex.papers.silva_stojadinovic_2024._pool import (
     population,
 )
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
+from rockflex.report import Number, Remark, Result
 
 TITLE = "Agreement of 2DOF-S with MDOF-S"
 PLACE = "Section 3.3"

@@ -7,11 +7,11 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Remark, Result
 
 if TYPE_CHECKING:
     import pandas as pd
