@@ -17,6 +17,7 @@ specimen is built is a `Check`, not a number; additional computations are `Remar
 import math
 from typing import NamedTuple
 
+import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._printed import Range, range_of
 from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST, Verdict
 from rockflex.report import Check, Number
@@ -29,6 +30,16 @@ class Interval(NamedTuple):
     estimate: float
     low: float
     high: float
+
+    def times(self, factor: float) -> "Interval":
+        """Return the interval in another unit, such as per cent."""
+        return Interval(*(factor * value for value in self))
+
+
+def intervals_of(band: rf.BootstrapBand) -> list[Interval]:
+    """Return the interval of each value of a bootstrap."""
+    three = zip(band.estimate.tolist(), band.low.tolist(), band.high.tolist(), strict=True)
+    return [Interval(*each) for each in three]
 
 
 def compared(

@@ -32,4 +32,4 @@ def reproduce(records: Records) -> Result:
     ]
     note = "The prototypes are drawn from these ranges, so this only checks the library."
     figures = {"figure-8": lambda: rf.plot_population(pairs)}
-    return Result("figure-8", TITLE, figures=figures, note=note, checks=tuple(checks))
+    return Result("figure-8", TITLE, figures=figures, note=note, checks=checks)

@@ -32,7 +32,7 @@ def reproduce(_: Records) -> Result:
         "T_1 and h*_1/B are input, so they are not among the numbers. A value that the table repeats, because it does "
         "not depend on them, is one number; ours is the value of the structure that differs most from it."
     )
-    return Result("table-1", TITLE, tuple(numbers), note=note)
+    return Result("table-1", TITLE, numbers, note=note)
 
 
 def _values(name: str) -> dict[str, float]:

@@ -45,7 +45,7 @@ def reproduce(_: Records) -> Result:
         "The table has formulas and no numbers: that our parameters follow them is a check of the library, and nothing "
         "of the paper's is reproduced by it."
     )
-    return Result("table-2", TITLE, note=note, checks=tuple(checks))
+    return Result("table-2", TITLE, note=note, checks=checks)
 
 
 def _first_mode(frame: rf.Frame) -> tuple[float, Array]:
