@@ -236,9 +236,7 @@ def test_draws_of_a_population_spread_as_populations_do(records):
 def test_a_measure_that_few_draws_have_is_none(records, monkeypatch):
     calls = iter(range(10**6))
     monkeypatch.setattr(_pool, "DRAWS", 20)
-    monkeypatch.setattr(
-        _pool, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
-    )
+    monkeypatch.setattr(_pool, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0})
     found = _pool.intervals.__wrapped__(records)
     assert found["y"] == Interval(1.0, 1.0, 1.0)
     assert all(np.isnan(found["x"]))

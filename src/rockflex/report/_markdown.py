@@ -2,18 +2,16 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rockflex.report._document import Document
-    from rockflex.report._line import Check
-    from rockflex.report._result import Result
+from rockflex.report._document import Document
+from rockflex.report._line import Check
+from rockflex.report._result import Result
 
 CHECKS = ("place", "check", "paper", "rockflex", "unit", "holds", "criterion and remarks")
 HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict", "criterion and remarks")
 
 
-def to_markdown(document: "Document") -> str:
+def to_markdown(document: Document) -> str:
     """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
 
     Examples
@@ -40,7 +38,7 @@ def to_markdown(document: "Document") -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _section(section: "Result") -> Iterable[str]:
+def _section(section: Result) -> Iterable[str]:
     yield f"## {_plain(section.name)}: {_plain(section.title)}"
     if section.note:
         yield _plain(section.note)
@@ -64,7 +62,7 @@ def _section(section: "Result") -> Iterable[str]:
             yield _table(remark.head, remark.rows)
 
 
-def _check(check: "Check") -> tuple[str, ...]:
+def _check(check: Check) -> tuple[str, ...]:
     holds = "yes" if check.holds else "**no**"
     return check.place, check.name, check.printed, check.ours_as_text, check.unit, holds, check.remarks
 
