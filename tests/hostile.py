@@ -286,7 +286,8 @@ def fits() -> Calls:
         "bootstrap_band": (
             rf.bootstrap_band,
             {"fit_function": rf.fit_cloud, "im": IM, "outcome_or_response": [0.01, 0.02, 0.05, 0.08, 0.02],
-             "groups": None, "at": [0.2], "confidence": 0.9, "n": 20, "seed": 0, "curve": lambda fit, im: fit.median(im)},
+             "groups": None, "at": [0.2], "confidence": 0.9, "n": 20, "seed": 0,
+             "curve": lambda fit, im: fit.median(im)},
         ),
     }  # fmt: skip
 

@@ -26,7 +26,7 @@ ALLOWED = {
     "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel", "store", "fragility"},
     "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
     "report": {"plot"},
-    "papers": {"motion", "modal", "structure", "models", "response", "study", "fragility", "plot"},
+    "papers": {"motion", "modal", "structure", "models", "response", "study", "fragility", "plot", "report"},
     "kinds": {"motion", "structure", "study", "fragility", "plot", "papers", "parallel", "store"},
 }
 FOUNDATION = {

@@ -9,10 +9,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from page import Page, check_page
-from rockflex.papers.silva_stojadinovic_2024 import Kind, Remark, Result, Verdict
-from rockflex.papers.silva_stojadinovic_2024._beside import check
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, compared, stated, statistic
-from rockflex.report import Document, to_csv, to_html, to_markdown, write_report
+from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, stated, statistic
+from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_report
 from rockflex.report._svg import inline
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}

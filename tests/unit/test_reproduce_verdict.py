@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._beside import check
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, compared, stated, statistic, tendency
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, stated, statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._printed import range_of
 from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST
 

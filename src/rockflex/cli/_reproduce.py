@@ -10,7 +10,8 @@ from rockflex.cli import _options as options
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rockflex.papers.silva_stojadinovic_2024 import Records, Result
+    from rockflex.papers.silva_stojadinovic_2024 import Records
+    from rockflex.report import Result
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -122,7 +123,7 @@ def _print_numbers(results: "Sequence[Result]") -> None:
         ]
         if rows:
             show(console, grid(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows))
-        checks = [(c.name, c.stated, c.ours_as_text, c.unit, "yes" if c.holds else "no") for c in result.checks]
+        checks = [(c.name, c.printed, c.ours_as_text, c.unit, "yes" if c.holds else "no") for c in result.checks]
         if checks:
             show(console, grid(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks))
         typer.echo()

@@ -1,6 +1,5 @@
 """Clouds of response over intensity, and the lines through them."""
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ from rockflex._arrays import Array
 from rockflex._cases import cases
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFits, fit_each_cloud
+from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud
 from rockflex.plot._study_tables import (
     check_columns,
     keys_of,
@@ -27,17 +26,10 @@ from rockflex.plot._style import BLACK, Look, columns, styled
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.fragility import CloudFit
-
 _QUANTITIES = {
     "max_rotation": r"$θ_{\mathrm{max}}$ [rad]",
     "max_top_displacement": r"$u_{\mathrm{top,max}}$, relative to the base [m]",
     "max_total_top_displacement": r"total $u_{\mathrm{top,max}}$ [m]",
-}
-_LINES: "dict[str, Callable[[CloudFits], CloudFit | None]]" = {
-    "max_rotation": lambda fits: fits.outcomes.rotation,
-    "max_top_displacement": lambda fits: fits.top_displacement,
-    "max_total_top_displacement": lambda fits: fits.total_top_displacement,
 }
 _TINY = 5.6
 _ROW = 0.056  # of the panel, from row to row of the numbers in it
@@ -52,7 +44,7 @@ class _Cloud(NamedTuple):
     rocked: "pd.DataFrame"
     fallen: "pd.DataFrame"
     n_failed: int
-    line: "CloudFit | None"
+    line: CloudFit | None
     fitted: bool
 
 
@@ -118,8 +110,7 @@ def plot_clouds(
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
     with styled():
         figure, panels = structure_panels(names, 2, 2.45, measure_name(measure), _QUANTITIES[quantity])
-        panels[0].set_xscale("log")
-        panels[0].set_yscale("log")
+        panels[0].set(xscale="log", yscale="log")
         for axes in panels:
             label_plainly(axes.xaxis)
         _set_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(looks))
@@ -150,7 +141,7 @@ def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float,
         fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
         rocked = ~fell & (solved["max_rotation"].to_numpy(dtype=float) > threshold)
         fit = fit_of.get((structure, model))
-        line = fit and _LINES[quantity](fit)
+        line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
         failed = len(group) - len(solved)
         clouds.append(_Cloud(structure, model, solved[rocked], solved[fell], failed, line, fit is not None))
     return clouds

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,17 +9,15 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal
-
-if TYPE_CHECKING:
-    from rockflex.response import History, Response
+from rockflex.response import History, Response
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
     """One response with its history, label and look."""
 
-    response: "Response"
-    history: "History"
+    response: Response
+    history: History
     label: str
     look: Look
 
@@ -101,7 +98,7 @@ def title_of(curves: list[Curve], title: str | None) -> str:
     return literal(motions.pop()) if len(motions) == 1 else ""
 
 
-def curves_of(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> list[Curve]:
+def curves_of(responses: Response | Iterable[Response], labels: Sequence[str] | None = None) -> list[Curve]:
     """Check the responses, and give each a label and a line style.
 
     Raises
@@ -118,7 +115,7 @@ def curves_of(responses: "Response | Iterable[Response]", labels: Sequence[str] 
     return [Curve(*parts) for parts in zip(everything, histories, names, looks, strict=True)]
 
 
-def _history(index: int, response: "Response") -> "History":
+def _history(index: int, response: Response) -> History:
     if not hasattr(response, "history"):
         raise InputError(
             f"responses[{index}] must be a Response, but {type(response).__name__} was given. "
@@ -132,7 +129,7 @@ def _history(index: int, response: "Response") -> "History":
     return response.history
 
 
-def _names(responses: "list[Response]", labels: Sequence[str] | None) -> list[str]:
+def _names(responses: list[Response], labels: Sequence[str] | None) -> list[str]:
     if labels is None:
         models = [response.model for response in responses]
         if len(set(models)) == len(models):
@@ -146,7 +143,7 @@ def _names(responses: "list[Response]", labels: Sequence[str] | None) -> list[st
     return list(labels)
 
 
-def _looks(histories: "list[History]") -> list[Look]:
+def _looks(histories: list[History]) -> list[Look]:
     """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others."""
     most = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
     wanted = [_own_look(history, most) for history in histories]
@@ -162,7 +159,7 @@ def _looks(histories: "list[History]") -> list[Look]:
     return looks
 
 
-def _own_look(history: "History", most: int) -> Look | None:
+def _own_look(history: History, most: int) -> Look | None:
     model = history.model
     n = model.properties.n_modes
     if not model.lifts:

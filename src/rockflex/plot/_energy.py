@@ -1,16 +1,12 @@
 """Energy over time."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex.plot._curves import curves_of
 from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, literal, new_figure, styled
 from rockflex.plot._units import readable
-
-if TYPE_CHECKING:
-    from rockflex.response import Response
+from rockflex.response import Response
 
 # From the bottom: what is gone never falls, so what can still return rides on it.
 _LAYERS = (
@@ -23,7 +19,7 @@ _LAYERS = (
 )
 
 
-def plot_energy(response: "Response") -> Figure:
+def plot_energy(response: Response) -> Figure:
     """Plot the stored and dissipated energies, stacked, and the input energy.
 
     The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
@@ -77,9 +73,7 @@ def plot_energy(response: "Response") -> Figure:
         if curve.falls:
             axes.axvline(time[-1], color=BLUE, linestyle=":", label="overturning")
         axes.set_xlim(float(history.time[0]), float(history.time[-1]))
-        axes.set_ylim(0.0, 1.06 * float(np.max(supply)) / factor or 1.0)
-        axes.set_xlabel("time [s]")
-        axes.set_ylabel(f"energy [{unit}]")
+        axes.set(ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0), xlabel="time [s]", ylabel=f"energy [{unit}]")
         title = f"{curve.label} under {literal(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
         axes.set_title(title)
         handles, labels = axes.get_legend_handles_labels()

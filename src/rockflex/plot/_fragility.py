@@ -92,8 +92,7 @@ def plot_fragility(
             failed = sum(fit.n_failed for fit in fits if fit.structure == name)
             if failed:
                 axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
-        panels[0].set_xlim(0.0, limit)
-        panels[0].set_ylim(-0.03, 1.03)
+        panels[0].set(xlim=(0.0, limit), ylim=(-0.03, 1.03))
         handles: list[Line2D | Patch] = [*keys_of(looks, symbols=False)]
         if groups:
             handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))

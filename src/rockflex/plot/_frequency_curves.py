@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from string import ascii_uppercase
-from typing import TYPE_CHECKING, SupportsIndex
+from typing import SupportsIndex
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,14 +13,11 @@ from matplotlib.lines import Line2D
 from rockflex._arrays import Array
 from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
-from rockflex.modal import RockingProperties, frequency_equation, uplifted_modes
-from rockflex.plot._style import GRAY, SMALL, Look, letter, literal, new_figure, styled
+from rockflex.modal import RockingProperties, UpliftedModes, frequency_equation, uplifted_modes
+from rockflex.plot._panel import list_beside
+from rockflex.plot._style import GRAY, Look, letter, literal, new_figure, styled
 from rockflex.plot._surrogates import surrogate_looks
 from rockflex.study import RockingStructure, properties_of
-
-if TYPE_CHECKING:
-    from rockflex.modal import UpliftedModes
-
 
 _POINTS = 300  # of a curve between two poles
 _NAMED_ROOTS = 2
@@ -99,7 +96,7 @@ def plot_frequency_equation(
 
 def _models_of(
     structure: "RockingStructure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
-) -> "dict[str, tuple[RockingProperties, UpliftedModes]]":
+) -> dict[str, tuple[RockingProperties, UpliftedModes]]:
     """Truncated properties and uplifted modes by the models' labels."""
     full = properties_of(structure)
     if full.n_modes == 0:
@@ -114,7 +111,7 @@ def _models_of(
 
 def _draw_panel(
     axes: Axes,
-    models: "dict[str, tuple[RockingProperties, UpliftedModes]]",
+    models: dict[str, tuple[RockingProperties, UpliftedModes]],
     looks: dict[str, Look],
     highest: float | None,
     side: int | None,
@@ -145,14 +142,8 @@ def _draw_panel(
         )  # fmt: skip
         notes += [(label, look.color), *((f"   {root:.3f}", look.color) for root in roots[:_NAMED_ROOTS])]
     limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
-    axes.set_ylim(-limit, limit)
-    axes.set_xlim(0.0, end)
-    axes.set_ylabel(r"frequency equation / $I_θ\,ω_1^2$")
-    for row, (text, color) in enumerate(notes):
-        axes.annotate(
-            text, (1.0, 1.0), xytext=(5.0, -1.0 - 10.5 * row), xycoords="axes fraction", textcoords="offset points",
-            color=color, fontsize=SMALL, va="top", annotation_clip=False,
-        )  # fmt: skip
+    axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=r"frequency equation / $I_θ\,ω_1^2$")
+    list_beside(axes, notes, 10.5)
 
 
 def _between_poles(poles: Array, end: float) -> Array:

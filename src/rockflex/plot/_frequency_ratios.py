@@ -11,13 +11,12 @@ from matplotlib.lines import Line2D
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.modal import PinnedBeam
 from rockflex.plot._style import BLUE, GRAY, SMALL, Look, letter, literal, new_figure, styled
 from rockflex.plot._surrogates import surrogate_looks
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from rockflex.modal import PinnedBeam
 
 Dashes = str | tuple[int, tuple[float, ...]]
 _DASHES: tuple[Dashes, ...] = ("-", (0, (5, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)))
@@ -27,7 +26,7 @@ _ROOM = 1.06
 
 def plot_frequency_ratios(
     tables: "pd.DataFrame | Mapping[str, pd.DataFrame]",
-    limits: "PinnedBeam | Mapping[str, PinnedBeam] | None" = None,
+    limits: PinnedBeam | Mapping[str, PinnedBeam] | None = None,
     *,
     modes: Sequence[SupportsIndex] = (1, 2),
     mark: float | None = 10.0,
@@ -89,8 +88,7 @@ def plot_frequency_ratios(
                 axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
             axes.set_xscale("log")
             axes.margins(x=0.0)
-            axes.set_ylim(1.0 - (_ROOM - 1.0) * (top - 1.0), 1.0 + _ROOM * (top - 1.0) + 1e-6)
-            axes.set_xlabel(r"$h^*_1/B$")
+            axes.set(ylim=(1.0 - (_ROOM - 1.0) * (top - 1.0), 1.0 + _ROOM * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$")
             axes.set_ylabel(rf"$ω^*_{{{mode}}}/ω_{{{mode}}}$")
             letter(axes, mark_of_panel)
         figure.legend(handles=_handles(looks, dashes, bool(bounds), mark), loc="outside upper center", ncols=3)
@@ -134,7 +132,7 @@ def _handles(looks: dict[str, Look], dashes: Mapping[str, Dashes], bounded: bool
     return handles
 
 
-def _check(named: "Mapping[str, pd.DataFrame]", bounds: "Mapping[str, PinnedBeam]", modes: list[int]) -> None:
+def _check(named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, PinnedBeam], modes: list[int]) -> None:
     if not modes:
         raise InputError("modes is empty. Give at least one mode, counted from 1.")
     if not 1 <= len(named) <= len(_DASHES):

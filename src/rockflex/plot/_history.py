@@ -2,25 +2,22 @@
 
 from collections.abc import Iterable, Sequence
 from string import ascii_uppercase
-from typing import TYPE_CHECKING
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockflex.plot._curves import Curve, curves_of, title_of
-from rockflex.plot._panel import draw_panel, quantities_of, usual_panels
-from rockflex.plot._style import GRAY, SHADE, columns, new_figure, styled
-
-if TYPE_CHECKING:
-    from rockflex.response import Response
+from rockflex.plot._curves import Curve, curves_of
+from rockflex.plot._panel import add_key, draw_panel, quantities_of, usual_panels
+from rockflex.plot._style import GRAY, SHADE, new_figure, styled
+from rockflex.response import Response
 
 _BAR = 0.025  # height of an uplift bar as a share of the panel
 
 
 def plot_history(
-    responses: "Response | Iterable[Response]",
+    responses: Response | Iterable[Response],
     labels: Sequence[str] | None = None,
     *,
     panels: Sequence[str] | None = None,
@@ -90,10 +87,7 @@ def plot_history(
             max(float(curve.history.time[-1]) for curve in curves),
         )
         figure.align_ylabels()
-        figure.legend(
-            handles, names, loc="outside upper center", ncols=columns(names, 88), title=title_of(curves, title),
-            title_fontsize=9.0, handlelength=2.6, columnspacing=1.4,
-        )  # fmt: skip
+        add_key(figure, curves, handles, names, title, 88)
     return figure
 
 

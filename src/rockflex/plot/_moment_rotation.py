@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,9 +12,7 @@ from rockflex._errors import InputError
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._style import BLUE, new_figure, styled
 from rockflex.plot._units import readable
-
-if TYPE_CHECKING:
-    from rockflex.response import Response
+from rockflex.response import Response
 
 _HEADROOM = 1.1
 _PER_ROW = 3
@@ -24,7 +21,7 @@ _HELD = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
 _SIDED = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
 
 
-def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None) -> Figure:
+def plot_moment_rotation(responses: Response | Iterable[Response], labels: Sequence[str] | None = None) -> Figure:
     """Plot the base moment M_b over the rotation θ, and the static resisting moment of the simplified models.
 
     The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
@@ -76,8 +73,7 @@ def plot_moment_rotation(responses: "Response | Iterable[Response]", labels: Seq
         figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
-        panels[0].set_xlim(-rotation, rotation)
-        panels[0].set_ylim(-_HEADROOM * largest / factor, _HEADROOM * largest / factor)
+        panels[0].set(xlim=(-rotation, rotation), ylim=(-_HEADROOM * largest / factor, _HEADROOM * largest / factor))
         panels[0].locator_params(axis="x", nbins=5)
         for axes, curve in zip(panels, curves, strict=False):
             moment = curve.history.base_moment / factor

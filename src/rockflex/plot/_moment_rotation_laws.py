@@ -70,13 +70,10 @@ def plot_moment_rotation_laws(
         for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
             axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.axvline(0.0, color=GRAY, linewidth=0.8, label="_axis")
-            axes.set_title(title)
-            axes.set_xlabel("θ [rad]")
+            axes.set(title=title, xlabel="θ [rad]")
             axes.tick_params(labelleft=True)
             letter(axes, mark)
-        left.set_ylabel(f"M [{unit}]")
-        left.set_xlim(-end, end)
-        left.set_ylim(-_ROOM * largest / factor, _ROOM * largest / factor)
+        left.set(ylabel=f"M [{unit}]", xlim=(-end, end), ylim=(-_ROOM * largest / factor, _ROOM * largest / factor))
         left.locator_params(axis="x", nbins=5)
         moment = stiffness * end / factor
         left.plot([-end, end], [-moment, moment], color=BLACK, linewidth=1.4, label="pinned beam")

@@ -1,24 +1,19 @@
 """A ground motion and its spectrum."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.motion import MEASURES, Shaking
+from rockflex.motion import MEASURES, GroundMotion, Shaking
 from rockflex.plot._style import BLACK, BLUE, SHADE, literal, new_figure, styled
 from rockflex.plot._units import short
-
-if TYPE_CHECKING:
-    from rockflex.motion import GroundMotion
 
 _PERIODS = np.geomspace(0.02, 10.0, 240)
 _DAMPING = 0.05
 
 
-def plot_motion(motion: "GroundMotion") -> Figure:
+def plot_motion(motion: GroundMotion) -> Figure:
     """Plot ground acceleration, velocity and displacement, and the 5 % damped spectrum of pseudo-acceleration.
 
     The titles of the panels give PGA, PGV, PGD, the Arias intensity I_a and the significant duration D_5-95, which is
@@ -66,9 +61,7 @@ def plot_motion(motion: "GroundMotion") -> Figure:
             axes.axvspan(first, first + motion.d5_95, color=SHADE, zorder=0.5)
             axes.plot(motion.time, values, color=BLACK, linewidth=0.7)
             limit = 1.1 * float(np.max(np.abs(values))) or 1.0
-            axes.set_ylim(-limit, limit)
-            axes.set_xlim(0.0, motion.duration)
-            axes.set_ylabel(f"${symbol}$ [{unit}]")
+            axes.set(ylim=(-limit, limit), xlim=(0.0, motion.duration), ylabel=f"${symbol}$ [{unit}]")
             axes.set_title(peak, loc="right", fontsize=8.0)
         for symbol in ("a", "v"):
             panels[symbol].sharex(panels["d"])
@@ -76,19 +69,16 @@ def plot_motion(motion: "GroundMotion") -> Figure:
         panels["d"].set_xlabel("time [s]")
         axes = panels["spectrum"]
         axes.plot(spectrum.period, spectrum.sa, color=BLUE, linewidth=1.2)
-        axes.set_xscale("log")
-        axes.set_xlim(_PERIODS[0], _PERIODS[-1])
-        axes.set_ylim(0.0, 1.08 * float(spectrum.sa.max()) or 1.0)
+        axes.set(xscale="log", xlim=(_PERIODS[0], _PERIODS[-1]), ylim=(0.0, 1.08 * float(spectrum.sa.max()) or 1.0))
         axes.xaxis.set_major_formatter("{x:g}")
-        axes.set_xlabel("$T$ [s]")
-        axes.set_ylabel("$S_a$ [m/s²]")
+        axes.set(xlabel="$T$ [s]", ylabel="$S_a$ [m/s²]")
         measures = f"{_told('arias', motion)}, {_told('d5_95', motion)} (shaded)"
         axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=8.0)
         figure.suptitle(literal(motion.name) or "ground motion", fontsize=9.0)
     return figure
 
 
-def _told(name: str, motion: "GroundMotion") -> str:
+def _told(name: str, motion: GroundMotion) -> str:
     """Symbol, value and unit of a measure."""
     measure = MEASURES[name]
     return f"{measure.sign} = {short(measure.of(Shaking(motion)))} {measure.unit}"

@@ -2,21 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.plot._curves import Curve, rotation_limit
-from rockflex.plot._style import SMALL, letter
+from rockflex.plot._curves import Curve, rotation_limit, title_of
+from rockflex.plot._style import SMALL, columns, letter
 from rockflex.plot._units import readable, short
-
-if TYPE_CHECKING:
-    from rockflex.response import History
+from rockflex.response import History
 
 _HEADROOM = 1.12
 
@@ -29,7 +27,7 @@ class Quantity:
     name: str
     unit: str
     prefixed: bool
-    of: "Callable[[History], Array]"
+    of: Callable[[History], Array]
 
 
 _QUANTITIES = (
@@ -75,8 +73,7 @@ def scale_of(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, float
 def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -> list[Artist]:
     """Fill one panel over time; return a line for each curve."""
     factor, unit, limit = scale_of(quantity, curves)
-    axes.set_ylim(-limit, limit)
-    axes.set_ylabel(f"{quantity.symbol} [{unit}]")
+    axes.set(ylim=(-limit, limit), ylabel=f"{quantity.symbol} [{unit}]")
     letter(axes, mark)
     lines: list[Artist] = []
     notes = [("peaks", "#404040")]
@@ -91,12 +88,27 @@ def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -
         if curve.falls and quantity.name == "rotation":
             _mark_fall(axes, curve, limit)
         notes.append((_mark_peak(axes, quantity, curve, factor), look.color))
+    list_beside(axes, notes, 10.0)
+    return lines
+
+
+def add_key(
+    figure: Figure, curves: list[Curve], handles: list[Artist], names: list[str], title: str | None, width: int
+) -> None:
+    """Add the legend of a figure above it; a row has room for `width` letters."""
+    figure.legend(
+        handles, names, loc="outside upper center", ncols=columns(names, width), title=title_of(curves, title),
+        title_fontsize=9.0, handlelength=2.6, columnspacing=1.4,
+    )  # fmt: skip
+
+
+def list_beside(axes: Axes, notes: list[tuple[str, str]], step: float) -> None:
+    """Write lines of text in their colours to the right of a panel, `step` points apart."""
     for row, (text, color) in enumerate(notes):
         axes.annotate(
-            text, (1.0, 1.0), xytext=(5.0, -1.0 - 10.0 * row), xycoords="axes fraction", textcoords="offset points",
+            text, (1.0, 1.0), xytext=(5.0, -1.0 - step * row), xycoords="axes fraction", textcoords="offset points",
             color=color, fontsize=SMALL, va="top", annotation_clip=False,
         )  # fmt: skip
-    return lines
 
 
 def _largest(curve: Curve, quantity: Quantity) -> float:

@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rockflex._errors import InputError
+from rockflex.plot._study_tables import check_columns
 from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, LOOKS, RED, Look, literal, new_figure, styled
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('$2π/p$ [s]', '$θ_{\\mathrm{max}}/α$')
     """
-    _check(table, ("slenderness", "period", "relative_rotation", "overturned"), "rocking_spectrum")
+    check_columns(table, ("slenderness", "period", "relative_rotation", "overturned"), "what rocking_spectrum returned")
     groups = list(table.groupby("slenderness"))
     _check_number(len(groups), "slendernesses")
     fell = table["overturned"].fillna(False).astype(bool)
@@ -71,10 +72,7 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
                 block["period"][over], np.full(over.sum(), 1.0 - _CROSSES * (rank + 1)), "x", color=look.color,
                 markersize=3.5, transform=axes.get_xaxis_transform(), label="_overturned",
             )  # fmt: skip
-        axes.set_ylim(0.0, limit)
-        axes.set_xlabel(r"$2π/p$ [s]")
-        axes.set_ylabel(r"$θ_{\mathrm{max}}/α$")
-        axes.set_title(literal(title))
+        axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=literal(title))
         cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
         handles, _ = axes.get_legend_handles_labels()
         figure.legend(handles=[*handles, cross], loc="outside right upper")
@@ -119,7 +117,7 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
         raise InputError("There is no table to plot. Give at least one from overturning_spectrum.")
     _check_number(len(named), "tables")
     for table in named.values():
-        _check(table, ("frequency_ratio", "lowest", "highest_standing"), "overturning_spectrum")
+        check_columns(table, ("frequency_ratio", "lowest", "highest_standing"), "what overturning_spectrum returned")
     with styled():
         figure = new_figure(6.3, 3.6)
         axes = figure.subplots()
@@ -138,22 +136,12 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
             axes.plot(ratio, low, color=look.color, linestyle=look.dashes, label=literal(name) or "lowest")
         axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
         axes.set_xlim(left=0.0)
-        axes.set_ylim(0.0, limit)
-        axes.set_xlabel(r"$ω_g/p$")
-        axes.set_ylabel(r"$a_p/(g\,α)$")
-        axes.set_title(literal(title))
+        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=literal(title))
         handles, _ = axes.get_legend_handles_labels()
         if axes.collections and any(len(area.get_paths()) for area in axes.collections):
             handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
         figure.legend(handles=handles, loc="outside right upper")
     return figure
-
-
-def _check(table: "pd.DataFrame", columns: tuple[str, ...], source: str) -> None:
-    missing = [name for name in columns if name not in getattr(table, "columns", ())]
-    if missing or not len(table):
-        lacks = f"lacks {', '.join(missing)}" if missing else "has no rows"
-        raise InputError(f"The table {lacks}. Give what {source} returned.")
 
 
 def _check_number(given: int, what: str) -> None:

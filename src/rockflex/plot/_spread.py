@@ -1,7 +1,6 @@
 """The effect of uncertain properties, as a band around each model's response."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,17 +12,14 @@ from rockflex._errors import InputError
 from rockflex.plot._curves import Curve, curves_of, title_of
 from rockflex.plot._panel import Quantity, quantities_of, scale_of
 from rockflex.plot._style import BLACK, GRAY, SHADE, columns, new_figure, styled
-
-if TYPE_CHECKING:
-    from rockflex.response import Response
-
+from rockflex.response import Response
 
 _POINTS = 2000  # across the panel, more than it has dots
 
 
 def plot_spread(
-    responses: "Sequence[Response]",
-    varied: "Sequence[Sequence[Response]]",
+    responses: Sequence[Response],
+    varied: Sequence[Sequence[Response]],
     labels: Sequence[str] | None = None,
     *,
     panels: Sequence[str] = ("rotation", "top_displacement"),
@@ -90,9 +86,7 @@ def plot_spread(
                 drawn = curve.before_fall
                 values = quantity.of(curve.history)[drawn] / factor
                 axes.plot(curve.history.time[drawn], values, color=BLACK, linewidth=0.8, label=curve.label)
-                axes.set_ylim(-limit, limit)
-                axes.set_xlim(0.0, float(times[-1]))
-                axes.set_ylabel(f"{quantity.symbol} [{unit}]")
+                axes.set(ylim=(-limit, limit), xlim=(0.0, float(times[-1])), ylabel=f"{quantity.symbol} [{unit}]")
                 axes.set_title(curve.label, fontsize=8.0, loc="left", pad=3.0)
             grid[-1, column].set_xlabel("time [s]")
         figure.align_ylabels()
@@ -105,7 +99,7 @@ def plot_spread(
     return figure
 
 
-def _alone(response: "Response") -> Curve:
+def _alone(response: Response) -> Curve:
     return curves_of(response)[0]
 
 

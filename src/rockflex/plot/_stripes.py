@@ -90,8 +90,7 @@ def plot_stripes(
                 axes.text(
                     0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=6.5, color=color
                 )
-        panels[0].set_xlim(0.0, end)
-        panels[0].set_ylim(-0.03, 1.03)
+        panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
         figure.legend(handles=keys_of(looks), loc="outside upper center", ncols=columns(list(looks), 42))
     return figure
 

@@ -12,14 +12,12 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
 from rockflex.motion import MEASURES
-from rockflex.plot._style import literal, new_figure
+from rockflex.plot._style import Look, literal, new_figure
 from rockflex.plot._surrogates import surrogate_looks
 from rockflex.plot._units import short
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from rockflex.plot._style import Look
 
 MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8", "H")
 
@@ -44,7 +42,7 @@ def names_in(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
     return list(dict.fromkeys(str(name) for name in column))
 
 
-def looks_of(models: Sequence[str]) -> "dict[str, tuple[Look, str]]":
+def looks_of(models: Sequence[str]) -> dict[str, tuple[Look, str]]:
     """Give each model its own line and symbol."""
     looks = surrogate_looks(models)
     return {model: (look, marker) for (model, look), marker in zip(looks.items(), MARKERS, strict=False)}
@@ -61,7 +59,7 @@ def _plain(value: float, _: object) -> str:
     return short(value)
 
 
-def keys_of(looks: "dict[str, tuple[Look, str]]", *, symbols: bool = True) -> list[Line2D]:
+def keys_of(looks: dict[str, tuple[Look, str]], *, symbols: bool = True) -> list[Line2D]:
     """Entries of a legend, one per model, with its line and its symbol."""
     return [
         Line2D(

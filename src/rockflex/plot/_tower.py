@@ -1,7 +1,5 @@
 """The geometry of a tapered tower."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,15 +9,13 @@ from rockflex._checks import positive
 from rockflex._errors import InputError
 from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, letter, new_figure, styled
 from rockflex.plot._units import short
-
-if TYPE_CHECKING:
-    from rockflex.structure import TaperedTower
+from rockflex.structure import TaperedTower
 
 _EDGE = "#404040"
 _SLICE = 0.015  # height of the slice over that of the tower
 
 
-def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
+def plot_tower(tower: TaperedTower, section: float | None = None) -> Figure:
     """Plot a tower's elevation, and one of its sections with its contribution to I_θ.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 14. A slice of mass m at the height z turns about the pivot O
@@ -66,11 +62,11 @@ def plot_tower(tower: "TaperedTower", section: float | None = None) -> Figure:
     return figure
 
 
-def _outer(tower: "TaperedTower", z: float) -> float:
+def _outer(tower: TaperedTower, z: float) -> float:
     return tower.base_radius + (tower.top_radius - tower.base_radius) * z / tower.height
 
 
-def _draw_elevation(axes: Axes, tower: "TaperedTower", z: float) -> None:
+def _draw_elevation(axes: Axes, tower: TaperedTower, z: float) -> None:
     height, base, top = tower.height, tower.base_radius, tower.top_radius
     levels = np.array([0.0, height])
     outer = np.array([base, top])
@@ -90,8 +86,7 @@ def _draw_elevation(axes: Axes, tower: "TaperedTower", z: float) -> None:
     arm = float(np.hypot(z, base))
     _say(axes, rf"$Δ$ = {arm:.4g} m", (0.5 * base, 0.5 * z), (3, 6), RED, boxed=True)
     reach = 1.5 * max(base, top)
-    axes.set_xlim(-reach, 1.75 * max(base, top))
-    axes.set_ylim(-0.12 * height, 1.09 * height)
+    axes.set(xlim=(-reach, 1.75 * max(base, top)), ylim=(-0.12 * height, 1.09 * height))
     _measure(axes, (-1.25 * max(base, top), 0.0), (-1.25 * max(base, top), height))
     _say(axes, rf"$H$ = {height:g} m", (-1.25 * max(base, top), 0.5 * height), (-3, 0), _EDGE, turned=True)
     _measure(axes, (0.0, -0.045 * height), (base, -0.045 * height))
@@ -100,22 +95,19 @@ def _draw_elevation(axes: Axes, tower: "TaperedTower", z: float) -> None:
     _say(axes, rf"$R_{{\mathrm{{top}}}}$ = {top:g} m", (top, 1.03 * height), (4, -3), _EDGE)
     _say(axes, rf"$t_c$ = {tower.wall:g} m", (_outer(tower, 0.78 * height), 0.78 * height), (4, -3), _EDGE)
     _say(axes, rf"$z$ = {z:g} m", (radius, z), (4, -3), BLUE)
-    axes.set_xlabel("width [m]")
-    axes.set_ylabel("height [m]")
+    axes.set(xlabel="width [m]", ylabel="height [m]")
     axes.grid(visible=False)
     axes.set_title("elevation, widths enlarged")
 
 
-def _draw_section(axes: Axes, tower: "TaperedTower", z: float) -> None:
+def _draw_section(axes: Axes, tower: TaperedTower, z: float) -> None:
     outer = _outer(tower, z)
     inner = max(outer - tower.wall, 0.0)
     axes.add_patch(Wedge((0.0, 0.0), outer, 0.0, 360.0, width=outer - inner, facecolor=SHADE, edgecolor="none"))
     for radius in (outer, inner):
         axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=_EDGE, linewidth=0.9))
     reach = 1.25 * outer
-    axes.set_xlim(-reach, reach)
-    axes.set_ylim(-reach, reach)
-    axes.set_aspect("equal")
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     axes.axhline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
     axes.axvline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
     for radius, degrees, name in ((outer, 40.0, "R"), (inner, 140.0, "r")):

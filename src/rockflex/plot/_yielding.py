@@ -1,23 +1,20 @@
 """Hysteresis of the superstructure, alone and with the histories."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockflex.plot._curves import Curve, curves_of, title_of
+from rockflex.plot._curves import Curve, curves_of
 from rockflex.plot._history import shade_uplifts
-from rockflex.plot._panel import draw_panel, quantities_of, scale_of
-from rockflex.plot._style import columns, letter, new_figure, styled
-
-if TYPE_CHECKING:
-    from rockflex.response import Response
+from rockflex.plot._panel import add_key, draw_panel, quantities_of, scale_of
+from rockflex.plot._style import letter, new_figure, styled
+from rockflex.response import Response
 
 
 def plot_hysteresis(
-    responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None, *, title: str | None = None
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, title: str | None = None
 ) -> Figure:
     r"""Plot the restoring force V_b of the superstructure over its top displacement u_top.
 
@@ -58,12 +55,12 @@ def plot_hysteresis(
     with styled():
         figure = new_figure(4.2, 3.6)
         lines = _loops(figure.subplots(), curves)
-        _legend(figure, curves, lines, title, 58)
+        add_key(figure, curves, lines, [curve.label for curve in curves], title, 58)
     return figure
 
 
 def plot_yielding(
-    responses: "Response | Iterable[Response]", labels: Sequence[str] | None = None, *, title: str | None = None
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, title: str | None = None
 ) -> Figure:
     r"""Plot rotation θ and top displacement u_top over time, and the hysteresis of the superstructure.
 
@@ -110,13 +107,12 @@ def plot_yielding(
             draw_panel(axes, quantity, curves, mark)
         shade_uplifts(histories, curves)
         top.tick_params(labelbottom=False)
-        histories[1].set_xlabel("time [s]")
-        histories[1].set_xlim(0.0, max(float(curve.history.time[-1]) for curve in curves))
+        histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
         loops = figure.add_subplot(grid[:, 1])
         lines = _loops(loops, curves)
         letter(loops, "C")
         figure.align_ylabels(histories)
-        _legend(figure, curves, lines, title, 110)
+        add_key(figure, curves, lines, [curve.label for curve in curves], title, 110)
     return figure
 
 
@@ -125,11 +121,9 @@ def _loops(axes: Axes, curves: list[Curve]) -> list[Artist]:
     displacement, force = quantities_of(("top_displacement", "base_shear"))
     _, across, right = scale_of(displacement, curves)
     factor, unit, high = scale_of(force, curves)
-    axes.set_xlim(-right, right)
-    axes.set_ylim(-high, high)
+    axes.set(xlim=(-right, right), ylim=(-high, high))
     axes.locator_params(axis="x", nbins=5)
-    axes.set_xlabel(f"{displacement.symbol} [{across}]")
-    axes.set_ylabel(f"{force.symbol} [{unit}]")
+    axes.set(xlabel=f"{displacement.symbol} [{across}]", ylabel=f"{force.symbol} [{unit}]")
     lines: list[Artist] = []
     for curve in curves:
         drawn = curve.before_fall
@@ -138,11 +132,3 @@ def _loops(axes: Axes, curves: list[Curve]) -> list[Artist]:
             linestyle=curve.look.dashes, linewidth=curve.look.width, label=curve.label, zorder=curve.order,
         )  # fmt: skip
     return lines
-
-
-def _legend(figure: Figure, curves: list[Curve], lines: list[Artist], title: str | None, width: int) -> None:
-    names = [curve.label for curve in curves]
-    figure.legend(
-        lines, names, loc="outside upper center", ncols=columns(names, width), title=title_of(curves, title),
-        title_fontsize=9.0, handlelength=2.6, columnspacing=1.4,
-    )  # fmt: skip

@@ -1,9 +1,11 @@
 """Results as documents: a page of HTML that needs nothing else, the same as Markdown, and a table of numbers."""
 
 from rockflex.report._csv import to_csv
-from rockflex.report._document import Document, Proof, Section, Side
+from rockflex.report._document import Document
 from rockflex.report._html import to_html
+from rockflex.report._line import Check, Number
 from rockflex.report._markdown import to_markdown
+from rockflex.report._result import Remark, Result
 from rockflex.report._write import write_report
 
-__all__ = ["Document", "Proof", "Section", "Side", "to_csv", "to_html", "to_markdown", "write_report"]
+__all__ = ["Check", "Document", "Number", "Remark", "Result", "to_csv", "to_html", "to_markdown", "write_report"]

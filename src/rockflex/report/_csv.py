@@ -3,15 +3,13 @@
 import csv
 import io
 import math
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rockflex.report._document import Document
+from rockflex.report._document import Document
 
 COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference", "criterion", "verdict", "note")
 
 
-def to_csv(document: "Document") -> str:
+def to_csv(document: Document) -> str:
     """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan".
 
     Examples
@@ -30,7 +28,7 @@ def to_csv(document: "Document") -> str:
             writer.writerow(
                 (
                     section.name, line.place, line.name, line.printed, ours, line.unit, line.difference_as_text,
-                    line.criterion, str(line.verdict), line.note,
+                    line.criterion, line.verdict, line.note,
                 )
             )  # fmt: skip
     return out.getvalue()

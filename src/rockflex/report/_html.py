@@ -5,18 +5,17 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rockflex.report._document import Document
 from rockflex.report._svg import inline
 
 if TYPE_CHECKING:
     from jinja2 import Template
 
-    from rockflex.report._document import Document
-
 TEMPLATES = Path(__file__).parent / "templates"
 CLASSES = ("best", "good", "fair", "open", "bad")  # of the verdicts, best first; the last one is bad
 
 
-def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
+def to_html(document: Document, drawings: Mapping[str, str]) -> str:
     """Write the document as a page.
 
     Parameters
@@ -40,7 +39,7 @@ def to_html(document: "Document", drawings: Mapping[str, str]) -> str:
     verdicts = list(document.verdicts)
     last = len(verdicts) - 1
     looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
-    failing = [line for s in document.sections for line in s.numbers if str(line.verdict) == verdicts[-1]]
+    failing = [line for s in document.sections for line in s.numbers if line.verdict == verdicts[-1]]
     return _template().render(
         document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
     )

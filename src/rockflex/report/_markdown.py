@@ -2,16 +2,16 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rockflex.report._document import Document, Proof, Section
+from rockflex.report._document import Document
+from rockflex.report._line import Check
+from rockflex.report._result import Result
 
 CHECKS = ("place", "check", "paper", "rockflex", "unit", "holds", "criterion and remarks")
 HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict", "criterion and remarks")
 
 
-def to_markdown(document: "Document") -> str:
+def to_markdown(document: Document) -> str:
     """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
 
     Examples
@@ -38,7 +38,7 @@ def to_markdown(document: "Document") -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _section(section: "Section") -> Iterable[str]:
+def _section(section: Result) -> Iterable[str]:
     yield f"## {_plain(section.name)}: {_plain(section.title)}"
     if section.note:
         yield _plain(section.note)
@@ -47,7 +47,7 @@ def _section(section: "Section") -> Iterable[str]:
     rows = [
         (
             line.place, line.name, line.printed, line.ours_as_text, line.unit, line.difference_as_text,
-            f"**{line.verdict}**", "; ".join(part for part in (line.criterion, line.note) if part),
+            f"**{line.verdict}**", line.remarks,
         )
         for line in section.numbers
     ]  # fmt: skip
@@ -57,15 +57,14 @@ def _section(section: "Section") -> Iterable[str]:
         yield "Checks of ourselves, not counted:"
         yield _table(CHECKS, [_check(check) for check in section.checks])
     for remark in section.remarks:
-        yield f"**Remark, {_plain(str(remark.kind))}: {_plain(remark.title)}.** {_plain(remark.text)}"
+        yield f"**Remark, {_plain(remark.kind)}: {_plain(remark.title)}.** {_plain(remark.text)}"
         if remark.head:
             yield _table(remark.head, remark.rows)
 
 
-def _check(check: "Proof") -> tuple[str, ...]:
-    remarks = "; ".join(part for part in (check.criterion, check.note) if part)
+def _check(check: Check) -> tuple[str, ...]:
     holds = "yes" if check.holds else "**no**"
-    return check.place, check.name, check.stated, check.ours_as_text, check.unit, holds, remarks
+    return check.place, check.name, check.printed, check.ours_as_text, check.unit, holds, check.remarks
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

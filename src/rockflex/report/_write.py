@@ -4,7 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rockflex._files import write_whole
-from rockflex.plot import save_figure
 from rockflex.report._csv import to_csv
 from rockflex.report._document import Document
 from rockflex.report._html import to_html
@@ -37,6 +36,8 @@ def write_report(document: Document, folder: Path, progress: Callable[[str], Non
     >>> [path.name for path in write_report(document, Path(tempfile.mkdtemp()))]
     ['report.html', 'report.md', 'numbers.csv']
     """
+    from rockflex.plot import save_figure
+
     figures: dict[str, Path] = {}
     for section in document.sections:
         for stem, draw in section.figures.items():

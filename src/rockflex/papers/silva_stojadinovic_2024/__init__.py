@@ -2,28 +2,21 @@
 
 The paper is "Surrogate models for seismic response analysis of flexible rocking structures", Earthquake Engng Struct
 Dyn, doi 10.1002/eqe.4193. A target is a module with a ``TITLE`` and a function ``reproduce(records)`` that returns a
-`Result`. The rules by which a number passes are all in `_number`.
+`rockflex.report.Result`. The rules by which a number passes are all in `_number`.
 
 The package also holds what the library has only for this paper: the random `population` and the equivalents of the two
 tested specimens.
 """
 
-from rockflex.papers.silva_stojadinovic_2024._beside import Check, Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._catalogue import TARGETS, reproduce, title_of
 from rockflex.papers.silva_stojadinovic_2024._equivalents import equivalent_2hz_long_base, equivalent_s1
-from rockflex.papers.silva_stojadinovic_2024._number import Number
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
-from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind, Verdict
 
 __all__ = [
     "TARGETS",
-    "Check",
     "Kind",
-    "Number",
     "Records",
-    "Remark",
-    "Result",
     "Verdict",
     "equivalent_2hz_long_base",
     "equivalent_s1",

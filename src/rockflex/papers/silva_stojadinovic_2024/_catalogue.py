@@ -7,7 +7,7 @@ from typing import Any
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.report import Result
 
 TARGETS = (
     *("figure-3", "figure-4", "table-1", "figure-5", "figure-6", "figure-7", "sliding", "figure-8", "figure-9"),

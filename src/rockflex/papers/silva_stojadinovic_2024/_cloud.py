@@ -1,16 +1,18 @@
 """The cloud of Section 3.2, which Figures 5 to 7 share, and the differences of its models at PGV = 0.4 m/s."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._number import Interval
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, statistic
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
+from rockflex.report import Number
 
 Array = NDArray[np.float64]
 
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
 
 PGV = 0.4  # m/s, for which the text gives the differences
+PLACE = "Section 3.2, PGV = 0.4 m/s"
 THRESHOLD = 1e-4  # rad, above which a run rocks
 RESAMPLES = 200
 PARTS = ("median", "84 % quantile")
@@ -60,8 +63,7 @@ def differences(records: Records, quantity: str) -> dict[str, Interval]:
         _fit, im, table, groups, at=np.arange(len(names)), n=RESAMPLES,
         curve=lambda fits, _: np.array(list(_compare(fits).values())),
     )  # fmt: skip
-    three = zip(band.estimate, band.low, band.high, strict=True)
-    return {name: Interval(*map(float, each)) for name, each in zip(names, three, strict=True)}
+    return dict(zip(names, intervals_of(band), strict=True))
 
 
 def places(records: Records, quantity: str) -> "pd.DataFrame":
@@ -79,20 +81,31 @@ def places(records: Records, quantity: str) -> "pd.DataFrame":
     return pd.DataFrame(np.column_stack((away, shares)), names, columns)
 
 
-def percent(values: Interval) -> Interval:
-    """Return an interval in per cent."""
-    return Interval(*(100.0 * value for value in values))
+def largest(records: Records, quantity: str, rows: Iterable[tuple[str, str, str, str, str]]) -> list[Number]:
+    """Compare some `differences`, and note where they are largest.
+
+    Each row has the name, the printed value and its unit, the name of the difference, and the column of `places` whose
+    largest value tells where it is.
+    """
+    found, at = differences(records, quantity), places(records, quantity).idxmax()
+    return [
+        statistic(name, PLACE, printed, found[key].times(100.0 if unit == "%" else 1.0), unit, note=str(at[column]))
+        for name, printed, unit, key, column in rows
+    ]
 
 
 def _kept(records: Records, quantity: str) -> tuple[Array, Array, "NDArray[np.str_]"]:
     """Return PGV, a code of the case with the response, and the recording, of the runs that rock and stand."""
     runs = cloud(records)
     kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > THRESHOLD)]
-    code = {key: number for number, key in enumerate((name, model) for name in STRUCTURES for model in MODELS)}
-    names, models = kept["structure"].astype(str), kept["model"].astype(str)
-    codes = np.array([code[key] for key in zip(names, models, strict=True)], dtype=float)
-    table = np.column_stack((codes, kept[quantity].to_numpy(dtype=float)))
+    table = np.column_stack((codes_of(kept), kept[quantity].to_numpy(dtype=float)))
     return kept["pgv"].to_numpy(dtype=float), table, kept["group"].astype(str).to_numpy(dtype=np.str_)
+
+
+def codes_of(runs: "pd.DataFrame") -> Array:
+    """Return the number of the case, a structure with a model, of each run."""
+    code = {name + model: float(number) for number, (name, model) in enumerate(product(STRUCTURES, MODELS))}
+    return np.array([code[name] for name in runs["structure"].astype(str) + runs["model"].astype(str)], dtype=float)
 
 
 def _fit(im: Array, rows: Array) -> Array:

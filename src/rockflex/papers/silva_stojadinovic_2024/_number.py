@@ -15,12 +15,13 @@ specimen is built is a `Check`, not a number; additional computations are `Remar
 """
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
+import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._printed import Range, range_of
-from rockflex.papers.silva_stojadinovic_2024._shown import digits_of, percent, shown
 from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST, Verdict
+from rockflex.report import Check, Number
+from rockflex.report._line import as_text
 
 
 class Interval(NamedTuple):
@@ -30,61 +31,15 @@ class Interval(NamedTuple):
     low: float
     high: float
 
+    def times(self, factor: float) -> "Interval":
+        """Return the interval in another unit, such as per cent."""
+        return Interval(*(factor * value for value in self))
 
-@dataclass(frozen=True)
-class Number:
-    """One number of the paper and ours.
 
-    Attributes
-    ----------
-    name, place : str
-        What the number is, and where it is in the paper.
-    printed : str
-        As printed, or the statement in words.
-    ours : float
-        In `unit`; not finite where a quantity has no bound.
-    unit : str
-        Empty for a ratio.
-    criterion : str
-        The criterion for `ours`.
-    verdict : Verdict
-        Whether `ours` meets it, and by which rule.
-    difference : float or None
-        Ours minus the printed value in `unit`; None for a statement, and for a bound that holds.
-    relative : float or None
-        The difference over the printed value.
-    digits : int
-        Decimals with which `ours` is shown.
-    note : str
-        A note for the reader.
-    """
-
-    name: str
-    place: str
-    printed: str
-    ours: float
-    unit: str
-    criterion: str
-    verdict: Verdict
-    difference: float | None
-    relative: float | None
-    digits: int
-    note: str
-
-    @property
-    def ours_as_text(self) -> str:
-        """Our value with two decimals more than the printed one has."""
-        return shown(self.ours, self.digits)
-
-    @property
-    def difference_as_text(self) -> str:
-        """The difference with its sign, and in per cent; empty if there is none."""
-        if self.difference is None:
-            return ""
-        text = f"{self.difference:+.{self.digits}f}"
-        if float(text) == 0.0:
-            return "0"
-        return (text if self.relative is None else f"{text} ({percent(self.relative)})").replace("-", "−")
+def intervals_of(band: rf.BootstrapBand) -> list[Interval]:
+    """Return the interval of each value of a bootstrap."""
+    three = zip(band.estimate.tolist(), band.low.tolist(), band.high.tolist(), strict=True)
+    return [Interval(*each) for each in three]
 
 
 def compared(
@@ -131,16 +86,16 @@ def stated(
     """Check a statement in words by a bound, such as ``"> 1"``, on a number (rules 1 and 3)."""
     wanted, value = range_of(criterion), float(ours)
     verdict = ground if value in wanted else Verdict.NOT
-    return Number(name, place, printed, value, unit, criterion, verdict, None, None, _digits(wanted, value), note)
+    return Number(name, place, printed, value, unit, criterion, _digits(wanted, value), note, verdict, None, None)
 
 
 def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "", *, note: str = "") -> Number:
     """Compare a printed value with the interval of ours, from other records or draws (rule 2)."""
     wanted = range_of(printed)
-    digits = digits_of(wanted, ours.estimate)
+    digits = _digits_of(wanted, ours.estimate)
     known = math.isfinite(ours.low) and math.isfinite(ours.high)
     wide = ours.high - ours.low > WIDEST * abs(wanted.value)
-    interval = f"90 % interval {shown(ours.low, digits)} to {shown(ours.high, digits)}"
+    interval = f"90 % interval {as_text(ours.low, digits)} to {as_text(ours.high, digits)}"
     if not known:
         verdict, criterion = Verdict.UNDECIDED, "too few runs for an interval"
     elif not wanted.meets(ours.low, ours.high):
@@ -162,8 +117,17 @@ def tendency(
     verdict = Verdict.COMPATIBLE if all(holds) else Verdict.UNDECIDED if any(holds) else Verdict.NOT
     if math.isnan(ours.low) or math.isnan(ours.high):
         verdict = Verdict.UNDECIDED
-    text = f"{criterion} over the 90 % interval {shown(ours.low, digits)} to {shown(ours.high, digits)}"
-    return Number(name, place, printed, value, unit, text, verdict, None, None, digits, note)
+    text = f"{criterion} over the 90 % interval {as_text(ours.low, digits)} to {as_text(ours.high, digits)}"
+    return Number(name, place, printed, value, unit, text, digits, note, verdict, None, None)
+
+
+def check(
+    name: str, place: str, printed: str, ours: float, criterion: str = "", unit: str = "", *, note: str = ""
+) -> Check:
+    """Check a value against a bound, such as ``"< 1"``, or by default against the printed number."""
+    wanted, value = range_of(criterion or printed), float(ours)
+    digits, words = _digits_of(wanted, value), criterion or "must round to it"
+    return Check(name, place, printed, value, unit, words, digits, note, value in wanted)
 
 
 def _number(
@@ -173,12 +137,16 @@ def _number(
     away = ours - wanted.value
     silent = not math.isfinite(away) or (wanted.is_bound and verdict is not Verdict.NOT)
     relative = None if silent or wanted.value == 0.0 else away / abs(wanted.value)
-    digits = digits_of(wanted, ours)
-    return Number(
-        name, place, printed, ours, unit, criterion, verdict, None if silent else away, relative, digits, note
-    )
+    digits, difference = _digits_of(wanted, ours), None if silent else away
+    return Number(name, place, printed, ours, unit, criterion, digits, note, verdict, difference, relative)
+
+
+def _digits_of(wanted: Range, ours: float) -> int:
+    """Return two decimals more than printed, or none if both are integers."""
+    decimals = max(0, round(-math.log10(wanted.step)))
+    return 0 if decimals == 0 and ours.is_integer() else decimals + 2
 
 
 def _digits(wanted: Range, ours: float) -> int:
     """Return the decimals of a number that is compared with a bound: at least three, or none for an integer."""
-    return 0 if ours.is_integer() else max(digits_of(wanted, ours), 3)
+    return 0 if ours.is_integer() else max(_digits_of(wanted, ours), 3)

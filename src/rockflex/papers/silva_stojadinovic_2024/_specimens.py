@@ -1,10 +1,13 @@
 """The parts that Figures 3 and 4 share: unknown parameters of the two specimens, runs, and bands over their ranges."""
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from itertools import product
 from typing import Any
 
 import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._number import compared, stated
+from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
 
 SPECIMEN_MODELS = ("2DOF-C", "2DOF-C-SI", "2DOF-S", "MDOF-S")
 
@@ -17,6 +20,10 @@ S1 = {
     "effective_height": (1.0, 0.5, 2.0),
     "spacing": (1.5, 1.3, 1.65),
 }
+
+equal = partial(compared, ground=Verdict.EQUIVALENT)
+holds = partial(stated, ground=Verdict.EQUIVALENT)
+BUILT = "the equivalent is built so"
 
 Free = Mapping[str, tuple[float, ...]]
 Make = Callable[..., rf.RockingProperties]
@@ -44,8 +51,15 @@ def widest(values: Iterable[float]) -> float:
     return max(found) / min(found)
 
 
-def spread(title: str, responses: Mapping[str, rf.Response], free: Free, make: Make, run: Run) -> Any:
-    """Draw the response of each model with the band over all combinations."""
-    cases = [make(**case) for case in combinations(free)]
-    varied = [[run(case, model) for case in cases] for model in responses]
-    return rf.plot_spread(list(responses.values()), varied, panels=("rotation", "top_displacement"), title=title)
+def drawings(
+    name: str, title: str, responses: Mapping[str, rf.Response], free: Free, make: Make, run: Run
+) -> dict[str, Callable[[], Any]]:
+    """Return the figure of the responses, and that of each model with the band over all combinations."""
+    nominals, panels = list(responses.values()), ("rotation", "top_displacement")
+
+    def spread() -> Any:
+        cases = [make(**case) for case in combinations(free)]
+        varied = [[run(case, model) for case in cases] for model in responses]
+        return rf.plot_spread(nominals, varied, panels=panels, title=title)
+
+    return {name: lambda: rf.plot_history(nominals, panels=panels, title=title), f"{name}-spread": spread}

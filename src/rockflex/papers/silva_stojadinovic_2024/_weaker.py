@@ -5,10 +5,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
 from rockflex.papers.silva_stojadinovic_2024._pool import PAIRS, SEED, intervals
 from rockflex.papers.silva_stojadinovic_2024._records import Records
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Remark
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -3,11 +3,11 @@
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._number import Number, stated
+from rockflex.papers.silva_stojadinovic_2024._number import stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import BEHAVIOURS, MARK, tall_frame
 from rockflex.papers.silva_stojadinovic_2024._uplifted import errors, ratio
+from rockflex.report import Number, Result
 
 TITLE = "Uplifted over fixed-base frequencies"
 PLACE = "Section 3.4"
@@ -15,6 +15,7 @@ LOW = (1.0, 2.0)  # h*_1/B that a building can have at the least
 NARROW = 1000.0
 SHOWN: list[float] = np.geomspace(0.1, NARROW, 201).tolist()
 MODES = {"2DOF-S": (1,), "3DOF-S": (1, 2), "MDOF-S": (1, 2)}
+FEW = [(model, n) for model, modes in MODES.items() if model != "MDOF-S" for n in modes]
 NOTE = (
     "15 stories of 3 m and 40 t, T_1 = 1 s, a base of 40 t: the paper does not give period or base mass. The "
     "pinned beam has uniform mass and stiffness and is not subject to gravity."
@@ -36,15 +37,12 @@ def reproduce(_: Records) -> Result:
             errors("shear", "2DOF-S", 1, 5.0), "< 20", "%", note="20 % is our reading; for flexure see Figure 12",
         )
     )  # fmt: skip
-    return Result("figure-10", TITLE, tuple(numbers), {"figure-10": figure}, NOTE)
+    return Result("figure-10", TITLE, numbers, {"figure-10": figure}, NOTE)
 
 
 def _of(behaviour: str) -> list[Number]:
     beam = rf.pinned_beam("shear" if behaviour == "shear" else "flexure").ratio
-    growth = min(
-        errors(behaviour, model, n, MARK) - errors(behaviour, model, n, 1.0)
-        for model, modes in MODES.items() if model != "MDOF-S" for n in modes
-    )  # fmt: skip
+    growth = min(errors(behaviour, *few, MARK) - errors(behaviour, *few, 1.0) for few in FEW)
     bounds = [
         stated(
             f"{behaviour}: ω*_n/ω_n of {model} over the pinned beam's, largest, h*_1/B = {NARROW:g}", PLACE,
@@ -75,10 +73,7 @@ def _low(behaviour: str) -> list[Number]:
         n: [max(abs(ratio(behaviour, m, n, x) - 1.0) for m, modes in MODES.items() if n in modes) for x in LOW]
         for n in (1, 2)
     }
-    miss = max(
-        abs(errors(behaviour, model, n, x))
-        for model, modes in MODES.items() if model != "MDOF-S" for n in modes for x in LOW
-    )  # fmt: skip
+    miss = max(abs(errors(behaviour, *few, x)) for few in FEW for x in LOW)
     at = " and ".join(f"{x:g}" for x in LOW)
     return [
         *(

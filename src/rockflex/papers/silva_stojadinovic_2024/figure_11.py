@@ -1,10 +1,10 @@
 """Figure 11: base moment against rotation of a pinned beam and of a rocking base."""
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import check
+from rockflex.papers.silva_stojadinovic_2024._number import check
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import tall_frame
+from rockflex.report import Result
 
 TITLE = "Base moment against rotation of a pinned beam and of a rocking base"
 

@@ -3,9 +3,9 @@
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import BEHAVIOURS, MARK, tall_frame
 from rockflex.papers.silva_stojadinovic_2024._uplifted import errors
+from rockflex.report import Result
 
 TITLE = "Zeros of the frequency equation at h*_1/B = 10"
 STATEMENTS = (

@@ -6,8 +6,8 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._pool import DRAWS, PAIRS, intervals, population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
+from rockflex.report import Result
 
 TITLE = "Modal combination with the second mode"
 PLACE = "Section 3.4"

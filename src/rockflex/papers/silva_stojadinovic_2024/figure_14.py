@@ -5,8 +5,8 @@ import math
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import compared
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
+from rockflex.report import Result
 
 TITLE = "Geometry of the chimney, I_θ, L_0^r and M_r"
 

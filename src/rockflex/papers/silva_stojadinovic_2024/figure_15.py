@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared, stated
+from rockflex.papers.silva_stojadinovic_2024._number import compared, stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Number, Remark, Result
 
 TITLE = "Chimney under El Centro times 2"
 PLACE = "Section 4.1.1"
@@ -36,15 +36,12 @@ def reproduce(records: Records) -> Result:
         f"the number of uplift events small without giving it; here 6DOF-S lifts {runs['6DOF-S'].n_uplifts} times."
     )
     remarking = (partial(_at_samples, runs, motion.dt), partial(_missing_mass, motion))
-    return Result("figure-15", TITLE, tuple(_numbers(runs)), figures, note, remarking=remarking)
+    return Result("figure-15", TITLE, _numbers(runs), figures, note, remarking=remarking)
 
 
 def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
-    def peak(model: str, quantity: str) -> float:
-        return float(getattr(runs[model], f"max_{quantity}"))
-
     def error(model: str, quantity: str, against: str = "6DOF-S") -> float:
-        return 100.0 * (peak(model, quantity) / peak(against, quantity) - 1.0)
+        return _error(runs[model], runs[against], quantity)
 
     lines = [
         compared(
@@ -52,10 +49,10 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
         )
         for quantity, printed in (("base_moment", "about 44"), ("base_shear", "about 24"))
     ]
-    lines.append(compared("θ_max of 6DOF-S", PLACE, "≤ 3.2", 1e3 * peak("6DOF-S", "rotation"), "10⁻³ rad"))
+    lines.append(compared("θ_max of 6DOF-S", PLACE, "≤ 3.2", 1e3 * runs["6DOF-S"].max_rotation, "10⁻³ rad"))
     for model, quantity, printed in ERRORS:
         found, signed = error(model, quantity), quantity == "base_moment"
-        note = "" if signed else f"ours is {found:+.2f} %".replace("-", "−")
+        note = "" if signed else f"ours is {_signed(found, 2)}"
         name = f"{SYMBOLS[quantity]}, error of {model}"
         lines.append(compared(name, PLACE, printed, found if signed else abs(found), "%", note=note))
     further = abs(error("4DOF-S", "base_shear")) / abs(error("3DOF-S", "base_shear"))
@@ -70,6 +67,15 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
     return lines
 
 
+def _error(run: rf.Response, reference: rf.Response, quantity: str) -> float:
+    """Return the error of a peak in per cent."""
+    return 100.0 * (getattr(run, f"max_{quantity}") / getattr(reference, f"max_{quantity}") - 1.0)
+
+
+def _signed(error: float, digits: int) -> str:
+    return f"{error:+.{digits}f} %".replace("-", "−")
+
+
 def _missing_mass(motion: rf.GroundMotion) -> Remark:
     """Compute the reaction of the ground, and base shear and moment with the mass of the modes left out."""
     quantities = {"base_shear": "V_b,max", "base_moment": "M_b,max", "horizontal_reaction": "ΣF_x,max"}
@@ -77,8 +83,7 @@ def _missing_mass(motion: rf.GroundMotion) -> Remark:
     reference, *runs = (rf.simulate(TOWER, motion, model, "peaks") for model in ("6DOF-S", *models))
     rows: list[tuple[str, ...]] = []
     for run in runs:
-        errors = (getattr(run, f"max_{name}") / getattr(reference, f"max_{name}") - 1.0 for name in quantities)
-        rows.append((run.model, *(f"{100.0 * error:+.1f} %".replace("-", "−") for error in errors)))
+        rows.append((run.model, *(_signed(_error(run, reference, name), 1) for name in quantities)))
     held = f"{reference.max_horizontal_reaction / 1e6:.1f}"
     return Remark(
         Kind.BESIDE,
@@ -104,8 +109,7 @@ def _at_samples(runs: dict[str, rf.Response], dt: float) -> Remark:
     rows: list[tuple[str, ...]] = []
     for model, quantity, printed in ERRORS:
         at_sample = 100.0 * (peak(model, quantity) / peak("6DOF-S", quantity) - 1.0)
-        true = 100.0 * (getattr(runs[model], f"max_{quantity}") / getattr(runs["6DOF-S"], f"max_{quantity}") - 1.0)
-        cells = (f"{value:+.2f} %".replace("-", "−") for value in (at_sample, true))
+        cells = (_signed(value, 2) for value in (at_sample, _error(runs[model], runs["6DOF-S"], quantity)))
         rows.append((f"{SYMBOLS[quantity]}, error of {model}", f"{printed} %", *cells))
     return Remark(
         Kind.AFTERWARDS,

@@ -5,11 +5,10 @@ from functools import partial
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._number import compared, stated
 from rockflex.papers.silva_stojadinovic_2024._printed import range_of
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
 from rockflex.papers.silva_stojadinovic_2024._yielding import (
     SAME,
     STRONG,
@@ -18,6 +17,7 @@ from rockflex.papers.silva_stojadinovic_2024._yielding import (
     largest_yielding,
     run,
 )
+from rockflex.report import Remark, Result
 
 TITLE = "An elastic and a weak structure #1 that may rock, El Centro"
 PLACE = "Section 4.2"

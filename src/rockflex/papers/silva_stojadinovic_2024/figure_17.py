@@ -3,8 +3,8 @@
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._number import compared, stated
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._yielding import SAME, STRONG, WEAK, largest_yielding, run
+from rockflex.report import Result
 
 TITLE = "Structure #1 with a yield displacement of 0.075 m, rocking and fixed, El Centro"
 PLACE = "Section 4.2"

@@ -1,17 +1,25 @@
 """Figure 3: an equivalent of specimen 2Hz-Long Base(14) under a Ricker pulse."""
 
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Check, Kind, Remark, check
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared, stated
+from rockflex.papers.silva_stojadinovic_2024._number import check
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
-from rockflex.papers.silva_stojadinovic_2024._specimens import TWO_HZ, histories, nominal, spread, widest
-from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
+from rockflex.papers.silva_stojadinovic_2024._specimens import (
+    BUILT,
+    TWO_HZ,
+    Make,
+    drawings,
+    equal,
+    histories,
+    holds,
+    nominal,
+    widest,
+)
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Check, Number, Remark, Result
 
 TITLE = "Specimen 2Hz-Long Base(14) under an antisymmetric Ricker pulse, by an equivalent"
 LABEL = "Equivalent of 2Hz-Long Base(14), not the specimen; Ricker pulse 0.1 g, 0.5 s"
@@ -29,26 +37,17 @@ def run(properties: rf.RockingProperties, model: str) -> rf.Response:
 
 def reproduce(_: Records) -> Result:
     """Run the four models."""
-    properties = _make(**nominal(TWO_HZ))
+    make: Make = rf.equivalent_2hz_long_base
+    properties = make(**nominal(TWO_HZ))
     runs = histories(properties, run)
-
-    def histories_figure() -> Any:
-        return rf.plot_history(list(runs.values()), panels=("rotation", "top_displacement"), title=LABEL)
-
-    figures = {"figure-3": histories_figure, "figure-3-spread": lambda: spread(LABEL, runs, TWO_HZ, _make, run)}
+    figures = drawings("figure-3", LABEL, runs, TWO_HZ, make, run)
     return Result(
-        "figure-3", TITLE, tuple(_numbers(properties, runs)), figures, NOTE, _checks(properties, runs["2DOF-C"]),
+        "figure-3", TITLE, _numbers(properties, runs), figures, NOTE, _checks(properties, runs["2DOF-C"]),
         (partial(_both_signs, properties, runs),),
     )  # fmt: skip
 
 
-def _make(base_mass_ratio: float, damping_ratio: float) -> rf.RockingProperties:
-    return rf.equivalent_2hz_long_base(base_mass_ratio, damping_ratio)
-
-
 def _numbers(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Number]:
-    equal = partial(compared, ground=Verdict.EQUIVALENT)
-    holds = partial(stated, ground=Verdict.EQUIVALENT)
     lever = p.effective_mass[0] * p.effective_height[0]
     complete, simple = runs["2DOF-C"], runs["2DOF-S"]
     longest = [float(np.max(r.impact_times - r.uplift_times[: r.impact_times.size])) for r in (simple, complete)]
@@ -87,11 +86,10 @@ def _numbers(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Numb
 
 
 def _checks(p: rf.RockingProperties, complete: rf.Response) -> tuple[Check, ...]:
-    built = "the equivalent is built so"
     return (
-        check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=built),
-        check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=built),
-        check("B/h*_1", PLACE, "0.16", _slenderness(p), note=built),
+        check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BUILT),
+        check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BUILT),
+        check("B/h*_1", PLACE, "0.16", _slenderness(p), note=BUILT),
         check(
             "simplified over complete resisting moment, less 1, mean while rocking", PLACE, "approximately 7",
             100.0 * _excess(p, complete), unit="%", note="its size is chosen for 7 % at the uplift",

@@ -1,18 +1,26 @@
 """Figure 4: an equivalent of specimen S1, released at 0.11 rad."""
 
-from functools import partial
-from typing import Any
+from typing import Literal
 
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Check, check
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared, stated
+from rockflex._arrays import Array
+from rockflex.papers.silva_stojadinovic_2024._number import check
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
-from rockflex.papers.silva_stojadinovic_2024._shown import shown
-from rockflex.papers.silva_stojadinovic_2024._specimens import S1, combinations, histories, nominal, spread, widest
-from rockflex.papers.silva_stojadinovic_2024._verdict import Verdict
+from rockflex.papers.silva_stojadinovic_2024._specimens import (
+    BUILT,
+    S1,
+    combinations,
+    drawings,
+    equal,
+    histories,
+    holds,
+    nominal,
+    widest,
+)
+from rockflex.report import Check, Number, Result
+from rockflex.report._line import as_text
 
 TITLE = "Specimen S1 in free vibration from 0.11 rad, by an equivalent"
 LABEL = "Equivalent of S1, not the specimen; released at 0.11 rad; $h^*_1$ = 1 m is assumed"
@@ -26,31 +34,21 @@ NOTE = (
 )
 
 
-def run(properties: rf.RockingProperties, model: str) -> rf.Response:
+def run(properties: rf.RockingProperties, model: str, output: Literal["history", "peaks"] = "history") -> rf.Response:
     """Run the free motion of a structure after its release."""
     start = rf.InitialState(rotation=RELEASE)
-    return rf.simulate(properties, rf.quiet_motion(3.0, 0.001), model, initial=start)
+    return rf.simulate(properties, rf.quiet_motion(3.0, 0.001), model, output, initial=start)
 
 
 def reproduce(_: Records) -> Result:
     """Run the four models, and the top displacement of two of them over all combinations."""
     properties = rf.equivalent_s1(**nominal(S1))
     runs = histories(properties, run)
-
-    def histories_figure() -> Any:
-        return rf.plot_history(list(runs.values()), panels=("rotation", "top_displacement"), title=LABEL)
-
-    figures = {"figure-4": histories_figure, "figure-4-spread": lambda: spread(LABEL, runs, S1, _make, run)}
-    return Result("figure-4", TITLE, tuple(_numbers(runs)), figures, NOTE, _checks(properties))
-
-
-def _make(**free: float) -> rf.RockingProperties:
-    return rf.equivalent_s1(**free)
+    figures = drawings("figure-4", LABEL, runs, S1, rf.equivalent_s1, run)
+    return Result("figure-4", TITLE, _numbers(runs), figures, NOTE, _checks(properties))
 
 
 def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
-    equal = partial(compared, ground=Verdict.EQUIVALENT)
-    holds = partial(stated, ground=Verdict.EQUIVALENT)
     every = runs["MDOF-S"]
     printed = every.required_friction_excluding_impacts(0.0, printed=True)
     friction = float("inf") if printed > BOUNDLESS else printed
@@ -75,30 +73,24 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
         holds(
             "friction that MDOF-S needs, Eq. 22 as printed", PLACE, "force ratios higher than 2", friction, "> 2",
             note="∞: the vertical sum passes through zero; with the corrected sign of the weight "
-            f"{shown(every.required_friction, 1)}",
+            f"{as_text(every.required_friction, 1)}",
         ),
     ]  # fmt: skip
 
 
 def _checks(p: rf.RockingProperties) -> tuple[Check, ...]:
-    built = "the equivalent is built so"
     lever = p.effective_mass[0] * p.effective_height[0]
     return (
-        check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=built),
-        check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=built),
-        check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=built),
+        check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BUILT),
+        check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=BUILT),
+        check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=BUILT),
     )
 
 
-def _changes() -> "np.ndarray[Any, np.dtype[np.float64]]":
+def _changes() -> Array:
     """Compare u_top,max of MDOF-S and 2DOF-S, in per cent, over all combinations."""
-    start, quiet = rf.InitialState(rotation=RELEASE), rf.quiet_motion(3.0, 0.001)
-    found: list[float] = []
-    for case in combinations(S1):
-        p = rf.equivalent_s1(**case)
-        tops = [
-            rf.simulate(p, quiet, model, output="peaks", initial=start).max_top_displacement
-            for model in ("MDOF-S", "2DOF-S")
-        ]
-        found.append(100.0 * (tops[0] / tops[1] - 1.0))
-    return np.array(found)
+    made = [rf.equivalent_s1(**case) for case in combinations(S1)]
+    every, one = (
+        np.array([run(p, model, "peaks").max_top_displacement for p in made]) for model in ("MDOF-S", "2DOF-S")
+    )
+    return 100.0 * (every / one - 1.0)

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._cloud import THRESHOLD, cloud
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
+from rockflex.papers.silva_stojadinovic_2024._cloud import SHEAR, THRESHOLD, cloud, codes_of
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
-from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES
+from rockflex.papers.silva_stojadinovic_2024._structures import MODELS
+from rockflex.report import Result
 
 Array = NDArray[np.float64]
 
@@ -51,27 +51,24 @@ def reproduce(records: Records) -> Result:
     return Result("figure-5", TITLE, numbers, {"figure-5": lambda: rf.plot_fragility(runs)}, note)
 
 
-def _gaps(runs: "pd.DataFrame") -> tuple[Interval, Interval, Interval]:
+def _gaps(runs: "pd.DataFrame") -> list[Interval]:
     """Return the largest difference of P from MDOF-S: for shear, for flexure, and flexure minus shear."""
     pgv, rocks = runs["pgv"].to_numpy(dtype=float), (runs["max_rotation"] > THRESHOLD).to_numpy(dtype=bool)
-    keys = runs["structure"].astype(str) + runs["model"].astype(str)
-    names = [[name + model for model in MODELS] for name in STRUCTURES]
-    shear = np.array([behaviour == "shear" for _, _, behaviour in STRUCTURES.values()])
     grid = np.geomspace(pgv.min(), pgv.max(), POINTS)
-    rows = np.column_stack((keys.map({key: i for i, key in enumerate(np.ravel(names))}), rocks))
+    rows = np.column_stack((codes_of(runs), rocks))
 
     def fit(im: Array, drawn: Array) -> Array:
-        every = (drawn[:, 0] == i for i in range(shear.size * len(MODELS)))
+        every = (drawn[:, 0] == i for i in range(SHEAR.size * len(MODELS)))
         curves = np.array([_curve(im[mine], drawn[mine, 1] > 0.0, grid) for mine in every])
-        of = curves.reshape(shear.size, len(MODELS), -1)
+        of = curves.reshape(SHEAR.size, len(MODELS), -1)
         gaps = np.abs(of[:, 1:] - of[:, :1]).max(axis=(1, 2))
-        return np.array([gaps[shear].max(), gaps[~shear].max(), gaps[~shear].max() - gaps[shear].max()])
+        shear, flexure = gaps[SHEAR].max(), gaps[~SHEAR].max()
+        return np.array([shear, flexure, flexure - shear])
 
     band = rf.bootstrap_band(
         fit, pgv, rows, runs["group"].astype(str).to_numpy(), at=np.arange(3), n=RESAMPLES, curve=lambda found, _: found
     )
-    one, two, three = zip(band.estimate.tolist(), band.low.tolist(), band.high.tolist(), strict=True)
-    return Interval(*one), Interval(*two), Interval(*three)
+    return intervals_of(band)
 
 
 def _curve(pgv: Array, rocks: NDArray[np.bool_], grid: Array) -> Array:

@@ -3,53 +3,43 @@
 from functools import partial
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
-from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, percent, places
-from rockflex.papers.silva_stojadinovic_2024._number import statistic
+from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, largest, places
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Remark, Result
 
 TITLE = "Clouds of the rotation of the runs that rock and stand"
-PLACE = "Section 3.2, PGV = 0.4 m/s"
 QUANTITY = "max_rotation"
+QUANTILES = "largest difference of the 84 % quantiles of θ_max"
+ROWS = (
+    ("largest difference of the medians of θ_max", "0.002", "rad", "median, largest", "median"),
+    (
+        "largest difference of the medians of θ_max over the median of MDOF-S", "15", "%", "median, of the largest",
+        "median",
+    ),
+    (QUANTILES, "0.005", "rad", "84 % quantile, largest", "quantile"),
+    (f"{QUANTILES} over that of MDOF-S", "12", "%", "84 % quantile, of the largest", "quantile"),
+)  # fmt: skip
 
 
 def reproduce(records: Records) -> Result:
     """Run the cloud, and compare the models' regressions."""
     runs = cloud(records)
-    found = differences(records, QUANTITY)
-    largest = {part: str(place) for part, place in places(records, QUANTITY).idxmax().items()}
-    numbers = (
-        statistic(
-            "largest difference of the medians of θ_max", PLACE, "0.002", found["median, largest"], "rad",
-            note=largest["median"],
-        ),
-        statistic(
-            "largest difference of the medians of θ_max over the median of MDOF-S", PLACE, "15",
-            percent(found["median, of the largest"]), "%", note=largest["median"],
-        ),
-        statistic(
-            "largest difference of the 84 % quantiles of θ_max", PLACE, "0.005", found["84 % quantile, largest"], "rad",
-            note=largest["quantile"],
-        ),
-        statistic(
-            "largest difference of the 84 % quantiles of θ_max over that of MDOF-S", PLACE, "12",
-            percent(found["84 % quantile, of the largest"]), "%", note=largest["quantile"],
-        ),
-    )  # fmt: skip
     note = (
         "Differences of 2DOF-C or 2DOF-S from MDOF-S, for the structure and model where they are largest in rad. We "
         "interpret the text so: 0.002 rad are 15 % of a median of 0.013 rad, where the differences are not "
         "relatively largest. Intervals are over resampled recordings, with all of their runs."
     )
     figures = {"figure-6": lambda: rf.plot_clouds(runs, QUANTITY)}
-    return Result("figure-6", TITLE, numbers, figures, note, remarking=(partial(_readings, records),))
+    return Result(
+        "figure-6", TITLE, largest(records, QUANTITY, ROWS), figures, note, remarking=(partial(_readings, records),)
+    )
 
 
 def _readings(records: Records) -> Remark:
     """Show the differences where they are largest, absolutely and relatively."""
     at = places(records, QUANTITY)
-    largest = {part: str(place) for part, place in at.idxmax().items()}
+    where = {part: str(place) for part, place in at.idxmax().items()}
     reasons = {
         "median": "largest of the medians, in rad",
         "quantile": "largest of the 84 % quantiles, in rad",
@@ -58,9 +48,9 @@ def _readings(records: Records) -> Remark:
     }
     rows: list[tuple[str, ...]] = [("the paper", "", "0.002 rad (15 %)", "0.005 rad (12 %)")]
     for reason, words in reasons.items():
-        row = at.loc[largest[reason]]
+        row = at.loc[where[reason]]
         cells = [f"{row[part]:.5f} rad ({100.0 * row[part + '_relative']:.1f} %)" for part in ("median", "quantile")]
-        rows.append((largest[reason], words, *cells))
+        rows.append((where[reason], words, *cells))
     return Remark(
         Kind.BESIDE,
         "Which difference is the largest",

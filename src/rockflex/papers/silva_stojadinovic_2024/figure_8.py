@@ -1,10 +1,10 @@
 """Figure 8: the characteristics of the random prototypes."""
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import check
+from rockflex.papers.silva_stojadinovic_2024._number import check
 from rockflex.papers.silva_stojadinovic_2024._pool import population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.report import Result
 
 TITLE = "Distribution of the random prototypes"
 RANGES = {
@@ -32,4 +32,4 @@ def reproduce(records: Records) -> Result:
     ]
     note = "The prototypes are drawn from these ranges, so this only checks the library."
     figures = {"figure-8": lambda: rf.plot_population(pairs)}
-    return Result("figure-8", TITLE, figures=figures, note=note, checks=tuple(checks))
+    return Result("figure-8", TITLE, figures=figures, note=note, checks=checks)

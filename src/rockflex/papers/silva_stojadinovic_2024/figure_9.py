@@ -5,20 +5,13 @@ from functools import partial
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
-from rockflex.papers.silva_stojadinovic_2024._number import Number, statistic, tendency
-from rockflex.papers.silva_stojadinovic_2024._pool import (
-    DRAWS,
-    PAIRS,
-    SEED,
-    intervals,
-    pool,
-    population,
-)
+from rockflex.papers.silva_stojadinovic_2024._number import statistic, tendency
+from rockflex.papers.silva_stojadinovic_2024._pool import DRAWS, PAIRS, SEED, intervals, pool, population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
+from rockflex.report import Remark, Result
 
 TITLE = "Agreement of 2DOF-S with MDOF-S"
 PLACE = "Section 3.3"
@@ -39,6 +32,26 @@ AGREEMENT = {
     "slope, rocking, top_displacement, flexure": ("c_1 of u_top,max, flexure", PLACE, "1.03"),
 }
 
+DISCREPANCIES = {
+    "stories, least of the worst": (
+        "stories of the five largest differences of u_top,max, no uplift, least", "more than 10 stories", "> 10", "",
+    ),
+    "aspect ratio of the largest": (
+        "h*_1/B of the five largest u_top,max, no uplift, median", "aspect ratios 5 and 6 displace most", "≤ 6", "",
+    ),
+    "aspect ratio of outliers": (
+        "h*_1/B of the five largest differences of θ_max, median", "outliers have high aspect ratios", "> 7.5",
+        "7.5 is the middle of what is drawn",
+    ),
+    "stories of outliers": (
+        "stories of the five largest differences of θ_max, median", "outliers have few stories", "< 8.5",
+        "8.5 is the middle of what is drawn",
+    ),
+    "period of outliers": (
+        "T_1 of the five largest differences of θ_max, median, over that of all pairs", "outliers have low periods",
+        "< 1", "",
+    ),
+}  # fmt: skip
 ROWS = COUNTS | {key: (name, printed) for key, (name, _, printed) in AGREEMENT.items()}
 
 
@@ -46,15 +59,17 @@ def reproduce(records: Records) -> Result:
     """Compare the models pair by pair."""
     found = intervals(records)
     numbers = [statistic(name, PLACE, n, found[key], note=OWN) for key, (name, n) in COUNTS.items()]
-    rotation = found["largest rotation of 2DOF-S"]
     numbers.append(
         tendency(
             "θ_max of 2DOF-S where MDOF-S does not uplift, largest", PLACE, "smaller than 5·10⁻⁵",
-            type(rotation)(*(1e5 * value for value in rotation)), "< 5", "10⁻⁵ rad",
+            found["largest rotation of 2DOF-S"].times(1e5), "< 5", "10⁻⁵ rad",
         )
     )  # fmt: skip
     numbers += [statistic(*row, found[key]) for key, row in AGREEMENT.items()]
-    numbers += _discrepancies(records)
+    numbers += [
+        tendency(name, PLACE, words, found[key], bound, note=note)
+        for key, (name, words, bound, note) in DISCREPANCIES.items()
+    ]
     note = (
         "A thousand pairs; R² and slopes exclude pairs in which a model overturns. Our value is the median, with the "
         f"90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {SEED} to "
@@ -63,35 +78,9 @@ def reproduce(records: Records) -> Result:
     )
     pairs = population(records)
     return Result(
-        "figure-9", TITLE, tuple(numbers), {"figure-9": lambda: rf.plot_agreement(pairs)}, note,
+        "figure-9", TITLE, numbers, {"figure-9": lambda: rf.plot_agreement(pairs)}, note,
         remarking=(partial(_seeds, records), partial(under_weaker, records, ROWS)),
     )  # fmt: skip
-
-
-def _discrepancies(records: Records) -> list[Number]:
-    found = intervals(records)
-    return [
-        tendency(
-            "stories of the five largest differences of u_top,max, no uplift, least", PLACE, "more than 10 stories",
-            found["stories, least of the worst"], "> 10",
-        ),
-        tendency(
-            "h*_1/B of the five largest u_top,max, no uplift, median", PLACE, "aspect ratios 5 and 6 displace most",
-            found["aspect ratio of the largest"], "≤ 6",
-        ),
-        tendency(
-            "h*_1/B of the five largest differences of θ_max, median", PLACE, "outliers have high aspect ratios",
-            found["aspect ratio of outliers"], "> 7.5", note="7.5 is the middle of what is drawn",
-        ),
-        tendency(
-            "stories of the five largest differences of θ_max, median", PLACE, "outliers have few stories",
-            found["stories of outliers"], "< 8.5", note="8.5 is the middle of what is drawn",
-        ),
-        tendency(
-            "T_1 of the five largest differences of θ_max, median, over that of all pairs", PLACE,
-            "outliers have low periods", found["period of outliers"], "< 1",
-        ),
-    ]  # fmt: skip
 
 
 def _seeds(records: Records) -> Remark:

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, tendency
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Remark, Result
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def reproduce(records: Records) -> Result:
         "Eqs. 20-22, with Eq. 22 as it is printed. Intervals are over resampled records."
     )
     return Result(
-        "sliding", TITLE, tuple(numbers), note=note, remarking=(partial(_both_signs, records), partial(_lifts, records))
+        "sliding", TITLE, numbers, note=note, remarking=(partial(_both_signs, records), partial(_lifts, records))
     )
 
 
@@ -93,8 +93,7 @@ def _intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str, Interva
         fit, friction, codes, mine["group"].to_numpy(), at=np.arange(len(PAIRS) + 1), n=RESAMPLES,
         curve=lambda values, _: values,
     )  # fmt: skip
-    three = zip(band.estimate.tolist(), band.low.tolist(), band.high.tolist(), strict=True)
-    return dict(zip((*PAIRS, ABOVE), (Interval(*each) for each in three), strict=True))
+    return dict(zip((*PAIRS, ABOVE), intervals_of(band), strict=True))
 
 
 def _both_signs(records: Records) -> Remark:

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared
+from rockflex.papers.silva_stojadinovic_2024._number import compared
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import STRUCTURES, frame_of
+from rockflex.report import Number, Result
 
 TITLE = "Parameters of the six 5-story prototypes"
 SHEAR, FLEXURE = (tuple(name for name, row in STRUCTURES.items() if row[2] == b) for b in ("shear", "flexure"))
@@ -32,7 +32,7 @@ def reproduce(_: Records) -> Result:
         "T_1 and h*_1/B are input, so they are not among the numbers. A value that the table repeats, because it does "
         "not depend on them, is one number; ours is the value of the structure that differs most from it."
     )
-    return Result("table-1", TITLE, tuple(numbers), note=note)
+    return Result("table-1", TITLE, numbers, note=note)
 
 
 def _values(name: str) -> dict[str, float]:

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._beside import check
+from rockflex.papers.silva_stojadinovic_2024._number import check
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._structures import frame_of
+from rockflex.report import Result
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ def reproduce(_: Records) -> Result:
         "The table has formulas and no numbers: that our parameters follow them is a check of the library, and nothing "
         "of the paper's is reproduced by it."
     )
-    return Result("table-2", TITLE, note=note, checks=tuple(checks))
+    return Result("table-2", TITLE, note=note, checks=checks)
 
 
 def _first_mode(frame: rf.Frame) -> tuple[float, Array]:

@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 
-from rockflex.papers.silva_stojadinovic_2024._beside import Kind, Remark
-from rockflex.papers.silva_stojadinovic_2024._number import Number, compared
+from rockflex.papers.silva_stojadinovic_2024._number import compared
 from rockflex.papers.silva_stojadinovic_2024._printed import range_of
 from rockflex.papers.silva_stojadinovic_2024._records import Records
-from rockflex.papers.silva_stojadinovic_2024._result import Result
 from rockflex.papers.silva_stojadinovic_2024._slices import first_frequency, ritz_of_slices
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
+from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
+from rockflex.report import Number, Remark, Result
 
 TITLE = "Modes of the chimney, by Rayleigh-Ritz and by 2000 finite elements"
 RITZ = {

@@ -83,9 +83,7 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
         for axes, (mark, group, quantity, symbol, unit, name) in zip(panels, _PANELS, strict=False):
             rows = groups.resting if group == "no_uplift" else groups.rocking
             _draw(axes, rows, quantity, markers, scale)
-            axes.set_xlabel(rf"${symbol}$, 2DOF-S [{unit}]")
-            axes.set_ylabel(rf"${symbol}$, MDOF-S [{unit}]")
-            axes.set_title(name)
+            axes.set(xlabel=rf"${symbol}$, 2DOF-S [{unit}]", ylabel=rf"${symbol}$, MDOF-S [{unit}]", title=name)
             letter(axes, mark)
         _write_keys(figure, panels[3], pairs, markers, scale, groups.left_out)
     return figure

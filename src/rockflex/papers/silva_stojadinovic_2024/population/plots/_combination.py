@@ -127,8 +127,7 @@ def _draw(axes: Axes, panel: _Panel, rows: "pd.DataFrame", behaviours: NDArray[n
     limit = square_panel(axes, x, y, [*lines, f"$y$ = {number(c1)} $x$"])
     if np.isfinite(c1):
         axes.plot([0.0, limit], [0.0, c1 * limit], color=BLUE, linewidth=1.1, zorder=3.0, label="_regression")
-    axes.set_xlabel(panel.abscissa)
-    axes.set_ylabel(panel.ordinate)
+    axes.set(xlabel=panel.abscissa, ylabel=panel.ordinate)
 
 
 def _column(rows: "pd.DataFrame", name: str) -> Array:

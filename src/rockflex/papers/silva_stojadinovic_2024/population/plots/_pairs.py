@@ -53,9 +53,7 @@ def square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
     """Draw equal axes with the line of equality, and lines of text in the lower right corner; return their end."""
     limit = 1.06 * float(max(x.max(initial=0.0), y.max(initial=0.0))) or 1.0
     axes.plot([0.0, limit], [0.0, limit], color=GRAY, linestyle="--", linewidth=0.8, zorder=1.5, label="_equal")
-    axes.set_xlim(0.0, limit)
-    axes.set_ylim(0.0, limit)
-    axes.set_aspect("equal")
+    axes.set(xlim=(0.0, limit), ylim=(0.0, limit), aspect="equal")
     axes.locator_params(nbins=5)
     axes.text(
         0.97, 0.03, "\n".join(lines), transform=axes.transAxes, fontsize=SMALL, ha="right", linespacing=1.35,
