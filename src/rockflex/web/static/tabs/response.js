@@ -1,5 +1,6 @@
 // Response: the rocking structure, animated with its response histories.
 
+import { bracket } from "../axes.js";
 import { Chart } from "../chart.js";
 import { decode, h, latest } from "../dom.js";
 import { select, slider } from "../form.js";
@@ -10,7 +11,6 @@ import { assumptions } from "../response/assumptions.js";
 import { Energy } from "../response/energy.js";
 import { Player } from "../response/player.js";
 import { table, warnings, words } from "../response/table.js";
-import { bracket } from "../stage.js";
 
 const PANELS = [
   ["rotation", "θ [mrad]", 1000, "Rotation"],
