@@ -167,3 +167,14 @@ export class Chart {
     }
   }
 }
+
+// Charts over time, one below the other, which zoom together; only the last one names the axis.
+export function overTime(charts) {
+  const group = [];
+  for (const options of charts) {
+    const last = group.length === charts.length - 1;
+    const time = { xName: "t [s]", xLabel: last ? "time [s]" : "", noXText: !last };
+    group.push(new Chart({ ...time, group, symmetric: true, left: 80, ...options }));
+  }
+  return group;
+}

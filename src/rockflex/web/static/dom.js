@@ -101,6 +101,12 @@ export function tooLarge({ name, size }, most) {
   return `${name} has ${(size / 1e6).toFixed(1)} MB, but the page takes ${most / 1e6} MB at most.`;
 }
 
+// A table with a heading for each column.
+export function tableOf(head, rows, attributes = {}) {
+  return h("table", attributes,
+    h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))), h("tbody", {}, rows));
+}
+
 // A symbol with a subscript after an underscore.
 export function symbol(text) {
   return text.split(/(_[\w,θ]+)/).map((part) => (part.startsWith("_") ? h("sub", {}, part.slice(1)) : part));

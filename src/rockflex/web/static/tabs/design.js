@@ -1,7 +1,7 @@
 // Design: how wide must the base be, and does a tendon help?
 
 import { Chart } from "../chart.js";
-import { h, number, symbol } from "../dom.js";
+import { h, number, symbol, tableOf } from "../dom.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
 import { measuresOf, unitOf } from "../measures.js";
@@ -139,9 +139,7 @@ function designs(curves) {
     h("td", {}, number(c.high[i], 3)),
     h("td", {}, number(c.median_base_moment[i] === null ? null : c.median_base_moment[i] / 1000)),
     h("td", {}, String(c.n_runs[i])));
-  return h("table", {},
-    h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, symbol(text))))),
-    h("tbody", {}, curves.flatMap((c) => c.half_width.map((_, i) => row(c, i)))));
+  return tableOf(head.map(symbol), curves.flatMap((c) => c.half_width.map((_, i) => row(c, i))));
 }
 
 // The parts of a band where both limits are known.

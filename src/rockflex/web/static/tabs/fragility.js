@@ -1,7 +1,7 @@
 // Fragility: many records, and the probability of exceeding a limit, updated as runs finish.
 
 import { Chart } from "../chart.js";
-import { h, number } from "../dom.js";
+import { h, number, tableOf } from "../dom.js";
 import { select } from "../form.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
@@ -104,11 +104,9 @@ export default function fragilityTab(app) {
 
 function fits(curves, label) {
   const head = ["Model", "Runs", "Exceeding the limit", `Median ${label}`];
-  return h("table", {},
-    h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),
-    h("tbody", {}, curves.map((c) => h("tr", { "data-model": c.model },
-      h("th", { scope: "row" }, c.model),
-      h("td", { "data-name": "n" }, String(c.n)),
-      h("td", { "data-name": "n_exceeding" }, String(c.n_exceeding)),
-      h("td", { "data-name": "median", "data-value": c.median }, number(c.median))))));
+  return tableOf(head, curves.map((c) => h("tr", { "data-model": c.model },
+    h("th", { scope: "row" }, c.model),
+    h("td", { "data-name": "n" }, String(c.n)),
+    h("td", { "data-name": "n_exceeding" }, String(c.n_exceeding)),
+    h("td", { "data-name": "median", "data-value": c.median }, number(c.median)))));
 }
