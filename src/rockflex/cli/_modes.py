@@ -10,6 +10,7 @@ from rockflex.cli import _options as options
 from rockflex.cli._flags import given
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from rockflex.cli._structures import LoadedStructure
@@ -109,19 +110,16 @@ def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[di
     """One row per mode, in SI units; the share refers to the mass above the base if known, else to the total mass."""
     import math
 
-    return [
-        {
-            "mode": k + 1,
-            "period": 2.0 * math.pi / properties.omega[k],
-            "omega": properties.omega[k],
-            "effective_mass": properties.effective_mass[k],
-            "mass_share": properties.effective_mass[k] / loaded.reference_mass,
-            "effective_height": properties.effective_height[k],
-            "top_ordinate": properties.top_ordinate[k],
-            "zeta": properties.zeta[k],
-        }
-        for k in range(properties.n_modes)
-    ]
+    return _table(
+        mode=range(1, properties.n_modes + 1),
+        period=2.0 * math.pi / properties.omega,
+        omega=properties.omega,
+        effective_mass=properties.effective_mass,
+        mass_share=properties.effective_mass / loaded.reference_mass,
+        effective_height=properties.effective_height,
+        top_ordinate=properties.top_ordinate,
+        zeta=properties.zeta,
+    )
 
 
 def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
@@ -134,18 +132,19 @@ def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     for pivot in properties.pivots:
         found = uplifted_modes(properties, side=pivot.side)
         about = {} if properties.symmetric else {"side": SIDES[pivot.side]}
-        rows += [
-            {
-                **about,
-                "mode": k + 1,
-                "period": 2.0 * math.pi / found.omega[k],
-                "omega": found.omega[k],
-                "ratio": found.ratio[k],
-                "zeta": found.damping_ratio[k],
-            }
-            for k in range(properties.n_modes)
-        ]
+        found = _table(
+            mode=range(1, properties.n_modes + 1),
+            period=2.0 * math.pi / found.omega,
+            omega=found.omega,
+            ratio=found.ratio,
+            zeta=found.damping_ratio,
+        )
+        rows += [about | row for row in found]
     return rows
+
+
+def _table(**columns: "Iterable[Any]") -> list[dict[str, Any]]:
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _adequacy(loaded: "LoadedStructure") -> "Adequacy":
@@ -158,27 +157,11 @@ def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
     """Return the result for a document; each row refers to the first k modes."""
     from dataclasses import asdict
 
-    rows = [
-        {
-            "modes": k + 1,
-            "base_moment": need.base_moment[k],
-            "base_moment_left": need.base_moment_left[k],
-            "base_shear": need.base_shear[k],
-            "base_shear_left": need.base_shear_left[k],
-            "frequency_error": need.frequency_error[k],
-        }
-        for k in range(need.n_modes)
-    ]
-    return {
-        "model": need.model,
-        "model_for_shear": need.model_for_shear,
-        "reason": need.reason,
-        "rows": rows,
-        "reference_error": need.reference_error,
-        "mass": need.mass,
-        "base_known": need.base_known,
-        "tolerance": asdict(need.tolerance),
-    }
+    of_rows = ("base_moment", "base_moment_left", "base_shear", "base_shear_left", "frequency_error")
+    rows = _table(modes=range(1, need.n_modes + 1), **{name: getattr(need, name) for name in of_rows})
+    head = {name: getattr(need, name) for name in ("model", "model_for_shear", "reason")}
+    rest = {name: getattr(need, name) for name in ("reference_error", "mass", "base_known")}
+    return {**head, "rows": rows, **rest, "tolerance": asdict(need.tolerance)}
 
 
 def _print_adequacy(need: "Adequacy") -> None:

@@ -63,11 +63,8 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
 
 def print_warnings(runs: Sequence[Run]) -> None:
     """Print warnings on stderr of demands that the ground or the tendons cannot meet."""
-    found = [(run, warning) for run in runs for warning in run.warnings]
-    for run, warning in found[:MAX_LISTED]:
-        note(f"Warning: {run.motion} × {run.scale:g}: {warning}")
-    if len(found) > MAX_LISTED:
-        note(f"and {len(found) - MAX_LISTED} more warnings; --json lists them all")
+    found = [f"Warning: {run.motion} × {run.scale:g}: {warning}" for run in runs for warning in run.warnings]
+    _list(found, "and {} more warnings; --json lists them all")
 
 
 def print_failures(runs: Sequence[Run]) -> int:
@@ -75,11 +72,17 @@ def print_failures(runs: Sequence[Run]) -> int:
     failed = [run for run in runs if run.error is not None]
     if failed:
         note(f"{len(failed)} of {len(runs)} runs could not be solved:")
-    for run in failed[:MAX_LISTED]:
-        note(f"  {run.model} under {run.motion} × {run.scale:g}: {run.error}")
-    if len(failed) > MAX_LISTED:
-        note(f"  and {len(failed) - MAX_LISTED} more; --json and results.csv list them all")
+    found = [f"  {run.model} under {run.motion} × {run.scale:g}: {run.error}" for run in failed]
+    _list(found, "  and {} more; --json and results.csv list them all")
     return len(failed)
+
+
+def _list(found: Sequence[str], rest: str) -> None:
+    """Print the first of many lines on stderr, and how many more there are."""
+    for line in found[:MAX_LISTED]:
+        note(line)
+    if len(found) > MAX_LISTED:
+        note(rest.format(len(found) - MAX_LISTED))
 
 
 def _peaks(runs: Sequence[Run]) -> Columns:

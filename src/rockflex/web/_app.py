@@ -241,7 +241,8 @@ async def _page(_: Request) -> Response:
 
 
 def _about() -> dict[str, Any]:
-    pulses = {name: {"title": title, "fields": fields} for name, (title, _, fields) in PULSES.items()}
+    usual = ("amplitude", "period")
+    pulses = {name: {"title": each.title, "fields": (*usual, *each.fields)} for name, each in PULSES.items()}
     limits = {"file": FILE, "freedoms": FREEDOMS, "duration": DURATION, "models": MODELS, "runs": RUNS}
     first = State.model_validate({"structure": PRESETS[0]["structure"]})
     return forms() | {

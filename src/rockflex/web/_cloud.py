@@ -22,11 +22,11 @@ from rockflex.study.cloud import CloudStudy
 from rockflex.study.plan import pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION, limit_state
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._script import cloud_script
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of, study_of
+from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,7 +47,8 @@ def cloud_study(state: State) -> CloudStudy:
     """
     build(state.structure)  # for its messages, which are shown next to the fields
     choice = state.cloud
-    return study_of(CloudStudy, shared(state, choice, choice.models, "Cloud"), "cloud")
+    with refusing("cloud"):
+        return CloudStudy(**shared(state, choice, choice.models, "Cloud"))
 
 
 def cloud_view(job: Job, state: State) -> dict[str, Any]:

@@ -4,18 +4,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
 from rockflex.kinds import KINDS
 from rockflex.study.design import DesignStudy, design_table, smallest_width
 from rockflex.study.plan import pivot_lifts
 from rockflex.web._jobs import Job
 from rockflex.web._limit_states import ROTATION
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._script import design_script
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build
-from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of, study_of
+from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +47,7 @@ def design_study(state: State) -> DesignStudy:
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0
             levels.append({"prestress_ratio": force, "stiffness_ratio": stiffness, "name": name})
-    content = shared(state, choice, [choice.model], "Design") | {
+    content: dict[str, Any] = shared(state, choice, [choice.model], "Design") | {
         "half_widths": [float(f"{width:.6g}") for width in widths],
         "tendons": levels,
         "measure": choice.measure,
@@ -56,17 +55,16 @@ def design_study(state: State) -> DesignStudy:
         "limits": [limit_of(choice)],
         "target": choice.target,
     }
-    return study_of(DesignStudy, content, "design")
+    with refusing("design"):
+        return DesignStudy(**content)
 
 
 def _table(job: Job, state: State) -> "pd.DataFrame":
     """Return the table of designs from the runs so far, one row per design."""
     runs, choice = some_runs_of(job), state.design
-    try:
-        resamples = 200 if job.over else RESAMPLES
+    resamples = 200 if job.over else RESAMPLES
+    with refusing("design"):
         return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at, n_resamples=resamples)
-    except (InputError, SolverError) as error:
-        raise Refusal({"design": str(error)}) from error
 
 
 def design_view(job: Job, state: State) -> dict[str, Any]:

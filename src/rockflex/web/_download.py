@@ -2,21 +2,20 @@
 
 import csv
 import io
+import math
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import numpy as np
 import tomli_w
 
-from rockflex._errors import InputError, SolverError
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
 from rockflex.web._records import motion_of
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._response import check_energy, responses
 from rockflex.web._script import response_script
 from rockflex.web._state import State
@@ -110,9 +109,8 @@ def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
 
 
 def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["model", *(f"{name} ({unit})" if unit else name for name, unit in COLUMNS.items())])
+    import pandas as pd
+
     found = responses(state, uploads)[2]
     rows = sum(response.time.size for response in found)
     if rows > ROWS:
@@ -120,13 +118,11 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
             f"the histories have {rows} rows, but the page writes {ROWS} at most. Choose fewer models, or Python lines."
         )
         raise Refusal({"models": message})
-    for response in found:
-        missing = np.full(
-            response.time.size, np.nan
-        )  # for the total displacement where the height of the top is not known
-        columns = np.column_stack([getattr(response, name, missing) for name in COLUMNS])
-        writer.writerows([response.model, *(f"{value:.9g}" for value in row)] for row in columns.tolist())
-    return "histories.csv", text.getvalue()
+    heads = {name: f"{name} ({unit})" if unit else name for name, unit in COLUMNS.items()}
+    # The total displacement is missing where the height of the top is not known.
+    columns = ({head: getattr(each, name, math.nan) for name, head in heads.items()} for each in found)
+    tables = [pd.DataFrame({"model": each.model, **part}) for each, part in zip(found, columns, strict=True)]
+    return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
 
 
 def _record(state: State, uploads: Uploads) -> tuple[str, str]:
@@ -198,10 +194,8 @@ def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str,
     """
     if what == "table":
         return f"{page.table_name}.csv", "text/csv", page.table(job, state).to_csv(index=False).encode()
-    try:
+    with refusing(""):
         return f"{page.figure_name}.svg", "image/svg+xml", svg(page.figure(job, state))
-    except (InputError, SolverError) as error:
-        raise Refusal(str(error)) from error
 
 
 _MAKERS: dict[str, Any] = {

@@ -35,20 +35,24 @@ async def question_of(request: Request) -> tuple[State, dict[str, Any]]:
     Refusal
         As `state_of`.
     """
-    body = await _json_of(request)
+    body = await _body_of(request, "application/json")
     if len(body) <= SMALL:
         return _question(body)
     return await anyio.to_thread.run_sync(_question, body)
 
 
 async def file_of(request: Request) -> bytes:
-    """Return the bytes of an uploaded file; another content type would let foreign pages send them unasked."""
-    _check_type(request, "application/octet-stream")
-    return await _body_of(request)
+    """Return the bytes of an uploaded file."""
+    return await _body_of(request, "application/octet-stream")
 
 
-async def _body_of(request: Request) -> bytes:
-    """Return the body of a request, within the limits of its size and its time."""
+async def _body_of(request: Request, wanted: str) -> bytes:
+    """Return the body of a request, within the limits of its size and its time.
+
+    Another content type would let foreign pages send it unasked, without the browser's preflight.
+    """
+    if request.headers.get("content-type", "").split(";")[0].strip().lower() != wanted:
+        raise Refusal(f"A request must be {wanted}.", 415)
     chunks, size = list[bytes](), 0
     try:
         with anyio.fail_after(PATIENCE):
@@ -63,17 +67,6 @@ async def _body_of(request: Request) -> bytes:
     if size > BODY:  # the rest was read and dropped, because most clients lose an answer that comes before the end
         raise Refusal(f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes.", 413)
     return b"".join(chunks)
-
-
-async def _json_of(request: Request) -> bytes:
-    """Return the body of a request; another content type would let foreign pages skip the browser's preflight."""
-    _check_type(request, "application/json")
-    return await _body_of(request)
-
-
-def _check_type(request: Request, wanted: str) -> None:
-    if request.headers.get("content-type", "").split(";")[0].strip().lower() != wanted:
-        raise Refusal(f"A request must be {wanted}.", 415)
 
 
 def _question(body: bytes) -> tuple[State, dict[str, Any]]:

@@ -2,10 +2,8 @@
 
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import AfterValidator
-from pydantic_core import PydanticCustomError
-
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKING, LimitState, beyond
+from rockflex.web._names import among
 
 
 class Asked(NamedTuple):
@@ -27,20 +25,8 @@ ASKED = (
 )
 
 
-def _asked(name: str) -> str:
-    if name not in (each.name for each in ASKED):
-        raise PydanticCustomError("unknown_limit", "unknown limit")
-    return name
-
-
-def _designed(name: str) -> str:
-    if any(each.name == name and not each.noun for each in ASKED):
-        raise PydanticCustomError("limit_of_no_design", "limit of no design")
-    return name
-
-
-LimitName = Annotated[str, AfterValidator(_asked)]
-DesignLimit = Annotated[LimitName, AfterValidator(_designed)]
+LimitName = Annotated[str, among(lambda: [each.name for each in ASKED])]
+DesignLimit = Annotated[str, among(lambda: [each.name for each in ASKED if each.noun])]
 
 
 def limit_state(name: str, rotation: float) -> LimitState:

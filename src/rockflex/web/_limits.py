@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any, Literal, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex._errors import InputError
 from rockflex._schema import Key
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
@@ -14,7 +13,7 @@ from rockflex.solve import Task
 from rockflex.structure.file import Table, inner_table, key_of, parts
 from rockflex.study import Case
 from rockflex.study._yielding import labelled_hysteresis
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 
 if TYPE_CHECKING:
     from rockflex.study.cloud import CloudPlan
@@ -35,17 +34,16 @@ LARGEST = 1e15
 
 
 def check_numbers(path: str, value: Any, table: type[Table]) -> None:
-    """Refuse numbers outside the range of their field, lists that are too long, and text in place of numbers.
-
-    Such text would be the path of a file: nothing that a visitor writes reaches the file system.
-    """
-    errors = errors_of_numbers(path, value, table)
-    if errors:
+    """Refuse what `errors_of_numbers` finds."""
+    if errors := errors_of_numbers(path, value, table):
         raise Refusal(errors)
 
 
 def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, str]:
-    """Return a message for each field with a number, a list or a text that the page does not accept."""
+    """Return a message for each number outside the range of its field, each list that is too long, and each text.
+
+    A text in place of numbers would be the path of a file: nothing that a visitor writes reaches the file system.
+    """
     errors: dict[str, str] = {}
     for place, field, each in _leaves(path, value, table):
         if isinstance(each, str):
@@ -123,10 +121,8 @@ def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, p
     """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
     assumptions, model = plan.bench.assumptions, parse_model(label)
     (bouc_wen,) = labelled_hysteresis([model], assumptions.bouc_wen)
-    try:
+    with refusing(path):
         model.of(properties, assumptions.impact, bouc_wen)
-    except InputError as error:
-        raise Refusal({path: str(error)}) from error
 
 
 def check_runs(plan: "CloudPlan", path: str) -> None:

@@ -2,28 +2,14 @@
 
 from typing import Annotated, Any
 
-from pydantic import AfterValidator
-from pydantic_core import PydanticCustomError
-
 from rockflex.motion import Measure, intensities
+from rockflex.web._names import among
 
 FIRST = ("pgv", "pga", "pgd", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
 
 
-def _known(name: str) -> str:
-    if name not in (measure.name for measure in intensities()):
-        raise PydanticCustomError("unknown_measure", "unknown measure")
-    return name
-
-
-def _same_for_all(name: str) -> str:
-    if any(measure.name == name and measure.of_what == "base" for measure in intensities()):
-        raise PydanticCustomError("measure_of_base", "measure of a base")
-    return name
-
-
-MeasureName = Annotated[str, AfterValidator(_known)]
-SameForAll = Annotated[MeasureName, AfterValidator(_same_for_all)]
+MeasureName = Annotated[str, among(lambda: [measure.name for measure in intensities()])]
+SameForAll = Annotated[str, among(lambda: [measure.name for measure in intensities() if measure.of_what != "base"])]
 """A measure that does not depend on the base, so that one level means the same motion for every width."""
 
 

@@ -1,11 +1,12 @@
 """The Earthquake tab: the record, its spectrum and its intensity measures."""
 
+from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.motion import (
     MEASURES,
@@ -24,7 +25,7 @@ from rockflex.motion import (
     suite_names,
 )
 from rockflex.web._packing import envelope, pack
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import refusing
 from rockflex.web._state import PulseChoice, RecordChoice, State
 from rockflex.web._structures import Built
 from rockflex.web._uploads import Uploads
@@ -33,20 +34,29 @@ THUMBNAIL = 120  # points of a thumbnail
 POINTS = 2000  # of a curve
 PERIODS = np.geomspace(0.05, 5.0, 90)
 
-PULSES: dict[str, tuple[str, str, tuple[str, ...]]] = {
-    "ricker_antisymmetric": ("Ricker, antisymmetric", "ricker_pulse({a}, {T})", ("amplitude", "period")),
-    "ricker_symmetric": ("Ricker, symmetric", 'ricker_pulse({a}, {T}, kind="symmetric")', ("amplitude", "period")),
-    "one_sine": ("One sine", "one_sine_pulse({a}, {T})", ("amplitude", "period")),
-    "one_cosine": ("One cosine", "one_cosine_pulse({a}, {T})", ("amplitude", "period")),
-    "half_sine": ("Half a sine", "half_sine_pulse({a}, {T})", ("amplitude", "period")),
-    "rectangular": ("Rectangle", "rectangular_pulse({a}, {T})", ("amplitude", "period")),
-    "mavroeidis": (
-        "Mavroeidis–Papageorgiou (velocity)",
-        "mavroeidis_papageorgiou_pulse({a}, {T}, gamma={g}, nu={n})",
-        ("amplitude", "period", "gamma", "nu"),
-    ),
+
+class Pulse(NamedTuple):
+    """A pulse: its title, the function that makes it, and what this takes besides amplitude and period."""
+
+    title: str
+    maker: Callable[..., GroundMotion]
+    fields: tuple[str, ...] = ()
+    fixed: Mapping[str, str] = MappingProxyType({})
+
+    def options(self, choice: PulseChoice) -> dict[str, Any]:
+        """Return the named arguments of the function."""
+        return {name: getattr(choice, name) for name in self.fields} | dict(self.fixed)
+
+
+PULSES = {
+    "ricker_antisymmetric": Pulse("Ricker, antisymmetric", ricker_pulse),
+    "ricker_symmetric": Pulse("Ricker, symmetric", ricker_pulse, fixed={"kind": "symmetric"}),
+    "one_sine": Pulse("One sine", one_sine_pulse),
+    "one_cosine": Pulse("One cosine", one_cosine_pulse),
+    "half_sine": Pulse("Half a sine", half_sine_pulse),
+    "rectangular": Pulse("Rectangle", rectangular_pulse),
+    "mavroeidis": Pulse("Mavroeidis–Papageorgiou (velocity)", mavroeidis_papageorgiou_pulse, ("gamma", "nu")),
 }
-"""Title, call and parameters of each pulse."""
 
 
 def suites() -> tuple[str, ...]:
@@ -56,7 +66,8 @@ def suites() -> tuple[str, ...]:
 
 @lru_cache(maxsize=8)
 def _suite(name: str) -> Suite:
-    return load_suite(name)
+    with refusing("record.suite"):
+        return load_suite(name)
 
 
 def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
@@ -70,33 +81,12 @@ def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
     if choice.source == "upload":
         return uploads.get(choice.upload)
     if choice.source == "pulse":
-        try:
-            return _pulse(choice.pulse)
-        except InputError as error:
-            raise Refusal({"record.pulse": str(error)}) from error
-    try:
-        suite = _suite(choice.suite)
-    except InputError as error:
-        raise Refusal({"record.suite": str(error)}) from error
-    try:
+        pulse = PULSES[choice.pulse.shape]
+        with refusing("record.pulse"):
+            return pulse.maker(choice.pulse.amplitude, choice.pulse.period, **pulse.options(choice.pulse))
+    suite = _suite(choice.suite)
+    with refusing("record.name"):
         return suite[choice.name]
-    except InputError as error:
-        raise Refusal({"record.name": str(error)}) from error
-
-
-def _pulse(p: PulseChoice) -> GroundMotion:
-    if p.shape == "mavroeidis":
-        return mavroeidis_papageorgiou_pulse(p.amplitude, p.period, gamma=p.gamma, nu=p.nu)
-    if p.shape == "ricker_symmetric":
-        return ricker_pulse(p.amplitude, p.period, kind="symmetric")
-    makers = {
-        "ricker_antisymmetric": ricker_pulse,
-        "one_sine": one_sine_pulse,
-        "one_cosine": one_cosine_pulse,
-        "half_sine": half_sine_pulse,
-        "rectangular": rectangular_pulse,
-    }
-    return makers[p.shape](p.amplitude, p.period)
 
 
 @lru_cache(maxsize=8)
@@ -108,11 +98,7 @@ def suite_view(name: str) -> dict[str, Any]:
     Refusal
         If the suite is unknown.
     """
-    try:
-        suite = _suite(name)
-    except InputError as error:
-        raise Refusal({"record.suite": str(error)}) from error
-    return plain({"name": name, "records": [_thumbnail(motion) for motion in suite]})
+    return plain({"name": name, "records": [_thumbnail(motion) for motion in _suite(name)]})
 
 
 def _thumbnail(motion: GroundMotion) -> dict[str, Any]:
@@ -138,15 +124,14 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
     velocity, displacement = motion.velocity, motion.displacement
     kept = envelope([motion.acceleration, velocity, displacement], POINTS)
     spectrum = motion.spectrum(PERIODS)
-    first = None
-    if built is not None and built.properties.n_modes:
-        first = 2.0 * np.pi / float(built.properties.omega[0])
     measures: list[dict[str, Any]] = [
         *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in record_measures()),
         {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
         {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
     ]
-    if first is not None and built is not None:
+    first = None
+    if built is not None and built.properties.n_modes:
+        first = 2.0 * np.pi / float(built.properties.omega[0])
         zeta, of_mode = float(built.properties.zeta[0]), MEASURES["sa_t1"]
         words = f"{of_mode.words} at the first period and its damping, {zeta:.3g}"
         measures.append(_fact(of_mode, motion.sa(first, zeta), words))
@@ -162,17 +147,13 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
             "periods": pack(PERIODS),
             "sa": pack(spectrum.sa),
             "first_period": first,
-            "lifting": _lifting(built),
+            "lifting": None if built is None else built.properties.resisting_moment / built.properties.l0r,
         }
     )
 
 
 def _fact(measure: Measure, value: float, words: str) -> dict[str, Any]:
     return {"name": measure.head, "value": value, "unit": measure.unit, "help": words}
-
-
-def _lifting(built: Built | None) -> float | None:
-    return None if built is None else built.properties.resisting_moment / built.properties.l0r
 
 
 def _title(motion: GroundMotion) -> str:

@@ -1,13 +1,11 @@
 """The Response tab: several models, with histories thinned to the resolution of a screen, and exact peaks."""
 
-from collections.abc import Generator
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._errors import InputError, SolverError
+from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
@@ -19,13 +17,14 @@ from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._limits import STOP, check_together
 from rockflex.web._packing import envelope, pack
 from rockflex.web._records import motion_of
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._state import State
-from rockflex.web._structures import Built, build
+from rockflex.web._structures import Built, build, outline
 from rockflex.web._uploads import Uploads
 
 POINTS = 2000  # of a history, events aside
 EVENTS = 600  # nodes of events that are retained, at most
+SENT = ("side", "rotation", "top_displacement", "base_moment", "base_shear")
 LEDGER = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`
 
 
@@ -43,23 +42,14 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     models = [parse_model(label) for label in state.models]
     given = labelled_hysteresis(models, state.hysteresis())
     for label, model, bouc_wen in zip(state.models, models, given, strict=True):
-        with _refusing(label):
+        with refusing("models", f"{label}: "):
             tied = model.of(built.properties, law, bouc_wen)
             cases[label] = Case(tied, state.free_vibration, work_limit=STOP, history=True, floors=True)
     check_together(list(cases.values()), motion)
     for label, case in cases.items():
-        with _refusing(label):
+        with refusing("models", f"{label}: "):
             found.append(case.run(motion))
     return built, motion, found
-
-
-@contextmanager
-def _refusing(label: str) -> Generator[None]:
-    """Turn the error of a model into a refusal."""
-    try:
-        yield
-    except (InputError, SolverError) as error:
-        raise Refusal({"models": f"{label}: {error}"}) from error
 
 
 def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[str, Any]:
@@ -69,14 +59,9 @@ def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[st
     p = built.properties
     return plain(
         {
+            **outline(state.structure, built),
             "motion": motion.name,
             "duration": motion.duration,
-            "kind": state.structure.kind,
-            "heights": built.heights,
-            "half_width": p.half_width,
-            "eccentricity": p.eccentricity,
-            "shapes_known": built.modes is not None,
-            "tendons": [tendon.position for tendon in p.tendons],
             "nominal": p.nominal_overturning_rotation,
             "models": [_curves(built, response) for response in found],
             "suggested_yield": _suggested_yield(p, motion),
@@ -112,12 +97,8 @@ def _curves(built: Built, response: Response) -> dict[str, Any]:
         "uplift_times": history.uplift_times[:EVENTS],
         "impact_times": history.impact_times[:EVENTS],
         "t": pack(history.time[kept]),
-        "side": pack(history.side[kept]),
-        "rotation": pack(history.rotation[kept]),
-        "top_displacement": pack(history.top_displacement[kept]),
+        **{name: pack(getattr(history, name)[kept]) for name in SENT},
         "total_top_displacement": pack(history.total_top_displacement[kept]) if known else None,
-        "base_moment": pack(history.base_moment[kept]),
-        "base_shear": pack(history.base_shear[kept]),
         "points": pack(points),
     }
 

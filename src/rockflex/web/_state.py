@@ -8,13 +8,13 @@ from typing import Annotated, Any, Literal
 from pydantic import AliasChoices, Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
-from rockflex.structure.file import StructureEntry, Table, expected, inner_table
+from rockflex.structure.file import StructureEntry, Table, expected, spot_of
 from rockflex.study._yielding import yielding
 from rockflex.study.assumed import Assumed, BoucWenTable
 from rockflex.web._limit_states import DesignLimit, LimitName
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._measures import MeasureName, SameForAll
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 
 Name = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 Scale = Annotated[float, Field(ge=0.01, le=20.0, description="a number from 0.01 to 20")]
@@ -166,10 +166,8 @@ def _check_models(state: State) -> None:
         ("cloud.models", state.cloud.models),
         ("design.model", [state.design.model]),
     ):
-        try:
+        with refusing(path):
             yields = yielding(labels)
-        except ValueError as error:
-            raise Refusal({path: str(error)}) from error
         if len(set(labels)) < len(labels):
             raise Refusal({path: "the same model is chosen twice."})
         if yields and state.bouc_wen is None:
@@ -178,10 +176,8 @@ def _check_models(state: State) -> None:
 
 
 def _check_assumed(state: State) -> None:
-    try:
+    with refusing("restitution"):
         state.law()
-    except InputError as error:
-        raise Refusal({"restitution": str(error)}) from error
     if state.bouc_wen is None:
         return
     check_numbers("bouc_wen", state.bouc_wen.model_dump(), BoucWenTable)
@@ -211,41 +207,18 @@ def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]
     """Return a sentence for each field at fault."""
     found: dict[str, str] = {}
     for problem in error.errors(include_url=False)[:TOLD]:
-        path, description, given = _place(problem["loc"], content)
+        spot = spot_of(problem["loc"], content, State)
+        wanted = "something else" if spot.field is None else expected(spot.field)
         if problem["type"] == "extra_forbidden":
             said = "it is not known here."
         elif problem["type"] == "missing":
-            said = f"it is missing: {description}."
+            said = f"it is missing: {wanted}."
         elif problem["type"] == "value_error":
             said = str(problem.get("ctx", {}).get("error", problem["msg"]))
         else:
-            said = f"it must be {description}, but {_short(given)} was given."
-        found[path] = said
+            said = f"it must be {wanted}, but {_short(spot.value)} was given."
+        found[".".join(map(str, spot.path))] = said
     return found
-
-
-def _place(location: tuple[int | str, ...], content: Any) -> tuple[str, str, Any]:
-    """Return the path, description and value of the field at fault, without the parts that a union or a list adds."""
-    table: type[Table] | None = State
-    path: list[str] = []
-    description, given = "a table", content
-    for key in location:
-        if isinstance(key, int):
-            if table is None or not isinstance(given, list) or key >= len(given):
-                break
-            path.append(str(key))
-            given = given[key]
-            continue
-        if table is None:
-            break
-        path.append(key)
-        given = given.get(key) if isinstance(given, dict) else None
-        field = table.model_fields.get(key)
-        if field is None:
-            break
-        description = expected(field) or "something else"
-        table = inner_table(field.annotation)
-    return ".".join(path), description, given
 
 
 def _short(value: Any) -> str:

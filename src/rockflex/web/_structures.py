@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure.file import Structure, StructureEntry
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
@@ -97,25 +97,31 @@ def structure_view(entry: StructureEntry) -> dict[str, Any]:
     """
     built = build(entry)
     p = built.properties
-    try:
+    with refusing("structure"):
         modes, judged = _modes(built), _judged(entry, p)
-    except InputError as error:
-        raise Refusal({"structure": str(error)}) from error
     return plain(
         {
+            **outline(entry, built),
             "name": entry.name,
-            "kind": entry.kind,
-            "heights": built.heights,
             "shapes": built.shapes[:, :SHOWN].T,
-            "shapes_known": built.modes is not None,
-            "half_width": p.half_width,
-            "eccentricity": p.eccentricity,
-            "tendons": [tendon.position for tendon in p.tendons],
             "properties": _parameters(p),
             "modes": modes,
             "adequacy": judged,
         }
     )
+
+
+def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
+    """Return what the drawing of a structure needs."""
+    p = built.properties
+    return {
+        "kind": entry.kind,
+        "heights": built.heights,
+        "shapes_known": built.modes is not None,
+        "half_width": p.half_width,
+        "eccentricity": p.eccentricity,
+        "tendons": [tendon.position for tendon in p.tendons],
+    }
 
 
 def _judged(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:

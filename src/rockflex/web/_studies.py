@@ -2,9 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
-from rockflex._errors import InputError
 from rockflex.motion import MEASURES
 from rockflex.study._yielding import yielding
 from rockflex.study.cloud import CloudPlan, CloudStudy
@@ -12,7 +11,7 @@ from rockflex.study.design import DesignStudy
 from rockflex.study.plan import to_frame
 from rockflex.web._jobs import Job
 from rockflex.web._limits import RUN, check_runs
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._state import CloudChoice, DesignChoice, State
 
 if TYPE_CHECKING:
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
 
 PER_CHUNK = 24  # runs between two checks whether to continue
 CALM = 10.0  # s of free vibration of yielding models: when a hysteretic spring is at rest is not known
-
-AnyStudy = TypeVar("AnyStudy", CloudStudy, DesignStudy)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,20 +60,6 @@ def shared(state: State, choice: CloudChoice | DesignChoice, labels: Sequence[st
     }
 
 
-def study_of(kind: type[AnyStudy], content: dict[str, Any], path: str) -> AnyStudy:
-    """Return a study.
-
-    Raises
-    ------
-    Refusal
-        If the content is not a valid study.
-    """
-    try:
-        return kind(**content)
-    except InputError as error:
-        raise Refusal({path: str(error)}) from error
-
-
 def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
     """Return the runs of a study, divided into small chunks.
 
@@ -85,10 +68,8 @@ def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
     Refusal
         If they cannot be prepared, are too many for the page, or take too long.
     """
-    try:
+    with refusing(path):
         plan = study.plan()
-    except InputError as error:
-        raise Refusal({path: str(error)}) from error
     plan.bench = plan.bench.limited(RUN)
     check_runs(plan, path)
     return plan

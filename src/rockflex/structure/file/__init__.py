@@ -2,7 +2,7 @@
 
 from rockflex.structure.file._entry import KINDS, StructureEntry, TendonTable
 from rockflex.structure.file._read import build_in, read_structure, read_toml
-from rockflex.structure.file._table import Table, checked, expected, inner_table, key_of, parts, problems
+from rockflex.structure.file._table import Table, checked, expected, inner_table, key_of, parts, problems, spot_of
 from rockflex.structure.file._tables import Built, Structure, StructureTable
 
 __all__ = [
@@ -22,4 +22,5 @@ __all__ = [
     "problems",
     "read_structure",
     "read_toml",
+    "spot_of",
 ]

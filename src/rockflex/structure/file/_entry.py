@@ -13,7 +13,7 @@ from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._matrix_files import checksum
 from rockflex.structure.file._beam_table import BeamTable
 from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
-from rockflex.structure.file._table import Table
+from rockflex.structure.file._table import Table, inner_table
 from rockflex.structure.file._tables import (
     BlockTable,
     Built,
@@ -26,22 +26,6 @@ from rockflex.structure.file._tables import (
     TaperedTowerTable,
     WallFrameTable,
 )
-
-KINDS: dict[str, type[StructureTable]] = {
-    "frame": FrameTable,
-    "fish_bone": FishBoneTable,
-    "wall_frame": WallFrameTable,
-    "tapered_tower": TaperedTowerTable,
-    "cantilever": CantileverTable,
-    "beam": BeamTable,
-    "lumped": LumpedTable,
-    "matrices": MatricesTable,
-    "modes": ModesTable,
-    "properties": PropertiesTable,
-    "block": BlockTable,
-}
-"""The table of each kind of structure by its name in a file."""
-
 
 _KIND = Key("a table", form=PLAIN)
 
@@ -130,17 +114,14 @@ class StructureEntry(Table):
         except InputError as error:
             raise InputError(str(error), place=f"[{self.kind}]", field=error.field) from error
         if self.eccentricity:
-            if isinstance(built, RockingProperties):
-                built = replace(built, eccentricity=self.eccentricity)
-            else:
-                built = Eccentric(built, self.eccentricity)
+            e = self.eccentricity
+            built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
         if not self.tendons:
             return built
         try:
             tendons = [Tendon(**each.model_dump()) for each in self.tendons]
-            if isinstance(built, RockingProperties):
-                return replace(built, tendons=tendons)
-            return Restrained(built, tendons)
+            known = isinstance(built, RockingProperties)
+            return replace(built, tendons=tendons) if known else Restrained(built, tendons)
         except InputError as error:
             raise InputError(str(error), place="[[tendons]]", field="tendons") from error
 
@@ -161,3 +142,11 @@ class StructureEntry(Table):
         if self.tendons:
             more["tendons"] = [each.model_dump(exclude_none=True) for each in self.tendons]
         return {**self.table.values(), **more}
+
+
+KINDS: dict[str, type[StructureTable]] = {
+    name: table
+    for name, field in StructureEntry.model_fields.items()
+    if issubclass(table := inner_table(field.annotation) or Table, StructureTable)
+}
+"""The table of each kind of structure by its name in a file."""

@@ -70,57 +70,82 @@ def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") 
 
 def problems(error: ValidationError, content: Mapping[str, Any], model: type[Table]) -> list[str]:
     """Return one sentence for each key at fault, with what is expected; the branches of a union count once."""
-    sentences: dict[tuple[str, str], str] = {}
+    sentences: dict[tuple[str | int, ...], str] = {}
     for problem in error.errors():
-        spot = _spot(problem["loc"], content, model)
-        label = " ".join(filter(None, (spot.header, spot.key)))
-        known = spot.model.model_fields
+        spot = spot_of(problem["loc"], content, model)
+        key = str(spot.path[-1]) if spot.path and not spot.of_table else ""
+        header = _header(spot.path[:-1] if key else spot.path)
+        label = " ".join(filter(None, (header, key))) if key else header.removesuffix(",")
+        known = spot.table.model_fields
         if problem["type"] == "extra_forbidden":
-            near = get_close_matches(spot.key, known, n=1)
+            near = get_close_matches(key, known, n=1)
             hint = f" Did you mean {near[0]}?" if near else ""
             said = f"{label} is not known; there are {', '.join(known)}.{hint}"
         elif problem["type"] == "value_error":  # raised by a check of the whole table
             said = ": ".join(filter(None, (label, str(problem["ctx"]["error"]) if "ctx" in problem else "")))
         elif problem["type"] == "missing":
-            said = f"{label} is missing: {expected(known[spot.key])}."
-        elif spot.key:
-            said = f"{label} must be {expected(known[spot.key])}, but {reprlib.repr(spot.value)} was given."
+            said = f"{label} is missing: {expected(known[key])}."
+        elif key:
+            said = f"{label} must be {expected(known[key])}, but {reprlib.repr(spot.value)} was given."
         else:
-            said = f"{spot.header or 'It'} must be a table, but {reprlib.repr(spot.value)} was given."
-        sentences[spot.header, spot.key] = said
+            said = f"{label or 'It'} must be a table, but {reprlib.repr(spot.value)} was given."
+        sentences[spot.path] = said
     return list(sentences.values())
 
 
 @dataclass(frozen=True)
-class _Spot:
-    """The place of a problem in a file; `key` is empty where it is the table itself."""
+class Spot:
+    """The place of a problem: the keys, and the numbers of tables in lists, down to the last that a file names.
 
-    header: str
-    key: str
+    Attributes
+    ----------
+    path
+        Keys and numbers from 0.
+    table
+        The kind of table that has the last key.
+    field
+        The field of the last key; None if it is not known.
+    value
+        What the content holds there.
+    """
+
+    path: tuple[str | int, ...]
+    table: type[Table]
+    field: FieldInfo | None
     value: Any
-    model: type[Table]
+
+    @property
+    def of_table(self) -> bool:
+        """Whether it is a table rather than one of its keys."""
+        if not self.path or isinstance(self.path[-1], int):
+            return True
+        if self.field is None or not isinstance(self.value, Mapping):
+            return False
+        return inner_table(self.field.annotation) in parts(self.field.annotation)
 
 
-def _spot(location: Sequence[str | int], content: Any, model: type[Table]) -> _Spot:
-    """Follow the location of a problem down to the last key that has a name in the file."""
-    spot, names = _Spot("", "", content, model), list[str]()
-    numbers: list[str] = []
-    rest = list(location)
-    while rest:
-        key = str(rest.pop(0))
-        value = spot.value.get(key) if isinstance(spot.value, Mapping) else None
-        field = spot.model.model_fields.get(key)
+def spot_of(location: Sequence[str | int], content: Any, model: type[Table]) -> Spot:
+    """Follow the location of a problem, without the parts that unions and lists of values add."""
+    spot, inner = Spot((), model, None, content), model
+    for key in location:
+        if inner is None:
+            break
+        path, value = (*spot.path, key), spot.value
+        if isinstance(key, int):
+            spot = Spot(path, inner, spot.field, value[key] if isinstance(value, list) else None)
+            continue
+        field = inner.model_fields.get(key)
+        spot = Spot(path, inner, field, value.get(key) if isinstance(value, Mapping) else None)
         inner = None if field is None else inner_table(field.annotation)
-        many = field is not None and any(get_origin(part) is list for part in parts(field.annotation))
-        if inner is None or not (rest or isinstance(value, Mapping)):
-            return _Spot(spot.header, key, value, spot.model)
-        names.append(key)
-        header = f"[{'.'.join(names)}]"
-        if many:
-            if not rest:
-                return _Spot(spot.header, key, value, spot.model)
-            place = int(rest.pop(0))
-            numbers.append(f"[{header}] no. {place + 1},")
-            value = value[place] if isinstance(value, Sequence) else None
-        spot = _Spot(" ".join(numbers if many else [*numbers, header]), "", value, inner)
-    return _Spot(spot.header.removesuffix(","), "", spot.value, spot.model)
+    return spot
+
+
+def _header(path: Sequence[str | int]) -> str:
+    """The heading of a table in a file; in a list, with its number."""
+    names, words = list[str](), list[str]()
+    for part in path:
+        if isinstance(part, int):
+            words.append(f"[[{'.'.join(names)}]] no. {part + 1},")
+        else:
+            names.append(part)
+    return " ".join([*words, f"[{'.'.join(names)}]"] if path and isinstance(path[-1], str) else words)

@@ -8,15 +8,20 @@ export class Refusal extends Error {
   }
 }
 
+// The result of `work`; if it is refused, that of `refused`.
+export async function attempt(work, refused) {
+  try {
+    return await work();
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return refused(error);
+  }
+}
+
 async function checked(response) {
   if (response.ok) return response;
-  let errors = { "": `The server responded with status ${response.status}.` };
-  try {
-    errors = (await response.json()).errors ?? errors;
-  } catch {
-    // not JSON: a proxy's page
-  }
-  throw new Refusal(errors, response.status);
+  const { errors } = await response.json().catch(() => ({})); // a proxy's page is not JSON
+  throw new Refusal(errors ?? { "": `The server responded with status ${response.status}.` }, response.status);
 }
 
 async function request(path, options) {
@@ -41,13 +46,15 @@ export async function ask(path, body) {
   asking.get(path)?.abort();
   const controller = new AbortController();
   asking.set(path, controller);
-  const headers = { "Content-Type": "application/json" };
-  const options = { method: "POST", headers, body: JSON.stringify(body), signal: controller.signal };
-  return (await request(path, options)).json();
+  return (await post(path, "json", JSON.stringify(body), controller.signal)).json();
 }
 
 export async function send(path, file) {
-  return (await request(path, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file })).json();
+  return (await post(path, "octet-stream", file)).json();
+}
+
+function post(path, kind, body, signal) {
+  return request(path, { method: "POST", headers: { "Content-Type": `application/${kind}` }, body, signal });
 }
 
 export async function drop(path) {
@@ -55,8 +62,7 @@ export async function drop(path) {
 }
 
 export async function file(path, body) {
-  const options = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
-  const response = await request(path, options);
+  const response = await post(path, "json", JSON.stringify(body));
   const name = /filename\*=UTF-8''(\S+)/.exec(response.headers.get("Content-Disposition") ?? "")?.[1] ?? "file";
   return [decodeURIComponent(name), await response.blob()];
 }

@@ -169,15 +169,21 @@ function tickText(value, all) {
 }
 
 export function interpolate(x, y, at) {
+  if (!x.length || at < x[0] || at > x[x.length - 1]) return NaN;
+  const [low, high, share] = bracket(x, at);
+  return y[low] + share * (y[high] - y[low]);
+}
+
+// Indices around a time, and its relative position between them; of the two nodes of an event the later one counts.
+export function bracket(t, time) {
   let low = 0;
-  let high = x.length - 1;
-  if (high < 0 || at < x[0] || at > x[high]) return NaN;
+  let high = t.length - 1;
+  if (time <= t[0]) return [0, 0, 0];
+  if (time >= t[high]) return [high, high, 0];
   while (high - low > 1) {
     const middle = (low + high) >> 1;
-    if (x[middle] <= at) low = middle;
+    if (t[middle] <= time) low = middle;
     else high = middle;
   }
-  const step = x[high] - x[low];
-  const share = step > 0 ? (at - x[low]) / step : 1;
-  return y[low] + share * (y[high] - y[low]);
+  return [low, high, (time - t[low]) / (t[high] - t[low])];
 }

@@ -1,7 +1,7 @@
 // A chart on a canvas: a cursor that moves without a redraw, zoom by dragging, both by keys as well.
 
 import { drawAxes, FONT, layout, line, ranges } from "./axes.js";
-import { color, h, number } from "./dom.js";
+import { color, context, h, number } from "./dom.js";
 import { drawMarks, drawReadout, readings } from "./marks.js";
 
 const KEYS = "ArrowLeft ArrowRight Home End + - Escape";
@@ -48,13 +48,8 @@ export class Chart {
     const width = this.element.clientWidth;
     if (!width) return;
     const { height } = this.options;
-    const scale = window.devicePixelRatio || 1;
-    for (const canvas of [this.base, this.over]) {
-      canvas.width = Math.round(width * scale);
-      canvas.height = Math.round(height * scale);
-      canvas.style.height = `${height}px`;
-    }
-    const g = this.#context(this.base);
+    const [g, over] = [this.base, this.over].map((canvas) => context(canvas, width, height));
+    g.font = over.font = FONT;
     this.frame = layout(g, width, height, ranges(this.data, this.options, this.zoom), this.options);
     drawAxes(g, this.frame, width, height, this.options);
     drawMarks(g, this.data, this.frame, this.options);
@@ -65,18 +60,10 @@ export class Chart {
     this.#overlay();
   }
 
-  #context(canvas) {
-    const g = canvas.getContext("2d");
-    const scale = window.devicePixelRatio || 1;
-    g.setTransform(scale, 0, 0, scale, 0, 0);
-    g.clearRect(0, 0, canvas.width, canvas.height);
-    g.font = FONT;
-    return g;
-  }
-
   #overlay() {
     if (!this.frame) return;
-    const g = this.#context(this.over);
+    const g = this.over.getContext("2d");
+    g.clearRect(0, 0, this.over.width, this.over.height);
     const { box, range, px, py } = this.frame;
     g.strokeStyle = color("text");
     if (this.cursor !== null && this.cursor >= range.x0 && this.cursor <= range.x1)
@@ -179,4 +166,15 @@ export class Chart {
       chart.draw();
     }
   }
+}
+
+// Charts over time, one below the other, which zoom together; only the last one names the axis.
+export function overTime(charts) {
+  const group = [];
+  for (const options of charts) {
+    const last = group.length === charts.length - 1;
+    const time = { xName: "t [s]", xLabel: last ? "time [s]" : "", noXText: !last };
+    group.push(new Chart({ ...time, group, symmetric: true, left: 80, ...options }));
+  }
+  return group;
 }

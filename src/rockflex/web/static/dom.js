@@ -75,6 +75,17 @@ export function color(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
+// The context of a canvas, made as large as it is shown.
+export function context(canvas, width, height) {
+  const scale = window.devicePixelRatio || 1;
+  canvas.width = Math.round(width * scale);
+  canvas.height = Math.round(height * scale);
+  canvas.style.height = `${height}px`;
+  const g = canvas.getContext("2d");
+  g.setTransform(scale, 0, 0, scale, 0, 0);
+  return g;
+}
+
 export function save(name, blob) {
   const url = URL.createObjectURL(blob);
   const link = h("a", { href: url, download: name });
@@ -88,6 +99,12 @@ export function save(name, blob) {
 export function tooLarge({ name, size }, most) {
   if (size <= most) return "";
   return `${name} has ${(size / 1e6).toFixed(1)} MB, but the page takes ${most / 1e6} MB at most.`;
+}
+
+// A table with a heading for each column.
+export function tableOf(head, rows, attributes = {}) {
+  return h("table", attributes,
+    h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))), h("tbody", {}, rows));
 }
 
 // A symbol with a subscript after an underscore.

@@ -146,6 +146,19 @@ export function box(path, label, value, change, { many = false, ...extra } = {})
   return field(path, label, control, extra);
 }
 
+// A box for a file, which takes each file at once, the same one again too.
+export function fileBox(accept, take, attributes = {}) {
+  const input = h("input", {
+    type: "file", accept, ...attributes,
+    onchange: () => {
+      const [chosen] = input.files;
+      input.value = "";
+      if (chosen) take(chosen);
+    },
+  });
+  return input;
+}
+
 // Chips of which at least one stays chosen.
 export function chips(path, label, options, chosen, change) {
   const group = h("div", { class: "chips", role: "group", "aria-label": label }, options.map(([value, text]) => {

@@ -1,6 +1,6 @@
 // The page: its state, which is stored in the address, its tabs, and what they share.
 
-import { ask, file, get, Refusal } from "./api.js";
+import { ask, attempt, file, get, Refusal } from "./api.js";
 import { clone, h, save } from "./dom.js";
 import { showErrors } from "./form.js";
 
@@ -32,29 +32,20 @@ export const app = {
     refresh();
   },
   // Query the server about the state; messages appear next to the fields of `root`, or in its foot.
-  async ask(path, root, extra = {}) {
-    try {
+  ask(path, root, extra = {}) {
+    return attempt(async () => {
       const answer = await ask(path, { state: app.state, ...extra });
       app.complain(root, {});
       return answer;
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
-      app.complain(root, error.errors);
-      return null;
-    }
+    }, (error) => app.complain(root, error.errors));
   },
   complain(root, errors) {
     const left = showErrors(root, errors);
     const foot = root.querySelector(".foot");
     if (foot) foot.textContent = left.map(elsewhere).join(" ");
   },
-  async download(path, root, extra = {}) {
-    try {
-      save(...(await file(path, { state: app.state, ...extra })));
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
-      app.complain(root, error.errors);
-    }
+  download(path, root) {
+    return attempt(async () => save(...(await file(path, { state: app.state }))), (error) => app.complain(root, error.errors));
   },
   // Buttons that fetch files.
   downloads(root, files, path = (what) => `/api/download/${what}`) {

@@ -1,7 +1,7 @@
 // The structure rocking on its base: all models side by side, at the same time.
 
-import { FONT } from "./axes.js";
-import { color, h } from "./dom.js";
+import { bracket, FONT } from "./axes.js";
+import { color, context, h } from "./dom.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
 
@@ -64,13 +64,7 @@ export class Stage {
   draw() {
     const width = this.canvas.clientWidth;
     if (!width || !this.view) return;
-    const scale = window.devicePixelRatio || 1;
-    this.canvas.width = Math.round(width * scale);
-    this.canvas.height = Math.round(this.height * scale);
-    this.canvas.style.height = `${this.height}px`;
-    const g = this.canvas.getContext("2d");
-    g.setTransform(scale, 0, 0, scale, 0, 0);
-    g.clearRect(0, 0, width, this.height);
+    const g = context(this.canvas, width, this.height);
     const count = this.view.models.length;
     const cell = width / count;
     const { heights } = this.view;
@@ -208,18 +202,4 @@ function drawGround(g, left, right, ground) {
     g.lineTo(x - 5, ground + 8);
   }
   g.stroke();
-}
-
-// Indices around a time, and its relative position between them; of the two nodes of an event the later one counts.
-export function bracket(t, time) {
-  let low = 0;
-  let high = t.length - 1;
-  if (time <= t[0]) return [0, 0, 0];
-  if (time >= t[high]) return [high, high, 0];
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (t[middle] <= time) low = middle;
-    else high = middle;
-  }
-  return [low, high, (time - t[low]) / (t[high] - t[low])];
 }

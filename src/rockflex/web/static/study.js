@@ -1,8 +1,9 @@
 // A study that the server runs in the background: its buttons, its progress, and its results as they come.
 
-import { ask, drop, Refusal } from "./api.js";
+import { ask, attempt, drop } from "./api.js";
 import { h, latest } from "./dom.js";
-import { trouble } from "./form.js";
+import { box, chips, select, trouble } from "./form.js";
+import { suitesOf } from "./measures.js";
 import { yields } from "./models.js";
 
 const SAID = {
@@ -18,6 +19,33 @@ const ASIDE = 5000; // and while it is not: the server stops a study that is not
 // Everything that determines the runs of these models, apart from the study's own choices.
 export function assumed({ structure, impact, restitution, bouc_wen }, labels) {
   return [structure, impact, restitution, labels.some(yields) ? bouc_wen : null, labels];
+}
+
+// Controls of the choices of a study.
+export function choices(app, kind) {
+  const now = app.state[kind];
+  const put = (patch) => app.change({ [kind]: patch });
+  const set = (name) => (value) => put({ [name]: value });
+  return {
+    put,
+    entry: (name, label, extra) => box(`${kind}.${name}`, label, now[name], set(name), extra),
+    list: (name, label, options) => select(`${kind}.${name}`, label, options, now[name], set(name)),
+    suites: chips(`${kind}.suites`, "Suites of records", suitesOf(app.about), now.suites, set("suites")),
+  };
+}
+
+// A list of remarks on the fits, hidden while it is empty.
+export class Remarks {
+  constructor() {
+    this.list = h("ul", { class: "notes" });
+    this.element = h("details", {}, h("summary", {}, "Remarks on the fits"), this.list);
+    this.set([]);
+  }
+
+  set(texts) {
+    this.list.replaceChildren(...texts.map((text) => h("li", {}, text)));
+    this.element.hidden = !texts.length;
+  }
 }
 
 const goes = (answer) => ["waiting", "running"].includes(answer.status);
@@ -78,12 +106,7 @@ export class Study {
   }
 
   async #stop() {
-    if (!this.token || !this.answer || !goes(this.answer)) return;
-    try {
-      await drop(`/api/job/${this.token}`);
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
-    }
+    if (this.token && this.answer && goes(this.answer)) await attempt(() => drop(`/api/job/${this.token}`), () => {});
   }
 
   async #watch() {
@@ -103,20 +126,18 @@ export class Study {
   async #load() {
     const token = this.token;
     if (!token) return;
-    try {
+    await attempt(async () => {
       const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.app.state });
       if (token !== this.token) return;
       this.answer = answer;
       this.app.complain(this.#root, {});
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
+      this.#draw();
+    }, (error) => {
       if (token !== this.token) return;
       this.app.complain(this.#root, error.errors);
       if (error.status === 404) this.token = this.answer = null;
       this.cancel.disabled = !this.token;
-      return;
-    }
-    this.#draw();
+    });
   }
 
   #draw() {

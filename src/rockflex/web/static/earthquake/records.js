@@ -1,6 +1,6 @@
 // The records of a suite as small pictures to choose from.
 
-import { get, Refusal } from "../api.js";
+import { attempt, get } from "../api.js";
 import { decode, h, latest, number, svg } from "../dom.js";
 import { trouble } from "../form.js";
 import { unitOf } from "../measures.js";
@@ -23,14 +23,11 @@ export function records(app) {
   const refresh = latest(async () => {
     const { suite, name } = app.state.record;
     if (shown !== suite) {
-      try {
-        const found = await get(`/api/suite/${encodeURIComponent(suite)}`);
-        thumbs.replaceChildren(...found.records.map((record) => thumb(suite, record)));
-        shown = suite;
-      } catch (error) {
-        if (!(error instanceof Refusal)) throw error;
-        return; // the query for the record itself reports the error
-      }
+      // The query for the record itself reports an error.
+      const found = await attempt(() => get(`/api/suite/${encodeURIComponent(suite)}`), () => null);
+      if (!found) return;
+      thumbs.replaceChildren(...found.records.map((record) => thumb(suite, record)));
+      shown = suite;
     }
     for (const button of thumbs.children) button.setAttribute("aria-pressed", String(button.dataset.record === name));
   });

@@ -1,8 +1,8 @@
 // A record from an uploaded file.
 
-import { Refusal, send } from "../api.js";
+import { attempt, send } from "../api.js";
 import { h, number, tooLarge } from "../dom.js";
-import { box, field, select } from "../form.js";
+import { box, field, fileBox, select } from "../form.js";
 
 const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
 
@@ -12,29 +12,21 @@ export function uploading(app, complain) {
   let unit = "";
   let step = "";
   const said = h("p", { class: "help", id: "uploaded", role: "status" });
-  const input = h("input", {
-    type: "file", accept: ".at2,.AT2,.csv,.txt,.dat,.tsv",
-    onchange: () => {
-      const [chosen] = input.files;
-      input.value = "";
-      if (chosen) take(chosen);
-    },
-  });
+  const input = fileBox(".at2,.AT2,.csv,.txt,.dat,.tsv", take);
 
   async function take(file) {
     const large = tooLarge(file, most);
     said.textContent = large ? "" : `Reading ${file.name} …`;
     complain(large ? { "record.upload": large } : {});
     if (large) return;
-    try {
+    await attempt(async () => {
       const found = await send(`/api/upload?${new URLSearchParams({ name: file.name, units: unit, dt: step })}`, file);
       said.textContent = `${found.name}: ${found.samples} samples, PGA ${number(found.pga)} m/s²`;
       app.change({ record: { source: "upload", upload: found.upload, name: found.name } });
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
+    }, (error) => {
       said.textContent = "";
       complain(error.errors);
-    }
+    });
   }
 
   return h("div", {},

@@ -1,6 +1,6 @@
 // The peaks of every model, and a summary in words.
 
-import { h, number, symbol } from "../dom.js";
+import { h, number, symbol, tableOf } from "../dom.js";
 import { yields } from "../models.js";
 
 // Name, heading, factor, and whether it may be compared with a fixed base. A displacement relative to the base may not:
@@ -35,9 +35,7 @@ export function table(view) {
   const last = held ? ["Largest tendon force [kN]"] : [];
   const head = ["Model", "Outcome", ...PEAKS.map(([, label]) => label), "Impacts", "θ_max/θ_nom", ...last];
   return [
-    h("table", {},
-      h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, symbol(text))))),
-      h("tbody", {}, view.models.map((m) => row(m, view, held)))),
+    tableOf(head.map(symbol), view.models.map((m) => row(m, view, held))),
     h("p", { class: "hint" }, ...symbol(MEANT), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
   ];
 }

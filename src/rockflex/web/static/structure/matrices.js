@@ -1,8 +1,8 @@
 // Matrices from a file of a finite element program.
 
-import { Refusal, send } from "../api.js";
+import { attempt, send } from "../api.js";
 import { h, tooLarge } from "../dom.js";
-import { trouble } from "../form.js";
+import { fileBox, trouble } from "../form.js";
 
 const PARTS = ["mass", "stiffness", "heights", "rotations"];
 const REST = { base_mass: 0, half_width: 1, damping_ratio: 0.02 };
@@ -10,28 +10,20 @@ const REST = { base_mass: 0, half_width: 1, damping_ratio: 0.02 };
 // `structure` returns the present structure, `put` takes the one with the matrices.
 export function importing(limit, structure, put) {
   const part = h("select", { id: "part" }, PARTS.map((name) => h("option", { value: name }, name)));
-  const input = h("input", {
-    type: "file", accept: ".npz,.csv", "aria-label": "File of matrices",
-    onchange: () => {
-      const [chosen] = input.files;
-      input.value = "";
-      if (chosen) take(chosen);
-    },
-  });
+  const input = fileBox(".npz,.csv", take, { "aria-label": "File of matrices" });
   const said = trouble();
 
   async function take(file) {
     said.textContent = tooLarge(file, limit);
     if (said.textContent) return;
-    try {
+    await attempt(async () => {
       const found = await send(`/api/matrices?name=${encodeURIComponent(file.name)}&part=${part.value}`, file);
       const now = structure();
       const name = now.matrices ? now.name : file.name.replace(/\.\w+$/, "");
       put({ name, matrices: { ...(now.matrices ?? REST), ...found } });
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
+    }, (error) => {
       said.textContent = Object.values(error.errors).join(" ");
-    }
+    });
   }
 
   return h("fieldset", { "data-path": "import" }, h("legend", {}, "Import matrices"),

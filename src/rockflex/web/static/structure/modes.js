@@ -1,6 +1,6 @@
 // The modes of a structure: drawings and a table.
 
-import { color, h, number, svg } from "../dom.js";
+import { color, h, number, svg, tableOf } from "../dom.js";
 
 const [WIDTH, HEIGHT] = [110, 240];
 const SWAY = 38; // px
@@ -50,8 +50,6 @@ export function table(view) {
     value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
     m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
   return h("div", {},
-    h("div", { class: "scroll" }, h("table", { id: "modes" },
-      h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),
-      h("tbody", {}, rows))),
+    h("div", { class: "scroll" }, tableOf(head, rows, { id: "modes" })),
     view.modes.length > ROWS ? h("p", { class: "hint" }, `and ${view.modes.length - ROWS} more`) : null);
 }

@@ -1,12 +1,11 @@
 // Design: how wide must the base be, and does a tendon help?
 
 import { Chart } from "../chart.js";
-import { h, number, symbol } from "../dom.js";
-import { box, chips, select } from "../form.js";
+import { h, number, symbol, tableOf } from "../dom.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
-import { measuresOf, suitesOf, unitOf } from "../measures.js";
-import { assumed, Study } from "../study.js";
+import { measuresOf, unitOf } from "../measures.js";
+import { assumed, choices, Remarks, Study } from "../study.js";
 
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
@@ -17,11 +16,7 @@ const numbers = (values) => values.map((value) => value ?? NaN);
 
 export default function designTab(app) {
   const choice = () => app.state.design;
-  const put = (patch) => app.change({ design: patch });
-  const entry = (name, label, extra) =>
-    box(`design.${name}`, label, choice()[name], (value) => put({ [name]: value }), extra);
-  const list = (name, label, options) =>
-    select(`design.${name}`, label, options, choice()[name], (value) => put({ [name]: value }));
+  const { entry, list, suites } = choices(app, "design");
 
   const limitStates = app.about.limit_states.filter((each) => each.noun);
   const limit = list("limit", "Limit state", limitStates.map((each) => [each.name, each.noun]));
@@ -37,8 +32,6 @@ export default function designTab(app) {
     { many: true, unit: "× weight", hint: "up to four, 0 for none" });
   const stiffness = entry("stiffness", "Stiffness EA/L of the tendon",
     { unit: "L₀ʳ g/B²", hint: "0 to 100; at 1 the moment stays constant while rocking" });
-  const suites = chips("design.suites", "Suites of records", suitesOf(app.about), choice().suites,
-    (value) => put({ suites: value }));
   const scales = entry("scales", "Scale factors", { many: true, hint: "up to five, each from 0.01 to 20" });
   const model = list("model", "Model", []);
 
@@ -50,8 +43,7 @@ export default function designTab(app) {
   });
   const keys = h("div");
   const verdict = h("div", { class: "answer", id: "width", role: "status" }, "Press Search to find how wide the base must be.");
-  const notes = h("ul", { class: "notes" });
-  const remarks = h("details", { hidden: true }, h("summary", {}, "Remarks on the fits"), notes);
+  const remarks = new Remarks();
   const table = h("div", { class: "scroll", id: "designs" });
   const drawing = h("div", { hidden: true }, keys, chart.element,
     h("p", { class: "hint" }, "Lines: probability of exceeding the limit at this intensity, overturning included; ",
@@ -59,7 +51,7 @@ export default function designTab(app) {
     table,
     h("h2", {}, "Base moment"), moments.element,
     h("p", { class: "hint" }, "Median over all runs of the largest base moment."),
-    remarks);
+    remarks.element);
   const results = h("div", { class: "results" }, verdict, drawing);
   const study = new Study(app, "design", {
     verb: "Search", results, show,
@@ -102,9 +94,7 @@ export default function designTab(app) {
     if (answer.answers.length)
       verdict.replaceChildren(...answer.answers.map((each) => sentence(each, answer.present)));
     table.replaceChildren(designs(answer.curves));
-    const said = [...new Set(answer.notes)].slice(0, 12);
-    notes.replaceChildren(...said.map((text) => h("li", {}, text)));
-    remarks.hidden = !said.length;
+    remarks.set([...new Set(answer.notes)].slice(0, 12));
   }
 
   function refresh() {
@@ -149,9 +139,7 @@ function designs(curves) {
     h("td", {}, number(c.high[i], 3)),
     h("td", {}, number(c.median_base_moment[i] === null ? null : c.median_base_moment[i] / 1000)),
     h("td", {}, String(c.n_runs[i])));
-  return h("table", {},
-    h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, symbol(text))))),
-    h("tbody", {}, curves.flatMap((c) => c.half_width.map((_, i) => row(c, i)))));
+  return tableOf(head.map(symbol), curves.flatMap((c) => c.half_width.map((_, i) => row(c, i))));
 }
 
 // The parts of a band where both limits are known.

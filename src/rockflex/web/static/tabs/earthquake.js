@@ -1,7 +1,7 @@
 // Earthquake: records of suites, pulses, files, and a scale factor.
 
 import { get } from "../api.js";
-import { Chart } from "../chart.js";
+import { Chart, overTime } from "../chart.js";
 import { decode, h, latest, number } from "../dom.js";
 import { records } from "../earthquake/records.js";
 import { uploading } from "../earthquake/upload.js";
@@ -42,16 +42,7 @@ export default function earthquakeTab(app) {
     upload: uploading(app, (errors) => app.complain(element, errors)),
   };
 
-  const group = [];
-  const charts = HISTORIES.map(([key, yLabel, color, height], i) => {
-    const last = i === HISTORIES.length - 1;
-    const chart = new Chart({
-      label: `Ground ${key} over time`, yLabel, height, xLabel: last ? "time [s]" : "", noXText: !last,
-      xName: "t [s]", group, symmetric: true, left: 80,
-    });
-    group.push(chart);
-    return [key, color, chart];
-  });
+  const charts = overTime(HISTORIES.map(([key, yLabel, , height]) => ({ label: `Ground ${key} over time`, yLabel, height })));
   const spectrum = new Chart({
     label: "Acceleration spectrum", yLabel: "Sa [m/s²]", xLabel: "period [s]", xName: "T [s]", height: 230,
     xLog: true, zero: true,
@@ -59,7 +50,7 @@ export default function earthquakeTab(app) {
   const title = h("h2", { id: "record-title" });
   const measures = h("dl", { class: "values", id: "measures" });
   const drawing = h("div", {},
-    title, charts.map(([, , chart]) => chart.element), measures,
+    title, charts.map((chart) => chart.element), measures,
     h("h2", {}, "Response spectrum, 5 % damping"), spectrum.element);
   const empty = h("p", { class: "answer", hidden: true }, "Choose a file; its motion and spectrum will appear here.");
   const results = h("div", { class: "results" }, empty, drawing);
@@ -81,14 +72,14 @@ export default function earthquakeTab(app) {
     const times = app.state.scale === 1 ? "" : ` × ${number(app.state.scale)}`;
     title.textContent = [answer.name, answer.title].filter(Boolean).join(" · ") + times;
     const x = decode(answer.t);
-    for (const [key, color, chart] of charts) {
+    HISTORIES.forEach(([key, , color], i) => {
       const level = key === "acceleration" && answer.lifting;
       const lifting = { color: "c1", dash: [4, 4] };
-      chart.set({
+      charts[i].set({
         series: [{ x, y: decode(answer[key]), color, width: 1, label: key }],
         hlines: level ? [{ ...lifting, y: level, label: "static uplift" }, { ...lifting, y: -level }] : [],
       });
-    }
+    });
     measures.replaceChildren(...answer.measures.map((m) => h("div", {},
       h("dt", {}, `${m.name} [${m.unit}]`),
       h("dd", { "data-measure": m.name, "data-value": m.value }, number(m.value)),

@@ -1,33 +1,27 @@
 // Fragility: many records, and the probability of exceeding a limit, updated as runs finish.
 
 import { Chart } from "../chart.js";
-import { h, number } from "../dom.js";
-import { box, chips, select } from "../form.js";
+import { h, number, tableOf } from "../dom.js";
+import { select } from "../form.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
-import { axisOf, measuresOf, suitesOf } from "../measures.js";
+import { axisOf, measuresOf } from "../measures.js";
 import { models } from "../models.js";
-import { assumed, Study } from "../study.js";
+import { assumed, choices, Remarks, Study } from "../study.js";
 
 const CONFIDENCES = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation are drawn
 
 export default function fragilityTab(app) {
   const choice = () => app.state.cloud;
-  const put = (patch) => app.change({ cloud: patch });
+  const { put, entry, list, suites } = choices(app, "cloud");
 
-  const suites = chips("cloud.suites", "Suites of records", suitesOf(app.about), choice().suites,
-    (value) => put({ suites: value }));
-  const scales = box("cloud.scales", "Scale factors", choice().scales, (value) => put({ scales: value }),
-    { many: true, hint: "up to twenty, each from 0.01 to 20" });
+  const scales = entry("scales", "Scale factors", { many: true, hint: "up to twenty, each from 0.01 to 20" });
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
-  const measures = measuresOf(app.about, true);
-  const measure = select("cloud.measure", "Intensity measure", measures, choice().measure, (value) => put({ measure: value }));
+  const measure = list("measure", "Intensity measure", measuresOf(app.about, true));
   const limitStates = app.about.limit_states;
-  const limit = select("cloud.limit", "Limit state", limitStates.map((each) => [each.name, each.clause]), choice().limit,
-    (value) => put({ limit: value }));
-  const rotation = box("cloud.rotation", "Rotation", choice().rotation, (value) => put({ rotation: value }),
-    { unit: "rad", hint: "0.0001 to 1.5" });
+  const limit = list("limit", "Limit state", limitStates.map((each) => [each.name, each.clause]));
+  const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
   const offered = CONFIDENCES.some(([value]) => value === choice().confidence) ? CONFIDENCES
     : [...CONFIDENCES, [choice().confidence, `${number(100 * choice().confidence)} %`]];
   const confidence = select("cloud.confidence", "Confidence level of the bands", offered, choice().confidence,
@@ -38,8 +32,7 @@ export default function fragilityTab(app) {
     label: "Rotations of the runs over intensity", yLabel: "θ_max [rad]", height: 280, xName: "IM", xLog: true, yLog: true,
   });
   const keys = h("div");
-  const notes = h("ul", { class: "notes" });
-  const remarks = h("details", { hidden: true }, h("summary", {}, "Remarks on the fits"), notes);
+  const remarks = new Remarks();
   const table = h("div", { class: "scroll", id: "fits" });
   const drawing = h("div", { hidden: true },
     h("h2", {}, "Fragility curves"), keys, curves.element,
@@ -48,7 +41,7 @@ export default function fragilityTab(app) {
     table,
     h("h2", {}, "All runs"), cloud.element,
     h("p", { class: "hint" }, "Overturned runs are drawn at π/2, runs below 0.01 mrad at the bottom."),
-    remarks);
+    remarks.element);
   const empty = h("p", { class: "answer" },
     "Press Run to simulate every record of the suites at every scale factor. The curves appear while it runs.");
   const results = h("div", { class: "results" }, empty, drawing);
@@ -96,8 +89,7 @@ export default function fragilityTab(app) {
     });
     keys.replaceChildren(legend(all.map((c) => ({ label: c.model, ...c.look }))));
     table.replaceChildren(fits(answer.curves, label));
-    notes.replaceChildren(...answer.notes.map((text) => h("li", {}, text)));
-    remarks.hidden = !answer.notes.length;
+    remarks.set(answer.notes);
   }
 
   function refresh() {
@@ -112,11 +104,9 @@ export default function fragilityTab(app) {
 
 function fits(curves, label) {
   const head = ["Model", "Runs", "Exceeding the limit", `Median ${label}`];
-  return h("table", {},
-    h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),
-    h("tbody", {}, curves.map((c) => h("tr", { "data-model": c.model },
-      h("th", { scope: "row" }, c.model),
-      h("td", { "data-name": "n" }, String(c.n)),
-      h("td", { "data-name": "n_exceeding" }, String(c.n_exceeding)),
-      h("td", { "data-name": "median", "data-value": c.median }, number(c.median))))));
+  return tableOf(head, curves.map((c) => h("tr", { "data-model": c.model },
+    h("th", { scope: "row" }, c.model),
+    h("td", { "data-name": "n" }, String(c.n)),
+    h("td", { "data-name": "n_exceeding" }, String(c.n_exceeding)),
+    h("td", { "data-name": "median", "data-value": c.median }, number(c.median)))));
 }

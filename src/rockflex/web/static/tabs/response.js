@@ -1,6 +1,7 @@
 // Response: the rocking structure, animated with its response histories.
 
-import { Chart } from "../chart.js";
+import { bracket } from "../axes.js";
+import { Chart, overTime } from "../chart.js";
 import { decode, h, latest } from "../dom.js";
 import { select, slider } from "../form.js";
 import { looks } from "../looks.js";
@@ -10,7 +11,6 @@ import { assumptions } from "../response/assumptions.js";
 import { Energy } from "../response/energy.js";
 import { Player } from "../response/player.js";
 import { table, warnings, words } from "../response/table.js";
-import { bracket } from "../stage.js";
 
 const PANELS = [
   ["rotation", "θ [mrad]", 1000, "Rotation"],
@@ -40,15 +40,10 @@ export default function responseTab(app) {
   const free = slider("free_vibration", "Free vibration after the record", { low: 0, high: 60, step: 1, unit: "s" },
     app.state.free_vibration, (value) => app.change({ free_vibration: value }));
   const assumed = assumptions(app, () => view?.suggested_yield);
-  const group = [];
-  const panels = PANELS.map(([key, yLabel, , name], i) => {
-    const chart = new Chart({
-      label: `${name} over time`, yLabel, height: [150, 118, 118, 134][i], noXText: i < 3, xLabel: i === 3 ? "time [s]" : "",
-      xName: "t [s]", group, symmetric: true, left: 80, firstOnTop: true, onpick: (time) => player.go(time),
-    });
-    group.push(chart);
-    return [key, chart];
-  });
+  const onpick = (time) => player.go(time);
+  const charts = overTime(PANELS.map(([, yLabel, , name], i) => (
+    { label: `${name} over time`, yLabel, height: [150, 118, 118, 134][i], firstOnTop: true, onpick })));
+  const panels = PANELS.map(([key], i) => [key, charts[i]]);
   const loop = new Chart({
     label: "Base moment over rotation", yLabel: "M_b [kN m]", xLabel: "θ [mrad]", xName: "θ [mrad]", height: 240,
     firstOnTop: true,
@@ -63,7 +58,7 @@ export default function responseTab(app) {
   const peaks = h("div", { class: "scroll", id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
-  const results = h("div", { class: "results" }, verdict, warned, keys, seen, panels.map(([, chart]) => chart.element),
+  const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
       "Click or use the arrow keys to set the time; drag or press + and − to zoom; double-click or press Escape to reset."),
     h("h2", {}, "Largest values"), peaks,
