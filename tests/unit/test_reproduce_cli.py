@@ -100,7 +100,7 @@ def test_checks_are_printed_and_not_counted():
 def test_force_needs_a_folder():
     done = invoke("table-1", "--force")
     assert done.exit_code == 2
-    assert "no --out was given" in done.stderr
+    assert "--force was given without --out" in done.stderr
 
 
 def test_records_of_ones_own(at2, monkeypatch):

@@ -1,5 +1,6 @@
 """The statements of Sections 3.3 and 3.4 about a thousand random pairs, as named numbers."""
 
+import math
 from typing import TYPE_CHECKING
 
 import rockflex as rf
@@ -51,8 +52,11 @@ def _combination(found: rf.PopulationStatistics) -> dict[str, float]:
 
 
 def _resting(pairs: "pd.DataFrame") -> dict[str, float]:
-    """Of the pairs in which MDOF-S does not uplift."""
+    """Return extremes of the pairs in which MDOF-S does not uplift; NaN where there are none."""
     resting = pairs[pairs["status_mdof"] == "no_uplift"]
+    if resting.empty:
+        names = ("largest rotation of 2DOF-S", "stories, least of the worst", "aspect ratio of the largest")
+        return dict.fromkeys(names, math.nan)
     miss = (resting["max_top_displacement_mdof"] - resting["max_top_displacement_2dof"]).abs()
     worst = resting.loc[miss.nlargest(FEW).index]
     tall = resting.nlargest(FEW, "max_top_displacement_mdof")
