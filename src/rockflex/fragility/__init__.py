@@ -22,6 +22,7 @@ from rockflex.fragility._limit_states import (
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._measures import compare_measures
+from rockflex.fragility._observed import observed_fractions
 from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, fit_outcomes
 from rockflex.fragility._resamples import resample_weights, resampled_exceedance
 from rockflex.fragility._stripes import fit_stripes
@@ -58,6 +59,7 @@ __all__ = [
     "fit_outcomes",
     "fit_stripes",
     "limit_label",
+    "observed_fractions",
     "resample_weights",
     "resampled_exceedance",
     "risk_targeted_median",

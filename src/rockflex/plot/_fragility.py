@@ -8,12 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
 from rockflex._cases import rows_of
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
-from rockflex.fragility import CloudFits, LogisticFit, fit_clouds
+from rockflex.fragility import CloudFits, LogisticFit, fit_clouds, observed_fractions
 from rockflex.plot._study_tables import keys_of, looks_of, measure_name, names_in, structure_panels
 from rockflex.plot._style import GRAY, SHADE, SMALL, Look, columns, styled
 
@@ -159,12 +158,10 @@ def _draw(axes: Axes, fit: CloudFits, look: Look, limit: float, confidence: floa
 
 def _mark(axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
-    im = runs[fit.measure].to_numpy(dtype=float)
-    order = np.argsort(im, kind="stable")
     rocks = runs["max_rotation"].to_numpy(dtype=float) > fit.outcomes.threshold
-    parts: list[NDArray[np.intp]] = [part for part in np.array_split(order, groups) if part.size]
+    points = observed_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
-        [float(np.exp(np.log(im[part]).mean())) for part in parts], [float(rocks[part].mean()) for part in parts],
+        [at for at, _ in points], [fraction for _, fraction in points],
         marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7, label="_observed",
     )  # fmt: skip
 

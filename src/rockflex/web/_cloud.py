@@ -17,6 +17,7 @@ from rockflex.fragility import (
     bootstrap_band,
     fit_each_cloud,
     fit_outcomes,
+    observed_fractions,
 )
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.plan import pivot_lifts
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 GRID = 60  # points of a curve
 FEWEST = 12  # runs before a curve is fitted
 RESAMPLES = 60
+BINS = 8  # groups of the observed fractions
 
 
 def cloud_study(state: State) -> CloudStudy:
@@ -92,7 +94,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         "point_im": im,
         "point_rotation": np.minimum(rotation, 0.5 * math.pi),
         "point_over": over.astype(int),
-        "observed": _observed(im, over),
+        "observed": observed_fractions(im, over, BINS),
         "median": None,
         "p": None,
         "low": None,
@@ -146,13 +148,6 @@ def _band(
         curve=lambda found, at: found.exceedance(at, choice.rotation),
     )
     return band.low, band.high
-
-
-def _observed(im: Array, over: Bools, bins: int = 8) -> list[list[float]]:
-    """Return the share of runs beyond the limit in groups of similar intensity, at their geometric means."""
-    order = np.argsort(im, kind="stable")
-    parts = [part for part in np.array_split(order, bins) if part.size]
-    return [[float(np.exp(np.log(im[part]).mean())), float(over[part].mean())] for part in parts]
 
 
 def _runs(job: Job, _: State) -> "pd.DataFrame":

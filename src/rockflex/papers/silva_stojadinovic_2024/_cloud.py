@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, statistic
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
 from rockflex.report import Number
-
-Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
     import pandas as pd

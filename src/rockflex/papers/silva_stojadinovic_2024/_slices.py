@@ -3,11 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
-
-Array = NDArray[np.float64]
 
 FUNCTIONS = 5  # of Eq. 36
 

@@ -3,16 +3,14 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024._cloud import SHEAR, THRESHOLD, cloud, codes_of
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS
 from rockflex.report import Result
-
-Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -71,7 +69,7 @@ def _gaps(runs: "pd.DataFrame") -> list[Interval]:
     return intervals_of(band)
 
 
-def _curve(pgv: Array, rocks: NDArray[np.bool_], grid: Array) -> Array:
+def _curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
     """Return the probability on the grid; constant if all runs have the same outcome."""
     if rocks.all() or not rocks.any():
         return np.full(grid.size, float(rocks[0]))

@@ -4,16 +4,14 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
 from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
 from rockflex.report import Remark, Result
-
-Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -3,15 +3,13 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._number import check
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import frame_of
 from rockflex.report import Result
-
-Array = NDArray[np.float64]
 
 TITLE = "Formulas of the eight parameters of 2DOF-S"
 GRAVITY = 9.81
