@@ -1,0 +1,344 @@
+"""Controlled rocking by adaptive integration with events (SciPy): dampers, fuses and tendons that yield.
+
+Equations 15 and 23-25 of Silva & Stojadinović 2024 about each pivot, with the moment -s F r of every element at the
+distance r from the pivot, stretched by r |θ|. State ``[θ, θ', D, D']``; every sample is integrated anew. Elements
+change their branch at events, so the field is linear in between.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from twins.result import Ledger, TwinResult, Vector
+
+GRAVITY = 9.81
+ELASTIC, UP, DOWN, SLACK = "elastic", "up", "down", "slack"
+NEAR = 1e-10  # of a sample
+TERMS = 14
+
+
+@dataclass
+class Dashpot:
+    """F = c δ'."""
+
+    coefficient: float
+    position: float = 0.0
+
+    def tangent(self) -> tuple[float, float, float]:
+        return 0.0, self.coefficient, 0.0
+
+
+@dataclass
+class Bar:
+    """F = α k e + (1 - α) z with z' = k e' while |z| < F_y, e = δ + `stretched`; without compression if `no_push`."""
+
+    stiffness: float
+    yield_force: float
+    post_yield_ratio: float = 0.0
+    position: float = 0.0
+    stretched: float = 0.0
+    no_push: bool = False
+    plastic: float = 0.0
+    branch: str = ELASTIC
+
+    def tangent(self) -> tuple[float, float, float]:
+        """Stiffness, damping, and the force at δ = δ' = 0 on the branch."""
+        k, a = self.stiffness, self.post_yield_ratio
+        if self.branch == SLACK:
+            return 0.0, 0.0, 0.0
+        if self.branch == ELASTIC:
+            return k, 0.0, k * self.stretched - (1.0 - a) * k * self.plastic
+        sign = 1.0 if self.branch == UP else -1.0
+        return a * k, 0.0, a * k * self.stretched + sign * (1.0 - a) * self.yield_force
+
+    def limits(self) -> tuple[float, str, float, str]:
+        """Stretches δ that end an elastic or a slack branch, and what follows."""
+        k, a = self.stiffness, self.post_yield_ratio
+        reach = self.yield_force / k
+        empty = (1.0 - a) * self.plastic - self.stretched
+        if self.branch == SLACK:
+            return -np.inf, "", empty, ELASTIC
+        low, below = self.plastic - reach - self.stretched, DOWN
+        if self.no_push and empty > low:
+            low, below = empty, SLACK
+        return low, below, self.plastic + reach - self.stretched, UP
+
+    def settle(self, delta: float) -> None:
+        """Leave a yielding branch for the elastic one at the stretch δ."""
+        if self.branch in (UP, DOWN):
+            sign = 1.0 if self.branch == UP else -1.0
+            self.plastic = delta + self.stretched - sign * self.yield_force / self.stiffness
+            self.branch = ELASTIC
+
+    def rest(self) -> None:
+        """The branch while the base is closed."""
+        self.settle(0.0)
+        self.branch = ELASTIC
+        if self.no_push and self.tangent()[2] < 0.0:
+            self.branch = SLACK
+
+
+@dataclass
+class ControlledTwin:
+    """The model with its elements, and the run."""
+
+    omega: Vector
+    mass: Vector
+    height: Vector
+    top: Vector
+    zeta: Vector
+    i_theta: tuple[float, float]  # about the right pivot and the left one
+    arms: tuple[float, float]  # B_r and B_l
+    l0r: float
+    m_tot: float
+    elements: list
+    rtol: float = 1e-11
+    energy: Vector = field(init=False)
+
+    def __post_init__(self) -> None:
+        n = self.n = self.omega.size
+        d, v = slice(2, 2 + n), slice(2 + n, 2 + 2 * n)
+        self.guard = np.zeros(2 + 2 * n)
+        self.guard[d] = -self.mass * self.height * self.omega**2
+        self.guard[v] = -self.mass * self.height * 2.0 * self.zeta * self.omega
+        self.guard_a = self.l0r - self.mass @ self.height
+        self.outputs = np.zeros((4, 2 + 2 * n))
+        self.outputs[0, 0] = 1.0
+        self.outputs[1, d] = self.top
+        self.outputs[2, d] = self.mass * self.height * self.omega**2
+        self.outputs[3, d] = self.mass * self.omega**2
+
+    def arm(self, element, side: int) -> float:
+        return self.arms[0] - element.position if side > 0 else self.arms[1] + element.position
+
+    def field_of(self, side: int) -> tuple[Vector, Vector, Vector]:
+        """A, the factor of a, and the constant of y' = A y + .. on the present branches."""
+        n, size = self.n, 2 + 2 * self.n
+        d, v = slice(2, 2 + n), slice(2 + n, 2 + 2 * n)
+        A, by_a, rest = np.zeros((size, size)), np.zeros(size), np.zeros(size)
+        A[d, v] = np.eye(n)
+        A[v, d], A[v, v] = -np.diag(self.omega**2), -np.diag(2.0 * self.zeta * self.omega)
+        by_a[v] = -1.0
+        if side == 0:
+            return A, by_a, rest
+        place = 0 if side > 0 else 1
+        inertia = self.i_theta[place] - self.mass @ self.height**2
+        turn = -self.guard / inertia
+        turn[0] = self.l0r * GRAVITY / inertia
+        constant = -side * self.m_tot * GRAVITY * self.arms[place]
+        for each in self.elements:
+            r = self.arm(each, side)
+            k, c, force = each.tangent()
+            turn[0] -= k * r**2 / inertia
+            turn[1] -= c * r**2 / inertia
+            constant -= side * force * r
+        A[0, 1], A[1] = 1.0, turn
+        A[v] -= np.outer(self.height, turn)
+        by_a[1] = -self.guard_a / inertia
+        by_a[v] -= self.height * by_a[1]
+        rest[1] = constant / inertia
+        rest[v] = -self.height * rest[1]
+        return A, by_a, rest
+
+    def thresholds(self) -> tuple[float, float]:
+        """Overturning moments below and above which the base lifts to the right and to the left."""
+        weight = self.m_tot * GRAVITY
+        right, left = weight * self.arms[0], weight * self.arms[1]
+        for each in self.elements:
+            force = each.tangent()[2]
+            right += force * self.arm(each, 1)
+            left += force * self.arm(each, -1)
+        return -right, left
+
+    def side_wanted(self, y: Vector, a: float) -> int:
+        moment = self.guard @ y + self.guard_a * a
+        low, high = self.thresholds()
+        return 1 if moment < low else -1 if moment > high else 0
+
+    def run(self, record: Vector, dt: float, free: float = 0.0) -> TwinResult:
+        record = np.concatenate((np.asarray(record, float), np.zeros(0)))
+        segments = [(k * dt, record[k], record[k + 1]) for k in range(record.size - 1)]
+        end = dt * (record.size - 1)
+        segments += [(end + k * dt, 0.0, 0.0) for k in range(int(np.ceil(free / dt - 1e-9)))]
+        self.y, self.side, self.ledger = np.zeros(2 + 2 * self.n), 0, Ledger()
+        for each in self.elements:
+            if isinstance(each, Bar):
+                each.rest()
+        time, overturned = 0.0, False
+        for start, first, last in segments:
+            time, overturned = self._sample(start, first, last, dt)
+            if overturned:
+                break
+        return self.ledger.close(time=time, side=self.side, state=self.y, overturned=overturned, history=None)
+
+    def _sample(self, start: float, first: float, last: float, dt: float) -> tuple[float, bool]:
+        slope = (last - first) / dt
+        tau = 0.0
+        while dt - tau > NEAR * dt:
+            a = first + slope * tau
+            if self.side == 0:
+                side = self.side_wanted(self.y, a)
+                if side:
+                    tau = self._lift(start, tau, dt, a, slope, side, jumped=True)
+                    continue
+            tau, what = self._integrate(start, tau, dt, first, slope)
+            a = first + slope * tau
+            if what == "lift":
+                if dt - tau > NEAR * dt:
+                    moment = self.guard @ self.y + self.guard_a * a
+                    low, high = self.thresholds()
+                    side = 1 if abs(moment - low) < abs(moment - high) else -1
+                    tau = self._lift(start, tau, dt, a, slope, side, jumped=False)
+            elif what == "land":
+                self.ledger.impacts.append(start + tau)
+                self.ledger.states.append(self.y)
+                self.y = self.y.copy()
+                self.y[2 + self.n :] += self.height * self.y[1]
+                self.y[:2] = 0.0
+                self.side = 0
+                for each in self.elements:
+                    if isinstance(each, Bar):
+                        each.rest()
+            elif what == "overturn":
+                return start + tau, True
+        return start + dt, False
+
+    def _lift(self, start, tau, dt, a, slope, side, *, jumped: bool) -> float:
+        """Leave the ground by a short step of the Taylor series, in which the rotation grows."""
+        self.ledger.uplifts.append(start + tau)
+        self.side = side
+        A, by_a, rest = self.field_of(side)
+        terms = [self.y, A @ self.y + by_a * a + rest]
+        if not jumped:
+            terms[1][1] = 0.0
+        terms.append((A @ terms[1] + by_a * slope) / 2.0)
+        for k in range(3, TERMS + 1):
+            terms.append(A @ terms[-1] / k)
+        rate = np.array([side * k * terms[k][0] for k in range(2, TERMS + 1)])
+        step = min(0.02 / np.sqrt(abs(np.linalg.eigvals(A @ A)).max()), 0.5 * (dt - tau))
+        grid = np.linspace(0.0, 1.0, 33)[1:]
+        while np.polynomial.polynomial.polyval(step * grid, rate).min() <= 0.0:
+            step *= 0.5
+            if step < 1e-15:
+                msg = f"uplift at t = {start + tau} s cannot be resolved"
+                raise RuntimeError(msg)
+        for each in self.elements:  # no branch ends in so short a step
+            if isinstance(each, Bar):
+                while True:
+                    delta = self.arm(each, side) * abs(np.polynomial.polynomial.polyval(step, np.array(terms))[0])
+                    low, _, high, _ = each.limits()
+                    if low < delta < high or not low < 0.0 < high:
+                        break
+                    step *= 0.5
+        self.y = np.polynomial.polynomial.polyval(step, np.array(terms))
+        self._offer(start, np.array([tau + step]), self.y[:, None])
+        return tau + step
+
+    def _events(self, first: float, slope: float):
+        s, found = self.side, []
+
+        def add(what, function, direction) -> None:
+            function.terminal, function.direction = True, direction
+            found.append((what, function))
+
+        if s == 0:
+            low, high = self.thresholds()
+            add("lift", lambda t, y: self.guard @ y + self.guard_a * (first + slope * t) - low, -1.0)
+            add("lift", lambda t, y: self.guard @ y + self.guard_a * (first + slope * t) - high, 1.0)
+            return found
+        add("land", lambda t, y: s * y[0], -1.0)
+        add("overturn", lambda t, y: s * y[0] - 0.5 * np.pi, 1.0)
+        for each in self.elements:
+            if not isinstance(each, Bar):
+                continue
+            r = self.arm(each, s)
+            if r == 0.0:
+                continue
+            if each.branch in (UP, DOWN):
+                up = each.branch == UP
+                add((each, ELASTIC), lambda t, y, r=r: r * s * y[1], -1.0 if up else 1.0)
+                continue
+            low, below, high, above = each.limits()
+            if np.isfinite(low):
+                add((each, below), lambda t, y, r=r, low=low: r * s * y[0] - low, -1.0)
+            add((each, above), lambda t, y, r=r, high=high: r * s * y[0] - high, 1.0)
+        return found
+
+    def _overdue(self) -> bool:
+        """Change at once what is past its limit and still moves outward."""
+        s = self.side
+        for each in self.elements:
+            if not isinstance(each, Bar) or s == 0 or each.branch in (UP, DOWN):
+                continue
+            r = self.arm(each, s)
+            delta, rate = r * s * self.y[0], r * s * self.y[1]
+            low, below, high, above = each.limits()
+            if delta >= high and rate > 0.0:
+                each.branch = above
+                return True
+            if delta <= low and rate < 0.0 and delta != 0.0:
+                each.branch = below
+                return True
+        return False
+
+    def _integrate(self, start, tau, dt, first, slope):
+        while self._overdue():
+            pass
+        A, by_a, rest = self.field_of(self.side)
+        events = self._events(first, slope)
+        sol = solve_ivp(
+            lambda t, y: A @ y + by_a * (first + slope * t) + rest,
+            (tau, dt),
+            self.y,
+            method="DOP853",
+            rtol=self.rtol,
+            atol=1e-3 * self.rtol * self._scale(),
+            events=[each for _, each in events],
+            dense_output=True,
+        )
+        if not sol.success:
+            raise RuntimeError(sol.message)
+        rates = self.outputs @ (A @ sol.y + by_a[:, None] * (first + slope * sol.t) + rest[:, None])
+        self._offer(start, sol.t, sol.y)
+        for q in range(4):
+            for k in np.flatnonzero(rates[q, :-1] * rates[q, 1:] < 0.0):
+                low, high = sol.t[k], sol.t[k + 1]
+                sign = np.sign(rates[q, k])
+                for _ in range(60):
+                    middle = 0.5 * (low + high)
+                    y = sol.sol(middle)
+                    rate = self.outputs[q] @ (A @ y + by_a * (first + slope * middle) + rest)
+                    low, high = (middle, high) if rate * sign > 0.0 else (low, middle)
+                self.ledger.offer(q, float(self.outputs[q] @ sol.sol(low)), start + low)
+        self.y = sol.y[:, -1].copy()
+        if sol.status != 1:
+            return dt, "end"
+        which = next(i for i, times in enumerate(sol.t_events) if times.size)
+        what = events[which][0]
+        self.y = sol.y_events[which][0].copy()
+        now = float(sol.t_events[which][0])
+        if isinstance(what, str):
+            if what == "land":
+                self.y[0] = 0.0
+            return now, what
+        each, branch = what
+        if branch == ELASTIC and each.branch in (UP, DOWN):
+            for other in self.elements:  # all of them turn together
+                if isinstance(other, Bar):
+                    other.settle(self.arm(other, self.side) * abs(self.y[0]))
+            self.y[1] = 0.0
+        else:
+            each.branch = branch
+        return now, "branch"
+
+    def _scale(self) -> Vector:
+        slender = self.m_tot * max(self.arms) / self.l0r
+        d = GRAVITY * slender / self.omega**2
+        return np.concatenate([slender * np.array([1.0, self.omega[0]]), d, d * self.omega])
+
+    def _offer(self, start: float, times: Vector, states: Vector) -> None:
+        values = self.outputs @ states
+        for q in range(4):
+            k = int(np.argmax(abs(values[q])))
+            self.ledger.offer(q, values[q, k], start + times[k])
