@@ -28,12 +28,15 @@ from .kinds import run_study as run_study
 from .modal import Adequacy as Adequacy
 from .modal import AdequacyTolerance as AdequacyTolerance
 from .modal import FloorModes as FloorModes
+from .modal import FrictionDamper as FrictionDamper
 from .modal import ModalProperties as ModalProperties
 from .modal import PinnedBeam as PinnedBeam
 from .modal import Pivot as Pivot
 from .modal import RockingProperties as RockingProperties
 from .modal import Tendon as Tendon
 from .modal import UpliftedModes as UpliftedModes
+from .modal import ViscousDamper as ViscousDamper
+from .modal import YieldingDissipator as YieldingDissipator
 from .modal import adequacy as adequacy
 from .modal import frequency_equation as frequency_equation
 from .modal import modal_properties as modal_properties

@@ -37,12 +37,12 @@ def made(**changes) -> rf.RockingProperties:
 
 def mirrored(p: rf.RockingProperties) -> rf.RockingProperties:
     tendons = [dataclasses.replace(each, position=-each.position) for each in p.tendons]
-    return dataclasses.replace(p, eccentricity=-p.eccentricity, tendons=tendons)
+    return dataclasses.replace(p, eccentricity=-p.eccentricity, elements=tendons)
 
 
 @pytest.mark.parametrize("tendons", [(), PAIRS, [rf.Tendon(1e5, 1e6), *PAIRS]])
 def test_both_pivots_of_a_symmetric_base_have_the_same_bits(tendons):
-    p = made(tendons=tendons)
+    p = made(elements=tendons)
     assert p.symmetric
     for side in (1, -1):
         pivot = p.pivot(side)
@@ -58,7 +58,7 @@ def test_both_pivots_of_a_symmetric_base_have_the_same_bits(tendons):
 
 
 def test_each_side_of_an_eccentric_base_with_tendons():
-    p = made(eccentricity=E, tendons=TENDONS)
+    p = made(eccentricity=E, elements=TENDONS)
     assert not p.symmetric
     for side, arm in ((1, 0.9), (-1, 1.5)):
         pivot = p.pivot(side)
@@ -81,7 +81,7 @@ def test_each_side_of_an_eccentric_base_with_tendons():
 
 
 def test_properties_without_a_side_are_those_of_the_pivot_that_lifts_first():
-    p = made(eccentricity=E, tendons=[rf.Tendon(1e6, 1e6, -1.4)])
+    p = made(eccentricity=E, elements=[rf.Tendon(1e6, 1e6, -1.4)])
     right, left = p.pivot(1), p.pivot(-1)
     assert left.resisting_moment < right.resisting_moment  # the tendon beside it outdoes the weight's longer arm
     assert p.weaker_pivot == left
@@ -99,15 +99,15 @@ def test_properties_without_a_side_are_those_of_the_pivot_that_lifts_first():
 )
 def test_a_mirrored_structure_swaps_its_pivots(eccentricity, tendons):
     middle, half = -eccentricity, B  # of the base, from the axis
-    p = made(eccentricity=eccentricity, tendons=[rf.Tendon(f, k, middle + half * x) for f, k, x in tendons])
+    p = made(eccentricity=eccentricity, elements=[rf.Tendon(f, k, middle + half * x) for f, k, x in tendons])
     for side in (1, -1):
         assert dataclasses.replace(mirrored(p).pivot(-side), side=side) == p.pivot(side)
 
 
 def test_tendons_balanced_on_an_eccentric_base_are_no_symmetry():
-    p = made(eccentricity=E, tendons=[rf.Tendon(1e5, 1e6, 0.8), rf.Tendon(1e5, 1e6, -0.8)])
+    p = made(eccentricity=E, elements=[rf.Tendon(1e5, 1e6, 0.8), rf.Tendon(1e5, 1e6, -0.8)])
     assert not p.symmetric
-    assert not made(tendons=TENDONS[1]).symmetric
+    assert not made(elements=TENDONS[1]).symmetric
 
 
 def test_an_eccentric_rigid_block_has_the_slenderness_of_its_side():
@@ -125,12 +125,12 @@ def test_printed_inertia_never_falls_below_that_about_the_nearer_pivot():
 
 
 def test_copies_and_changes_keep_the_eccentricity():
-    p = made(eccentricity=E, tendons=TENDONS)
+    p = made(eccentricity=E, elements=TENDONS)
     for same in (pickle.loads(pickle.dumps(p)), copy.deepcopy(p), dataclasses.replace(p), p.truncated(2)):
         assert same == p
         assert hash(same) == hash(p)
         assert same.pivot(-1) == p.pivot(-1)
-    assert p != made(tendons=TENDONS[1:])
+    assert p != made(elements=TENDONS[1:])
     assert made(eccentricity=E) != made()
     assert made(eccentricity=-0.0) == made()
     assert str(made(eccentricity=-0.0).eccentricity) == "0.0"

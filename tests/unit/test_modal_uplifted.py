@@ -197,7 +197,7 @@ def test_pinned_beam_refused(arguments, words):
 @pytest.mark.parametrize("side", [1, -1])
 def test_each_side_of_an_eccentric_base_is_a_concentric_base_of_its_arm(side, n_modes):
     tendons = [rf.Tendon(1e5, 2e7, -1.0), rf.Tendon(1e5, 1e7, 0.3)]
-    p = dataclasses.replace(frame(), eccentricity=0.7, tendons=tendons)
+    p = dataclasses.replace(frame(), eccentricity=0.7, elements=tendons)
     arm = p.half_width - side * 0.7
     # One tendon in the middle of a base as narrow, with the same stiffness about its edges.
     stiffness = sum(each.stiffness * (side * arm - each.position) ** 2 for each in tendons)

@@ -16,9 +16,9 @@ TENDONS = (Tendon(stiffness=3e6, initial_force=2e5), Tendon(stiffness=1e6, initi
 PLAIN = FRAME.rocking()
 CASES = {
     "plain": PLAIN,
-    "tied": dataclasses.replace(PLAIN, tendons=TENDONS),
+    "tied": dataclasses.replace(PLAIN, elements=TENDONS),
     "eccentric": dataclasses.replace(PLAIN, eccentricity=0.2),
-    "eccentric and tied": dataclasses.replace(PLAIN, eccentricity=-0.15, tendons=TENDONS),
+    "eccentric and tied": dataclasses.replace(PLAIN, eccentricity=-0.15, elements=TENDONS),
 }
 STRUCTURES = pytest.mark.parametrize("name", CASES)
 EITHER = pytest.mark.parametrize("side", [1, -1])

@@ -132,7 +132,7 @@ def test_laws_of_the_pinned_beam_and_of_the_rocking_base():
 
 def test_tendons_change_the_law():
     p = FRAME.rocking()
-    held = replace(p, tendons=rf.Tendon(2e5, 1.05 * p.l0r * 9.81 / p.half_width**2))
+    held = replace(p, elements=rf.Tendon(2e5, 1.05 * p.l0r * 9.81 / p.half_width**2))
     left, right = drawn(rf.plot_moment_rotation_laws(held, spring=1e6, rotation=0.05)).axes
     assert left.get_xlim() == (-0.05, 0.05)
     np.testing.assert_allclose(named(left, "pinned beam")[0].get_ydata(), [-0.05, 0.05])
@@ -170,7 +170,7 @@ def test_each_side_of_an_eccentric_base_has_its_own_law():
         assert text in said
     assert end > -zeros[0]
     # A stiff tendon beside the left edge lets it fall to the left alone.
-    held = replace(p, tendons=rf.Tendon(0.0, 2.0 * p.l0r * 9.81 / p.half_width**2, -far))
+    held = replace(p, elements=rf.Tendon(0.0, 2.0 * p.l0r * 9.81 / p.half_width**2, -far))
     right = drawn(rf.plot_moment_rotation_laws(held)).axes[1]
     np.testing.assert_allclose(named(right, "_0")[0].get_xdata(), zeros[:1])
     assert any("(right)" in text and "(left)" in text for text in notes(right))

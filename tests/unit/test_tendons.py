@@ -27,7 +27,7 @@ MOTION = rf.load_suite("el-centro-1940")[0].scaled(1.5)
 
 
 def held(tendons) -> rf.RockingProperties:
-    return rf.RockingProperties(**BASE, tendons=tendons)
+    return rf.RockingProperties(**BASE, elements=tendons)
 
 
 def test_properties_of_a_held_base():
@@ -146,7 +146,7 @@ def test_reactions_hold_the_tendons_pull():
     p = held([CENTRAL, *PAIR])
     for model in ("MDOF-S", "MDOF-C-SI"):
         response = rf.simulate(p, MOTION, model)
-        free = dataclasses.replace(p, tendons=())
+        free = dataclasses.replace(p, elements=())
         tied = response.history.model
         without = rf.History(dataclasses.replace(tied, properties=free), response.history.states)
         theta, spin = response.rotation, response.rotation_velocity

@@ -87,7 +87,7 @@ def test_energy_closes_where_the_structure_yields():
 @pytest.mark.parametrize("stiffness", [0.0, 0.3, 1.0, 1.0 + 1e-4, 5.0])
 def test_a_rigid_block_falls_back_in_time(stiffness):
     """θ'' = -(M_r + k_r θ)/I_θ from rest: half a wave, a parabola, or a hyperbolic cosine."""
-    block = dataclasses.replace(BLOCK, tendons=(rf.Tendon(2e5, stiffness * 1.8e6 * 9.81 / 1.2**2),))
+    block = dataclasses.replace(BLOCK, elements=(rf.Tendon(2e5, stiffness * 1.8e6 * 9.81 / 1.2**2),))
     theta = 0.3 * BLOCK.resisting_moment / (BLOCK.l0r * 9.81)
     moment, slope = block.resisting_moment, block.rocking_stiffness
     rate = math.sqrt(abs(slope) / block.i_theta)
@@ -106,7 +106,7 @@ def test_a_rigid_block_falls_back_in_time(stiffness):
 def test_a_large_rotation_falls_back_in_time(stiffness):
     """The complete rigid block by the quadrature of its energy, with chords for the tendons' lengths."""
     block = dataclasses.replace(
-        BLOCK, tendons=tuple(rf.Tendon(1e5, 0.5 * stiffness * 1.8e6 * 9.81 / 1.2**2, x) for x in (-0.8, 0.8))
+        BLOCK, elements=tuple(rf.Tendon(1e5, 0.5 * stiffness * 1.8e6 * 9.81 / 1.2**2, x) for x in (-0.8, 0.8))
     )
     start = 0.12
 
@@ -142,7 +142,7 @@ def test_the_field_holds_the_gradient_of_the_tendons_energy():
             energy += force * stretch + stiffness * stretch**2 / 2
         gradient = sp.lambdify(theta, sp.diff(energy, theta))
         free = rf.RockingProperties([6.0, 25.0], [150e3, 30e3], [11.0, 3.0], [1.3, -0.5], 24e6, 1.8e6, 240e3, 1.2, 0.02)
-        held = dataclasses.replace(free, tendons=(rf.Tendon(200e3, 3e6, 0.7), rf.Tendon(200e3, 3e6, -0.7)))
+        held = dataclasses.replace(free, elements=(rf.Tendon(200e3, 3e6, 0.7), rf.Tendon(200e3, 3e6, -0.7)))
         motion = np.array([0.05, -0.01, 0.3, 0.2, side * 0.2, -0.4, 0, 0, 0, 0])
         with_tendons, without = (rates_of(p, side, motion) for p in (held, free))
         d = motion[:2]

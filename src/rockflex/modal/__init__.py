@@ -4,18 +4,21 @@ from rockflex.modal._adequacy import Adequacy, adequacy
 from rockflex.modal._adequacy_tolerance import AdequacyTolerance
 from rockflex.modal._analysis import ModalProperties, modal_properties
 from rockflex.modal._assembly import rocking_properties
+from rockflex.modal._devices import BaseElement, FrictionDamper, ViscousDamper, YieldingDissipator, element_set
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._participation import MassNormalisedModes, modes_that_take_part
 from rockflex.modal._pinned_beam import PinnedBeam, pinned_beam
 from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
-from rockflex.modal._tendons import Tendon, tendon_set
+from rockflex.modal._tendons import Tendon
 from rockflex.modal._uplifted import UpliftedModes, frequency_equation, uplifted_modes
 
 __all__ = [
     "Adequacy",
     "AdequacyTolerance",
+    "BaseElement",
     "FloorModes",
+    "FrictionDamper",
     "MassNormalisedModes",
     "ModalProperties",
     "PinnedBeam",
@@ -23,12 +26,14 @@ __all__ = [
     "RockingProperties",
     "Tendon",
     "UpliftedModes",
+    "ViscousDamper",
+    "YieldingDissipator",
     "adequacy",
+    "element_set",
     "frequency_equation",
     "modal_properties",
     "modes_that_take_part",
     "pinned_beam",
     "rocking_properties",
-    "tendon_set",
     "uplifted_modes",
 ]

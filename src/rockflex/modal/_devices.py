@@ -1,10 +1,14 @@
 """Devices at the base that take energy out of the rocking: fuses, viscous dampers and friction dampers."""
 
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from rockflex._checks import finite, instance, positive, real_or_nan
+from rockflex._checks import finite, instance, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.modal._tendons import Tendon, checked_ratio, checked_rupture
 
 
 @dataclass(frozen=True)
@@ -108,39 +112,44 @@ class FrictionDamper:
         )
 
 
-def checked_ratio(value: float) -> float:
-    """Return a post-yield stiffness ratio.
+BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper
+"""What may act between a base and the ground."""
+
+
+def element_set(given: Any) -> tuple[BaseElement, ...]:
+    """Return one or several elements as a tuple.
 
     Raises
     ------
     InputError
-        If it is not in [0, 1).
+        If something is not an element.
     """
-    ratio = real_or_nan(value)
-    if not 0.0 <= ratio < 1.0:
-        raise InputError(
-            f"post_yield_ratio must be from 0 to below 1, but {shown(value)} was given. It is the stiffness after "
-            "yielding over the elastic stiffness: 2 % is 0.02.",
-            field="post_yield_ratio",
-        )
-    return ratio
+    single = isinstance(given, BaseElement) or not isinstance(given, Iterable)
+    items: tuple[Any, ...] = (given,) if single else tuple(given)
+    for item in items:
+        if not isinstance(item, BaseElement):
+            raise InputError(
+                f"elements must be Tendon, YieldingDissipator, ViscousDamper or FrictionDamper objects, but {shown(item)} "
+                "was given. Write Tendon(initial_force, stiffness), for example.",
+                field="elements",
+            )
+    return items
 
 
-def checked_rupture(value: float | None, yields_at: float) -> float | None:
-    """Return the elongation at rupture in m.
+def mirrored(elements: Sequence[BaseElement]) -> bool:
+    """Return whether every off-centre element has a mirror image: the same at the same distance on the other side."""
+    left = sorted(_values(each, -each.position) for each in elements if each.position < 0.0)
+    right = sorted(_values(each, each.position) for each in elements if each.position > 0.0)
+    return len(left) == len(right) and all(
+        one[0] == other[0] and all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(one[1], other[1], strict=True))
+        for one, other in zip(left, right, strict=True)
+    )
 
-    Raises
-    ------
-    InputError
-        If it is not beyond the elongation `yields_at`, in m, at which yielding starts.
-    """
-    if value is None:
-        return None
-    limit = positive("rupture_elongation", value, "m")
-    if limit <= yields_at:
-        raise InputError(
-            f"rupture_elongation must be beyond the elongation at yield, {yields_at:.4g} m, but {limit:g} m was given. "
-            "Check the units: stiffness is in N/m, forces are in N and elongations in m.",
-            field="rupture_elongation",
-        )
-    return limit
+
+def _values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ...]]:
+    if isinstance(element, Tendon):  # its yield force is only compared with, unless it yields
+        yields = element.post_yield_ratio is not None
+        beyond = (element.yield_force or 0.0, element.post_yield_ratio or 0.0) if yields else (0.0, 0.0)
+        return "Tendon", (distance, element.initial_force, element.stiffness, *beyond, element.rupture_elongation or 0.0)
+    rest = {**vars(element), "position": distance}
+    return type(element).__name__, tuple(float(value or 0.0) for value in rest.values())

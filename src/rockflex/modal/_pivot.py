@@ -8,7 +8,7 @@ from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal._tendons import Tendon, balanced
+from rockflex.modal._tendons import Tendon
 
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
 """Names of the `RockingProperties` that `pivot_of` needs."""
@@ -93,6 +93,7 @@ def pivot_of(
     side: int,
     tendons: Sequence[Tendon],
     *,
+    alike: bool,
     half_width: float,
     eccentricity: float,
     i_theta: float,
@@ -104,7 +105,6 @@ def pivot_of(
     """Return one pivot of a structure from its `RockingProperties` and a height that defines the slenderness."""
     arm = half_width - side * eccentricity
     # Both pivots of a symmetric base must give identical numbers, to the last digit and in any order of the tendons.
-    alike = eccentricity == 0.0 and balanced(tendons)
     distances = [arm - (1 if alike else side) * each.position for each in tendons]
     if alike:
         prestress = sum((each.initial_force for each in tendons), 0.0) * arm

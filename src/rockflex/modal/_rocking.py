@@ -15,6 +15,7 @@ from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
+from rockflex.modal._devices import BaseElement, element_set, mirrored
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_of
 from rockflex.modal._rocking_checks import (
@@ -24,9 +25,9 @@ from rockflex.modal._rocking_checks import (
     checked_eccentricity,
     checked_inertia,
     checked_top_height,
-    tendons_within,
+    elements_within,
 )
-from rockflex.modal._tendons import Tendon, balanced, tendon_set
+from rockflex.modal._tendons import Tendon
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -67,8 +68,8 @@ class RockingProperties(Value):
         Height in m of the top above the base. Default: the highest floor. If None, there is no total top displacement.
     base_mass : float or None
         Mass m_0 of the base in kg. Default: `m_tot` minus the effective mass of all modes; None if modes are missing.
-    tendons : tuple of Tendon
-        Tendons that hold the base down; within the base, from -(B + e) to B - e.
+    elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
+        What acts between the base and the ground, at most B + |e| from the axis of the masses.
     eccentricity : float
         e in m, smaller than B in magnitude: distance of the vertical axis of the masses to the right of the middle of
         the base. The pivots are B - e to the right and B + e to the left of this axis.
@@ -100,7 +101,7 @@ class RockingProperties(Value):
     zeta: Array
     translational_inertia: float
     floors: FloorModes | None = field(repr=False)
-    tendons: tuple[Tendon, ...]
+    elements: tuple[BaseElement, ...]
     top_height: float | None
     base_mass: float | None
     eccentricity: float
@@ -118,7 +119,7 @@ class RockingProperties(Value):
         zeta: ArrayLike,
         translational_inertia: float | None = None,
         floors: FloorModes | None = None,
-        tendons: Tendon | Iterable[Tendon] = (),
+        elements: BaseElement | Iterable[BaseElement] = (),
         top_height: float | None = None,
         base_mass: float | None = None,
         eccentricity: float = 0.0,
@@ -144,14 +145,14 @@ class RockingProperties(Value):
             )
         damping = damping_ratios("zeta", zeta, n_modes)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
-        held = tendons_within(tendon_set(tendons), scalars["half_width"], e)
+        held = elements_within(element_set(elements), scalars["half_width"], e)
         vars(self).update(
             modes,
             **scalars,
             zeta=damping,
             translational_inertia=inertia,
             floors=floors,
-            tendons=held,
+            elements=held,
             top_height=checked_top_height(floors, top_height),
             base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
             eccentricity=e,
@@ -192,7 +193,7 @@ class RockingProperties(Value):
     def _by_side(self) -> dict[int, Pivot]:
         values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
         height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
-        return {side: pivot_of(side, self.tendons, height=height, **values) for side in (1, -1)}
+        return {side: pivot_of(side, self.tendons, alike=self.symmetric, height=height, **values) for side in (1, -1)}
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:
@@ -206,13 +207,18 @@ class RockingProperties(Value):
 
     @property
     def symmetric(self) -> bool:
-        """Whether both pivots are alike: no eccentricity, and every off-centre tendon has a mirror image."""
-        return self.eccentricity == 0.0 and balanced(self.tendons)
+        """Whether both pivots are alike: no eccentricity, and every off-centre element has a mirror image."""
+        return self.eccentricity == 0.0 and mirrored(self.elements)
 
     @property
     def weight_moment(self) -> float:
         """Contribution m_tot g B of the weight to the resisting moment in N m, for the `weaker_pivot`."""
         return self.weaker_pivot.weight_moment
+
+    @property
+    def tendons(self) -> tuple[Tendon, ...]:
+        """The tendons among the elements."""
+        return tuple(each for each in self.elements if isinstance(each, Tendon))
 
     @property
     def prestress(self) -> float:

@@ -6,9 +6,9 @@ from rockflex._arrays import Array
 from rockflex._checks import all_positive, finite, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex.modal._devices import BaseElement
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._pivot import pivot_inertia
-from rockflex.modal._tendons import Tendon
 
 SLACK = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
 PRINTED = 1e-5  # of I_θ: tolerance for values printed to six digits
@@ -55,19 +55,19 @@ def checked_eccentricity(modes: dict[str, Array], scalars: dict[str, float], ine
     return e
 
 
-def tendons_within(tendons: tuple[Tendon, ...], half_width: float, eccentricity: float) -> tuple[Tendon, ...]:
-    room = half_width * SLACK
-    left, right = -half_width - eccentricity, half_width - eccentricity
-    for tendon in tendons:
-        if not left - room <= tendon.position <= right + room:
-            base, origin = f"{half_width:g} m to each side of its centre", "the centre"
-            if eccentricity:
-                base, origin = f"from {left:g} to {right:g} m", "the axis of the masses, as the edges of the base are"
+def elements_within(
+    elements: tuple[BaseElement, ...], half_width: float, eccentricity: float
+) -> tuple[BaseElement, ...]:
+    limit = half_width + abs(eccentricity)  # on an eccentric base, outriggers may reach as far on the shorter side
+    for element in elements:
+        if abs(element.position) > limit * (1.0 + SLACK):
+            what = "half_width" if eccentricity == 0.0 else "half_width + |eccentricity|"
             raise InputError(
-                f"Tendons must pass through the base, {base}, but one is at {tendon.position:g} m. Positions are "
-                f"measured from {origin}."
+                f"Elements must act within the base, {what} = {limit:g} m to each side of the axis of the masses, but a "
+                f"{type(element).__name__} is at {element.position:g} m.",
+                field="elements",
             )
-    return tendons
+    return elements
 
 
 def checked_top_height(floors: FloorModes | None, given: float | None) -> float | None:

@@ -1,11 +1,8 @@
 """Tendons that hold a base down."""
 
-import math
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from rockflex._checks import finite, positive
+from rockflex._checks import finite, positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
@@ -16,7 +13,7 @@ class Tendon:
 
     While the base rocks about a pivot at the distance r, the tendon is stretched by 2 r sin(|θ|/2), to first order
     r |θ|, and its force increases linearly from the initial force (Vassiliou & Makris 2015, doi
-    10.1061/(ASCE)EM.1943-7889.0000953). It never goes slack, because every rotation stretches it.
+    10.1061/(ASCE)EM.1943-7889.0000953). While it is elastic it never goes slack, because every rotation stretches it.
 
     Attributes
     ----------
@@ -28,7 +25,12 @@ class Tendon:
         Distance in m from the axis of the masses, positive to the right. Unless the base is eccentric, this axis passes
         through its middle.
     yield_force : float or None
-        In N, positive. The largest force is compared with it; the tendon itself stays elastic.
+        In N, positive. Without `post_yield_ratio` the tendon stays elastic, and its largest force is compared with it.
+    post_yield_ratio : float or None
+        α in [0, 1): the tendon yields at `yield_force`, with the stiffness α k from there on. It keeps its plastic
+        stretch, loses prestress and becomes slack at zero force. Default: it stays elastic.
+    rupture_elongation : float or None
+        Elongation in m, from the base in contact, at which a yielding tendon breaks for good. Default: it never does.
 
     Raises
     ------
@@ -47,6 +49,8 @@ class Tendon:
     stiffness: float
     position: float = 0.0
     yield_force: float | None = None
+    post_yield_ratio: float | None = None
+    rupture_elongation: float | None = None
 
     def __post_init__(self) -> None:
         vars(self).update(
@@ -63,29 +67,57 @@ class Tendon:
                     "A tendon that has yielded is not elastic; check the units too.",
                     field="initial_force",
                 )
+        if self.post_yield_ratio is not None:
+            vars(self).update(post_yield_ratio=checked_ratio(self.post_yield_ratio))
+            if self.yield_force is None or self.stiffness == 0.0:
+                raise InputError(
+                    "post_yield_ratio needs the yield_force in N of a tendon with stiffness, but "
+                    f"yield_force = {shown(self.yield_force)} and stiffness = {self.stiffness:g} N/m were given.",
+                    field="yield_force" if self.yield_force is None else "stiffness",
+                )
+        if self.rupture_elongation is not None:
+            if self.yield_force is None or self.post_yield_ratio is None:
+                raise InputError(
+                    "rupture_elongation is for a tendon that yields. Give yield_force and post_yield_ratio as well.",
+                    field="rupture_elongation",
+                )
+            yields_at = (self.yield_force - self.initial_force) / self.stiffness
+            vars(self).update(rupture_elongation=checked_rupture(self.rupture_elongation, yields_at))
 
 
-def tendon_set(given: Any) -> tuple[Tendon, ...]:
-    """Return one or several tendons as a tuple.
+def checked_ratio(value: float) -> float:
+    """Return a post-yield stiffness ratio.
 
     Raises
     ------
     InputError
-        If something is not a tendon.
+        If it is not in [0, 1).
     """
-    items = (given,) if isinstance(given, Tendon) else tuple(given) if isinstance(given, Iterable) else (given,)
-    for item in items:
-        if not isinstance(item, Tendon):
-            raise InputError(
-                f"tendons must be Tendon objects, but {shown(item)} was given. Write Tendon(initial_force, stiffness).",
-                field="tendons",
-            )
-    return items
+    ratio = real_or_nan(value)
+    if not 0.0 <= ratio < 1.0:
+        raise InputError(
+            f"post_yield_ratio must be from 0 to below 1, but {shown(value)} was given. It is the stiffness after "
+            "yielding over the elastic stiffness: 2 % is 0.02.",
+            field="post_yield_ratio",
+        )
+    return ratio
 
 
-def balanced(tendons: Sequence[Tendon]) -> bool:
-    """Return whether every off-centre tendon has a mirror image of equal force and stiffness."""
-    left = sorted((-t.position, t.initial_force, t.stiffness) for t in tendons if t.position < 0.0)
-    right = sorted((t.position, t.initial_force, t.stiffness) for t in tendons if t.position > 0.0)
-    pairs = [pair for ours, theirs in zip(left, right, strict=False) for pair in zip(ours, theirs, strict=True)]
-    return len(left) == len(right) and all(math.isclose(one, other, rel_tol=1e-9) for one, other in pairs)
+def checked_rupture(value: float | None, yields_at: float) -> float | None:
+    """Return the elongation at rupture in m.
+
+    Raises
+    ------
+    InputError
+        If it is not beyond the elongation `yields_at`, in m, at which yielding starts.
+    """
+    if value is None:
+        return None
+    limit = positive("rupture_elongation", value, "m")
+    if limit <= yields_at:
+        raise InputError(
+            f"rupture_elongation must be beyond the elongation at yield, {yields_at:.4g} m, but {limit:g} m was given. "
+            "Check the units: stiffness is in N/m, forces are in N and elongations in m.",
+            field="rupture_elongation",
+        )
+    return limit

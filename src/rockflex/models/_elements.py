@@ -1,87 +1,266 @@
-"""The elements that act on the base: the branches of each, and its contribution to the equations on each branch.
-
-To add an element (a damper, a fuse), add a class here or in another file, and an entry in `elements_of`.
-"""
+"""Elements between the base and the ground: their branches, and the tension of each on every branch."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
+
+import numpy as np
 
 from rockflex._constants import GRAVITY
-from rockflex.modal import RockingProperties, Tendon
-from rockflex.models._phase import Border, Key
+from rockflex.modal import BaseElement, RockingProperties, ViscousDamper, YieldingDissipator
+from rockflex.models._phase import Border, Change, Key, Turning
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
+ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar
+
+
+class Pull(NamedTuple):
+    """Tension of an element on one branch: F = stiffness δ + damping δ' + force + recall m, with its memory m."""
+
+    stiffness: float = 0.0
+    damping: float = 0.0
+    force: float = 0.0
+    recall: float = 0.0
+
+
+class Stop(NamedTuple):
+    """An elongation δ = place + recall m that ends a branch, reached from below if `upper`, and the next branch."""
+
+    upper: bool
+    place: float
+    recall: float
+    branch: int
 
 
 class Element(Protocol):
-    """An element that acts on the base."""
+    """An element that is stretched by δ = r |θ| at the distance r from the pivot, and pulls the base down."""
+
+    @property
+    def position(self) -> float:
+        """Distance from the axis of the masses in m, positive to the right."""
+        ...
+
+    @property
+    def remembers(self) -> bool:
+        """Whether its force depends on a memory: its plastic stretch."""
+        ...
 
     @property
     def branches(self) -> tuple[int, ...]:
-        """The branches; a run starts on the first."""
+        """Its branches; a run starts on the first."""
         ...
 
-    def border(self, branch: int, side: int) -> Border:
-        """Return the contribution on a branch while the base rotates about the pivot of a side."""
+    def pull(self, branch: int) -> Pull:
+        """Return the tension on a branch."""
+        ...
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        """Return the elongations that end a branch."""
+        ...
+
+    def turning(self, branch: int) -> float | None:
+        """Return δ - m where the elongation turns back on a branch that yields, which ends it; None on others."""
         ...
 
 
 @dataclass(frozen=True)
-class Base:
-    """The base on rigid ground with the weight of the structure: Eq. 23 without the terms of the modes."""
+class Spring:
+    """A tendon that stays elastic: F = F_0 + k δ."""
 
-    properties: RockingProperties
+    stiffness: float
+    initial_force: float
+    position: float
+
+    @property
+    def remembers(self) -> bool:
+        return False
 
     @property
     def branches(self) -> tuple[int, ...]:
-        """Contact, and rocking about either pivot."""
-        return CLOSED, RIGHT, LEFT
+        return (ELASTIC,)
 
-    def border(self, branch: int, side: int) -> Border:
-        """Return the inertia about the pivot, and the moment of the weight: -s m_tot g B + L_0^r (g θ - a)."""
+    def pull(self, branch: int) -> Pull:
         del branch
-        p = self.properties
-        pivot = p.pivot(side)
-        return Border.on_rotation(
-            inertia=pivot.i_theta, stiffness=-p.l0r * GRAVITY, constant=-side * pivot.weight_moment, ground=-p.l0r
-        )
+        return Pull(self.stiffness, 0.0, self.initial_force)
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        del branch
+        return ()
+
+    def turning(self, branch: int) -> float | None:
+        del branch
 
 
 @dataclass(frozen=True)
-class ElasticTendon:
-    """An elastic tendon: its force is F_0 + k r |θ| at the distance r from the pivot."""
+class Dashpot:
+    """A viscous damper: F = c δ'."""
 
-    tendon: Tendon
-    properties: RockingProperties
+    coefficient: float
+    position: float
+
+    @property
+    def remembers(self) -> bool:
+        return False
 
     @property
     def branches(self) -> tuple[int, ...]:
-        """A single branch: every rotation stretches the tendon."""
-        return (0,)
+        return (ELASTIC,)
 
-    def border(self, branch: int, side: int) -> Border:
-        """Return the moment -s F_0 r - k r² θ."""
+    def pull(self, branch: int) -> Pull:
         del branch
-        arm = self.properties.pivot(side).arm - side * self.tendon.position
-        return Border.on_rotation(
-            stiffness=self.tendon.stiffness * arm**2, constant=-side * self.tendon.initial_force * arm
-        )
+        return Pull(damping=self.coefficient)
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        del branch
+        return ()
+
+    def turning(self, branch: int) -> float | None:
+        del branch
 
 
-def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
-    """Return all elements of a structure, the base first."""
-    return (Base(properties), *(ElasticTendon(each, properties) for each in properties.tendons))
+@dataclass(frozen=True)
+class Bar:
+    """A fuse, or a tendon that yields: F = α k e + (1 - α) z, z = k (e - m) within ± F_y, e = δ + e_0.
+
+    The memory m is the plastic stretch. A bar that cannot push has no compression: F = max(0, ·).
+    """
+
+    stiffness: float
+    yield_force: float
+    ratio: float
+    position: float
+    stretched: float = 0.0  # e_0
+    pulls_only: bool = False
+    rupture: float = np.inf  # elongation δ at which it breaks
+
+    @property
+    def remembers(self) -> bool:
+        return True
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return (ELASTIC, UP, DOWN, SLACK, BROKEN)
+
+    def pull(self, branch: int) -> Pull:
+        k, a, e0 = self.stiffness, self.ratio, self.stretched
+        if branch == ELASTIC:
+            return Pull(k, 0.0, k * e0, -(1.0 - a) * k)
+        if branch in (UP, DOWN):
+            sign = 1.0 if branch == UP else -1.0
+            return Pull(a * k, 0.0, a * k * e0 + sign * (1.0 - a) * self.yield_force)
+        return Pull()
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        reach, e0 = self.yield_force / self.stiffness, self.stretched
+        breaks = () if np.isinf(self.rupture) else (Stop(True, self.rupture, 0.0, BROKEN),)
+        empty = 1.0 - self.ratio
+        if branch == ELASTIC:
+            slackens = (Stop(False, -e0, empty, SLACK),) if self.pulls_only else ()
+            return (Stop(True, reach - e0, 1.0, UP), Stop(False, -reach - e0, 1.0, DOWN), *slackens, *breaks)
+        if branch == SLACK:
+            return (Stop(True, -e0, empty, ELASTIC), *breaks)
+        return breaks if branch == UP else ()
+
+    def turning(self, branch: int) -> float | None:
+        if branch not in (UP, DOWN):
+            return None
+        sign = 1.0 if branch == UP else -1.0
+        return sign * self.yield_force / self.stiffness - self.stretched
+
+
+def base_border(properties: RockingProperties, side: int, memories: int) -> Border:
+    """Return the inertia about the pivot and the weight, -s m_tot g B + L_0^r (g θ - a): Eq. 23 without the modes."""
+    pivot = properties.pivot(side)
+    return Border.on_rotation(
+        inertia=pivot.i_theta,
+        stiffness=-properties.l0r * GRAVITY,
+        constant=-side * pivot.weight_moment,
+        ground=-properties.l0r,
+        recall=np.zeros(memories),
+    )
+
+
+def arm_of(properties: RockingProperties, element: Element, side: int) -> float:
+    """Return the distance r of an element from a pivot in m; negative beyond the pivot."""
+    return properties.pivot(side).arm - side * element.position
+
+
+def landed(branch: int) -> int:
+    """Return the branch of an element after its elongation has stopped."""
+    return ELASTIC if branch in (UP, DOWN) else branch
 
 
 def first_key(elements: tuple[Element, ...], side: int) -> Key:
-    """Return the branches on which a run starts with the base on a side."""
-    return (side, *(each.branches[0] for each in elements[1:]))
+    """Return the branches at the start of a run with the base on a side."""
+    return (side, *(each.branches[0] for each in elements))
 
 
-def border_of(elements: tuple[Element, ...], key: Key) -> Border:
-    """Return the sum of the contributions of all elements on their branches, while the base rotates about a pivot."""
-    parts = [each.border(branch, key[0]) for each, branch in zip(elements, key, strict=True)]
-    total = parts[0]
-    for part in parts[1:]:
-        total = total + part
+def memories(elements: tuple[Element, ...]) -> dict[int, int]:
+    """Return the index of each memory by the place of its element."""
+    return {place: index for index, place in enumerate(k for k, each in enumerate(elements) if each.remembers)}
+
+
+def border_of(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> Border:
+    """Return the sum of the borders of the base and of all elements on their branches, about a pivot.
+
+    An element adds the moment -s F r: -k r² θ - c r² θ' - s r (force + recall m).
+    """
+    side, known = key[0], memories(elements)
+    total = base_border(properties, side, len(known))
+    for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
+        r, pull = arm_of(properties, each, side), each.pull(branch)
+        recall = np.zeros(len(known))
+        if each.remembers:
+            recall[known[place]] = -side * pull.recall * r
+        total = total + Border.on_rotation(
+            damping=pull.damping * r**2, stiffness=pull.stiffness * r**2, constant=-side * pull.force * r, recall=recall
+        )
     return total
+
+
+def changes_of(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> tuple[Change, ...]:
+    """Return the limits of |θ| at which elements change their branches, while the base rocks."""
+    found: list[Change] = []
+    known = memories(elements)
+    for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
+        r = arm_of(properties, each, key[0])
+        if r == 0.0:
+            continue
+        for stop in each.stops(branch):
+            following = (*key[: place + 1], stop.branch, *key[place + 2 :])
+            found.append(Change(stop.upper == (r > 0.0), stop.place / r, stop.recall / r, known[place], following))
+    return tuple(found)
+
+
+def turnings_of(
+    properties: RockingProperties, elements: tuple[Element, ...], key: Key
+) -> tuple[int, tuple[Turning, ...]]:
+    """Return the sign of |θ|' while elements yield (0: none does), and how their memories follow when it vanishes."""
+    sign, found = 0, list[Turning]()
+    known = memories(elements)
+    for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
+        offset, r = each.turning(branch), arm_of(properties, each, key[0])
+        if offset is not None:
+            found.append(Turning(known[place], r, offset))
+            sign = (1 if branch == UP else -1) * (1 if r > 0.0 else -1)
+    return sign, tuple(found)
+
+
+def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
+    """Return the elements of a structure, in its order."""
+    return tuple(_element_of(each) for each in properties.elements)
+
+
+def _element_of(given: BaseElement) -> Element:
+    if isinstance(given, ViscousDamper):
+        return Dashpot(given.coefficient, given.position)
+    rupture = np.inf if given.rupture_elongation is None else given.rupture_elongation
+    if isinstance(given, YieldingDissipator):
+        return Bar(
+            given.stiffness, given.yield_force, given.post_yield_ratio, given.position, 0.0, given.tension_only, rupture
+        )
+    if given.post_yield_ratio is None or given.yield_force is None:
+        return Spring(given.stiffness, given.initial_force, given.position)
+    stretched = given.initial_force / given.stiffness
+    return Bar(
+        given.stiffness, given.yield_force, given.post_yield_ratio, given.position, stretched, True, rupture
+    )

@@ -23,6 +23,8 @@ class StateLayout(NamedTuple):
         z of Eq. 38.
     damped, put_in, yielded
         Damped energy, work of the ground and energy absorbed by the hysteretic spring since the start of the run.
+    memory, remembered
+        Index of the first memory of an element, and the number of memories; constant during a phase.
     moving
         Number of entries that rows multiply.
     size
@@ -36,6 +38,8 @@ class StateLayout(NamedTuple):
     damped: int
     put_in: int
     yielded: int
+    memory: int
+    remembered: int
     moving: int
     size: int
 
@@ -62,9 +66,14 @@ class StateLayout(NamedTuple):
         return states[:, HEADER + place]
 
 
-def layout_of(modes: int, *, integrated: bool) -> StateLayout:
-    """Return the layout of a model with the given number of modes; integrated models also integrate energies."""
+def layout_of(modes: int, *, integrated: bool, remembered: int = 0) -> StateLayout:
+    """Return the layout of a model; integrated models also integrate their energies. The memories come last."""
     core = 2 * modes + 2
     if not integrated:
-        return StateLayout(modes, core - 2, core - 1, -1, -1, -1, -1, core, core)
-    return StateLayout(modes, core - 2, core - 1, core, core + 1, core + 2, core + 3, core + 1, core + 4)
+        size = core + remembered
+        return StateLayout(modes, core - 2, core - 1, -1, -1, -1, -1, core, remembered, size, size)
+    size = core + 4 + remembered
+    moving = size if remembered else core + 1
+    return StateLayout(
+        modes, core - 2, core - 1, core, core + 1, core + 2, core + 3, core + 4, remembered, moving, size
+    )

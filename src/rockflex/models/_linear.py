@@ -49,4 +49,4 @@ class LinearModel(ModalModel):
 
     def phase(self, key: Key) -> Phase:
         """Return one phase: the equations of motion on these branches, and the conditions that end it."""
-        return Phase(key, key[0], self.arrow(key), self.guards(key))
+        return self.phase_of(key, self.arrow(key))

@@ -9,10 +9,22 @@ from rockflex._constants import GRAVITY
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, Element, border_of, elements_of, first_key
+from rockflex.models._elements import (
+    CLOSED,
+    LEFT,
+    RIGHT,
+    Element,
+    border_of,
+    changes_of,
+    elements_of,
+    first_key,
+    landed,
+    memories,
+    turnings_of,
+)
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
-from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key
+from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
 
 QUARTER_TURN = 0.5 * np.pi
 
@@ -47,11 +59,11 @@ class ModalModel(Value):
     @cached_property
     def layout(self) -> StateLayout:
         """Layout of the state vector."""
-        return layout_of(self.properties.n_modes, integrated=self.integrated)
+        return layout_of(self.properties.n_modes, integrated=self.integrated, remembered=len(memories(self.elements)))
 
     @cached_property
     def elements(self) -> tuple[Element, ...]:
-        """The elements that act on the base, the base itself first."""
+        """The elements between the base and the ground."""
         return elements_of(self.properties)
 
     def start(self, side: int) -> Key:
@@ -80,7 +92,7 @@ class ModalModel(Value):
         leverage = (p.effective_mass * p.effective_height)[None]
         coupling = p.effective_height[None]
         free = key[0] != CLOSED
-        border = border_of(self.elements, key) if free else Border.on_rotation()
+        border = border_of(p, self.elements, key) if free else Border.on_rotation()
         flexibility: Array = np.zeros((b, b))
         if free:
             flexibility[:] = np.linalg.inv(border.inertia - leverage @ coupling.T)
@@ -92,6 +104,7 @@ class ModalModel(Value):
             stiffness=border.stiffness,
             constant=border.constant,
             drive=border.ground + leverage.sum(axis=1) if free else border.ground,
+            recall=border.recall if free else np.zeros((b, self.layout.remembered)),
             free=free,
         )
 
@@ -164,23 +177,35 @@ class ModalModel(Value):
             turn[self.layout.rotation] -= arrow.stiffness[0, 0]
             turn[self.layout.spin] -= arrow.damping[0, 0]
             turn[-1] += arrow.constant[0]
+            turn[self.layout.memory : self.layout.memory + self.layout.remembered] += arrow.recall[0]
             turn *= arrow.flexibility[0, 0]
             rows[:n] -= np.outer(p.effective_height, turn)
         return rows
 
-    def guards(self, key: Key) -> tuple[Guard, ...]:
-        """Return the guards of a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""
+    def phase_of(self, key: Key, arrow: Arrow | None) -> Phase:
+        """Return a phase with its equations of motion; None if they are not linear."""
+        turns, turnings = turnings_of(self.properties, self.elements, key) if key[0] != CLOSED else (0, ())
+        changes = changes_of(self.properties, self.elements, key) if key[0] != CLOSED else ()
+        stopped = tuple(landed(branch) for branch in key[1:])
+        return Phase(key, key[0], arrow, self.guard(key), changes, turns, turnings, stopped)
+
+    def guard(self, key: Key) -> Guard:
+        """Return the guard of a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""
         side, rest = key[0], key[1:]
+        unchanged = np.zeros((2, self.layout.remembered))
         if side != CLOSED:
             row = np.zeros(self.layout.columns)
             row[self.layout.rotation] = 1.0
-            lands, tips = Exit(LANDS, (CLOSED, *rest)), Exit(OVERTURNS, key)
+            stopped = tuple(landed(branch) for branch in rest)
+            lands, tips = Exit(LANDS, (CLOSED, *stopped)), Exit(OVERTURNS, key)
             if side == RIGHT:
-                return (Guard(row, 0.0, QUARTER_TURN, lands, tips),)
-            return (Guard(row, -QUARTER_TURN, 0.0, tips, lands),)
+                return Guard(row, 0.0, QUARTER_TURN, lands, tips, unchanged)
+            return Guard(row, -QUARTER_TURN, 0.0, tips, lands, unchanged)
         if not self.lifts:
-            return (Guard(self.overturning_moment(), -np.inf, np.inf, None, None),)
+            return Guard(self.overturning_moment(), -np.inf, np.inf, None, None, unchanged)
         # The base lifts when the forces of the following phase would start its rotation.
         right, left = ((turned, *rest) for turned in (RIGHT, LEFT))
-        low, high = (float(border_of(self.elements, key).constant[0]) for key in (right, left))
-        return (Guard(self.overturning_moment(), low, high, Exit(LIFTS, right), Exit(LIFTS, left)),)
+        borders = [border_of(self.properties, self.elements, each) for each in (right, left)]
+        low, high = (float(each.constant[0]) for each in borders)
+        recall = np.stack([each.recall[0] for each in borders])
+        return Guard(self.overturning_moment(), low, high, Exit(LIFTS, right), Exit(LIFTS, left), recall)

@@ -58,7 +58,7 @@ class NonlinearModel(ModalModel):
     def phase(self, key: Key) -> Phase:
         """Return one phase; it is linear only in contact with an elastic superstructure."""
         linear = key[0] == CLOSED and self.bouc_wen is None
-        return Phase(key, key[0], self.arrow(key) if linear else None, self.guards(key))
+        return self.phase_of(key, self.arrow(key) if linear else None)
 
     def field(self) -> Field:
         """Return the coefficients of the vector field."""

@@ -1,6 +1,7 @@
 """The definition of a phase of the motion: free degrees of freedom of the base, forces, and end conditions."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,12 +11,12 @@ FREEDOMS = ("rotation",)  # of the base, in the order of the borders
 
 Key = tuple[int, ...]  # the branch of every element, the base first
 
-LIFTS, LANDS, OVERTURNS = 0, 1, 2  # events at which a guard is passed
+LIFTS, LANDS, OVERTURNS, CHANGES = 0, 1, 2, 3  # events that end a phase; CHANGES: an element takes another branch
 
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """Contribution of an element to the equations of the base, M q'' + .. + C q' + K q = f + a g, with b unknowns q.
+    """Contribution to the equations of the base, M q'' + .. + C q' + K q = f + a g + H m, with b unknowns q.
 
     Attributes
     ----------
@@ -23,6 +24,8 @@ class Border:
         M, C and K.
     constant, ground : ndarray, shape (b,)
         f, and the factor g of the ground acceleration.
+    recall : ndarray, shape (b, M)
+        H, the factor of the memories m of the elements.
     """
 
     inertia: Array
@@ -30,6 +33,7 @@ class Border:
     stiffness: Array
     constant: Array
     ground: Array
+    recall: Array
 
     @classmethod
     def on_rotation(
@@ -40,13 +44,17 @@ class Border:
         stiffness: float = 0.0,
         constant: float = 0.0,
         ground: float = 0.0,
+        recall: Array | None = None,
     ) -> "Border":
         """Return the border of an element that acts only on the rotation."""
         b = len(FREEDOMS)
         squares, columns = np.zeros((3, b, b)), np.zeros((2, b))
         squares[:, 0, 0] = inertia, damping, stiffness
         columns[:, 0] = constant, ground
-        return cls(squares[0], squares[1], squares[2], columns[0], columns[1])
+        factors = np.zeros((b, 0 if recall is None else recall.size))
+        if recall is not None:
+            factors[0] = recall
+        return cls(squares[0], squares[1], squares[2], columns[0], columns[1], factors)
 
     def __add__(self, other: "Border") -> "Border":
         return Border(
@@ -55,6 +63,7 @@ class Border:
             self.stiffness + other.stiffness,
             self.constant + other.constant,
             self.ground + other.ground,
+            self.recall + other.recall,
         )
 
 
@@ -63,9 +72,9 @@ class Arrow:
     """The equations of motion of one phase: N oscillators bordered by the b degrees of freedom q of the base.
 
         D''_n + 2 ζ_n ω_n D'_n + ω_n² D_n + c_n · q'' = -a
-        M q'' + Σ_n m*_n c_n D''_n + C q' + K q = f + a g
+        M q'' + Σ_n m*_n c_n D''_n + C q' + K q = f + a g + H m
 
-    With D'' eliminated, (M - Σ m* c cᵀ) q'' = f + a (g + Σ m* c) + Σ m* c (2ζω D' + ω² D) - C q' - K q.
+    With D'' eliminated, (M - Σ m* c cᵀ) q'' = f + H m + a (g + Σ m* c) + Σ m* c (2ζω D' + ω² D) - C q' - K q.
 
     Attributes
     ----------
@@ -79,6 +88,8 @@ class Arrow:
         C and K.
     constant, drive : ndarray, shape (b,)
         f, and g + Σ m* c.
+    recall : ndarray, shape (b, M)
+        H, the factor of the memories m of the elements, which are constant during a phase.
     free
         Whether any degree of freedom of the base is free.
     """
@@ -90,6 +101,7 @@ class Arrow:
     stiffness: Array
     constant: Array
     drive: Array
+    recall: Array
     free: bool
 
     def alike(self, other: "Arrow") -> bool:
@@ -120,6 +132,8 @@ class Guard:
         Its limits; infinite if there is no limit.
     below, above
         What happens at each limit; None if there is no limit.
+    recall : ndarray, shape (2, M)
+        What the memories add to the lower and to the upper limit.
     """
 
     row: Array
@@ -127,6 +141,28 @@ class Guard:
     high: float
     below: Exit | None
     above: Exit | None
+    recall: Array
+
+
+class Change(NamedTuple):
+    """A limit of |θ|, place + recall m with the memory m of one element, at which this element changes its branch.
+
+    The limit is reached from below if `outer`. `memory` is the index of m, and `key` the following phase.
+    """
+
+    outer: bool
+    place: float
+    recall: float
+    memory: int
+    key: Key
+
+
+class Turning(NamedTuple):
+    """A memory that is set where the rotation turns back: m = arm |θ| - offset, with the index `memory`."""
+
+    memory: int
+    arm: float
+    offset: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,11 +177,23 @@ class Phase:
         Pivot about which the base rotates: 1 right, -1 left, 0 in contact.
     arrow
         The equations of motion; None if they are not linear, in which case a vector field is used.
-    guards
-        Conditions that end the phase. While the base rocks the first is its rotation.
+    guard
+        The condition that ends the phase: on the rotation while the base rocks, on the overturning moment in contact.
+    changes
+        Rotations at which an element changes its branch.
+    turns
+        Sign of the velocity |θ|' while an element yields, whose branch ends at zero velocity; 0 if none yields.
+    turnings
+        The memories of the elements that yield, as their branches end.
+    landed
+        The branches of the elements after their elongation has stopped.
     """
 
     key: Key
     side: int
     arrow: Arrow | None
-    guards: tuple[Guard, ...]
+    guard: Guard
+    changes: tuple[Change, ...] = ()
+    turns: int = 0
+    turnings: tuple[Turning, ...] = ()
+    landed: tuple[int, ...] = ()

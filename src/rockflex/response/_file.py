@@ -156,7 +156,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     tendons = [Tendon(**each) for each in _typed(scalars, "tendons", list)]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
     known["eccentricity"] = scalars.get("eccentricity", 0.0)  # files of symmetric bases may lack it
-    properties = RockingProperties(**values, floors=floors, tendons=tendons, **known)
+    properties = RockingProperties(**values, floors=floors, elements=tendons, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
     law = _law(parameters)

@@ -6,7 +6,7 @@ from typing import SupportsIndex
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import ModalProperties, RockingProperties, Tendon, tendon_set
+from rockflex.modal import BaseElement, ModalProperties, RockingProperties, element_set
 from rockflex.structure._based import Based, is_structure
 
 
@@ -22,13 +22,13 @@ class Restrained:
     ----------
     structure
         Any structure: a `Frame`, a `TaperedTower`, an `Eccentric` one ...
-    tendons : tuple of Tendon
-        Any number of tendons, at any positions within the base.
+    elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
+        Any number of them, at any positions within the base.
 
     Raises
     ------
     InputError
-        If a tendon is outside the base, or `structure` is not a structure.
+        If an element is outside the base, or `structure` is not a structure.
 
     Examples
     --------
@@ -44,16 +44,16 @@ class Restrained:
     """
 
     structure: Based
-    tendons: tuple[Tendon, ...]
+    elements: tuple[BaseElement, ...]
 
-    def __init__(self, structure: Based, tendons: Tendon | Iterable[Tendon]) -> None:
+    def __init__(self, structure: Based, elements: BaseElement | Iterable[BaseElement]) -> None:
         if not is_structure(structure):
             raise InputError(
                 f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
-                "have tendons of their own: RockingProperties(..., tendons=...).",
+                "have elements of their own: RockingProperties(..., elements=...).",
                 field="structure",
             )
-        vars(self).update(structure=structure, tendons=tendon_set(tendons))
+        vars(self).update(structure=structure, elements=element_set(elements))
         self.rocking(1)  # checks that they are within the base
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
@@ -62,4 +62,4 @@ class Restrained:
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
         """Return the parameters of the rocking structure with its first `n_modes` modes (default: all)."""
-        return replace(self.structure.rocking(n_modes), tendons=self.tendons)
+        return replace(self.structure.rocking(n_modes), elements=self.elements)

@@ -121,7 +121,7 @@ class StructureEntry(Table):
         try:
             tendons = [Tendon(**each.model_dump()) for each in self.tendons]
             known = isinstance(built, RockingProperties)
-            return replace(built, tendons=tendons) if known else Restrained(built, tendons)
+            return replace(built, elements=tendons) if known else Restrained(built, tendons)
         except InputError as error:
             raise InputError(str(error), place="[[tendons]]", field="tendons") from error
 

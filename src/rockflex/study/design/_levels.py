@@ -76,11 +76,11 @@ class TendonLevel:
     def held(self, properties: RockingProperties) -> RockingProperties:
         """The structure with this tendon in place of any other; without a tendon if both ratios are zero."""
         if not (self.prestress_ratio or self.stiffness_ratio):
-            return replace(properties, tendons=())
+            return replace(properties, elements=())
         weight = properties.m_tot * GRAVITY
         stiffness = self.stiffness_ratio * properties.l0r * GRAVITY / properties.half_width**2
         limit = None if self.yield_ratio is None else self.yield_ratio * weight
-        return replace(properties, tendons=Tendon(self.prestress_ratio * weight, stiffness, yield_force=limit))
+        return replace(properties, elements=Tendon(self.prestress_ratio * weight, stiffness, yield_force=limit))
 
 
 class Design(NamedTuple):
