@@ -150,6 +150,12 @@ def _values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ..
     if isinstance(element, Tendon):  # its yield force is only compared with, unless it yields
         yields = element.post_yield_ratio is not None
         beyond = (element.yield_force or 0.0, element.post_yield_ratio or 0.0) if yields else (0.0, 0.0)
-        return "Tendon", (distance, element.initial_force, element.stiffness, *beyond, element.rupture_elongation or 0.0)
+        return "Tendon", (
+            distance,
+            element.initial_force,
+            element.stiffness,
+            *beyond,
+            element.rupture_elongation or 0.0,
+        )
     rest = {**vars(element), "position": distance}
     return type(element).__name__, tuple(float(value or 0.0) for value in rest.values())

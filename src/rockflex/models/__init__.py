@@ -29,13 +29,14 @@ from rockflex.models._observe import (
     observe_all,
     posture_of,
 )
-from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
-from rockflex.models._quantities import Quantities, lost_support_row, rows_of
+from rockflex.models._phase import CHANGES, FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
 from rockflex.models._reactions import Reactions, printed_reactions, reactions
 from rockflex.models._stored import floor_accelerations, stored_energies, stretch_per_arm, tendon_energy
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 
 __all__ = [
+    "CHANGES",
     "CLOSED",
     "EXTRA",
     "FREEDOMS",
@@ -106,5 +107,6 @@ __all__ = [
     "stretch_per_arm",
     "strike",
     "tendon_energy",
+    "turning_row",
     "values_of",
 ]

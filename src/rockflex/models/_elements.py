@@ -261,6 +261,4 @@ def _element_of(given: BaseElement) -> Element:
     if given.post_yield_ratio is None or given.yield_force is None:
         return Spring(given.stiffness, given.initial_force, given.position)
     stretched = given.initial_force / given.stiffness
-    return Bar(
-        given.stiffness, given.yield_force, given.post_yield_ratio, given.position, stretched, True, rupture
-    )
+    return Bar(given.stiffness, given.yield_force, given.post_yield_ratio, given.position, stretched, True, rupture)

@@ -66,6 +66,11 @@ class ModalModel(Value):
         """The elements between the base and the ground."""
         return elements_of(self.properties)
 
+    @property
+    def most_changes(self) -> int:
+        """Largest number of rotations at which elements change their branches, in any phase."""
+        return sum(max(len(each.stops(branch)) for branch in each.branches) for each in self.elements)
+
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts with the base on a side."""
         return first_key(self.elements, side)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex.models._elements import CLOSED, RIGHT
+from rockflex.models._elements import CLOSED, RIGHT, arm_of, memories
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
@@ -122,14 +122,38 @@ def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
 def lost_support_row(model: ModalModel, key: Key) -> Array:
     """Return the decrease of ΣF_z below its value at rest, in N: a row, shape (C,).
 
-    ΣF_z = m_tot (g + s B θ'') plus the tendon forces, Eq. 22 for small rotations with the sign corrected; in contact it
-    is m_tot g plus their prestress. While a complete model rocks the row is zero, and `observe` gives the value.
+    ΣF_z = m_tot (g + s B θ'') plus the tensions of the elements, Eq. 22 for small rotations with the sign corrected; at
+    rest it is m_tot g plus the prestress. While a complete model rocks the row is zero, and `observe` gives the value.
     """
     row = np.zeros(model.layout.columns)
-    side = key[0]
-    if side == CLOSED or model.complete:
+    side, p = key[0], model.properties
+    if model.complete:
         return row
-    pivot = model.properties.pivot(side)
-    row -= side * model.properties.m_tot * pivot.arm * model.angular_acceleration(key)
-    row[model.layout.rotation] -= side * pivot.axial_stiffness_moment
+    if side != CLOSED:
+        row -= side * p.m_tot * p.pivot(side).arm * model.angular_acceleration(key)
+    row -= tensions(model, key).sum(axis=0)
+    row[-1] += sum(each.pull(each.branches[0]).force for each in model.elements)
+    return row
+
+
+def tensions(model: ModalModel, key: Key) -> Array:
+    """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
+    rows = np.zeros((len(model.elements), model.layout.columns))
+    side, layout = key[0], model.layout
+    known = memories(model.elements)
+    for place, (each, branch) in enumerate(zip(model.elements, key[1:], strict=True)):
+        pull = each.pull(branch)
+        rows[place, -1] = pull.force
+        if place in known:
+            rows[place, layout.memory + known[place]] = pull.recall
+        if side != CLOSED:
+            reach = side * arm_of(model.properties, each, side)
+            rows[place, layout.rotation], rows[place, layout.spin] = pull.stiffness * reach, pull.damping * reach
+    return rows
+
+
+def turning_row(model: ModalModel) -> Array:
+    """Return θ' in rad/s: a row, shape (C,)."""
+    row = np.zeros(model.layout.columns)
+    row[model.layout.spin] = 1.0
     return row

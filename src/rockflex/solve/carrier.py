@@ -7,6 +7,8 @@ series only.
 
 import math
 
+import numpy as np
+
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates, inertia_left
@@ -15,9 +17,8 @@ from rockflex.solve.adaptive.layout import Flow, Integrator, Stages
 from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.turning import BARELY
 from rockflex.solve.exact.series import advance, expand, row_series
-from rockflex.solve.exits import phase_exit
+from rockflex.solve.exits import phase_exit, turn_back
 from rockflex.solve.layout import (
-    CONSTANT,
     DAMPING,
     DOUBT,
     DRAG,
@@ -32,6 +33,7 @@ from rockflex.solve.layout import (
     Span,
     System,
 )
+from rockflex.solve.memory import load_in
 from rockflex.solve.peaks import raise_peak, raise_to
 
 
@@ -57,7 +59,7 @@ def first_exit(
         return exit_of_series(system, at, span, motion)
     if system.phases[at.phase].linear:
         return exit_of_series(system, at, span, motion)
-    return exit_of_step(system, steps.flow, at, span, steps.room)
+    return exit_of_step(system, steps.flow, at, span, motion, steps.room)
 
 
 @inlined_kernel
@@ -65,11 +67,13 @@ def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> 
     """Return where a linear phase ends, from the power series of its guard."""
     expand(system, at.phase, motion, span, at.lift)
     row_series(system, at.phase, GUARD, motion, span)
-    return phase_exit(system, at, motion.polys)
+    return phase_exit(system, at, motion, motion.polys)
 
 
 @inlined_kernel
-def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Stages) -> tuple[float, int, float]:
+def exit_of_step(
+    system: System, flow: Flow, at: Progress, span: Span, motion: Motion, room: Stages
+) -> tuple[float, int, float]:
     """Return where an integrated phase ends, from the polynomial of its guard over the step."""
     p, polys = at.phase, room.polys
     extend(flow, system.phases[p].side, span, room)
@@ -78,7 +82,21 @@ def exit_of_step(system: System, flow: Flow, at: Progress, span: Span, room: Sta
         # θ and θ' start exactly from zero, and θ'' exactly from the value given by the guard.
         polys[GUARD, 0] = polys[GUARD, 1] = 0.0
         polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
-    return phase_exit(system, at, polys)
+    return phase_exit(system, at, motion, polys)
+
+
+@inlined_kernel
+def turning_exit(system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion) -> float:
+    """Return the place where the rotation turns back while an element yields; inf if it does not."""
+    sign = system.phases[at.phase].turns * system.phases[at.phase].side
+    if sign == 0.0:
+        return np.inf
+    row, zeros = system.turning_row, max(at.onset - 1, 0)  # a rotation that has just begun grows like t² or t³
+    if steps is None or system.phases[at.phase].linear:
+        row_series(system, at.phase, row, motion, span)
+        return turn_back(motion.polys, row, sign, zeros)
+    row_poly(system, at.phase, row, span, steps.room)
+    return turn_back(steps.room.polys, row, sign, zeros)
 
 
 @inlined_kernel
@@ -152,7 +170,7 @@ def turning_rate(system: System, steps: Integrator | None, phase: int, ground: f
     """Return θ'' at θ = 0 in a phase in which the motion may continue."""
     if steps is None:
         n = system.layout.modes
-        moment = system.push[phase, CONSTANT, 0] + system.push[phase, DRIVE, 0] * ground
+        moment = load_in(system, phase, 0, motion.state) + system.push[phase, DRIVE, 0] * ground
         moment -= system.base[phase, DAMPING, 0, 0] * motion.state[system.layout.spin]
         for i in range(n):
             restoring = system.modes[DRAG, i] * motion.state[n + i] + system.modes[OMEGA2, i] * motion.state[i]

@@ -78,7 +78,10 @@ class Engine:
 
     def __init__(self, model: RockingModel, quantities: Quantities, tolerance: float = TOLERANCE) -> None:
         self.model = model
-        self._n_rows = 2 + len(quantities)  # plus the guard, which is the rotation, and the loss of support
+        self._n_rows = (
+            2 + len(quantities) + (model.layout.remembered > 0)
+        )  # plus the guard, which is the rotation, and the loss of support
+        self._n_peaks = 1 + len(quantities)
         self._impact, self._failures = impact_of(model.law, model.properties)
         with preparing(model):
             self._phases = CompiledPhases(model, quantities)
@@ -227,8 +230,8 @@ class Engine:
             overturned=overturned,
             settled=status == Status.SETTLED,
             end_time=float(log.times[0]) if overturned else _samples(at) * dt,
-            peaks=log.peaks[:-1],
-            peak_times=log.times[:-1],
+            peaks=log.peaks[: self._n_peaks],
+            peak_times=log.times[: self._n_peaks],
             lost_support=float(log.peaks[-1]),
             time_of_lost_support=float(log.times[-1]),
             n_uplifts=int(log.tally[UPLIFTS]),

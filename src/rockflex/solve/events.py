@@ -3,24 +3,29 @@
 import numpy as np
 
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex.models import LANDS, OVERTURNS, Impact, kinetic_energy, may_pass, stick, strike
+from rockflex.models import CHANGES, LANDS, OVERTURNS, Impact, kinetic_energy, may_pass, stick, strike
 from rockflex.solve.adaptive.check import nothing_hides
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.adaptive.step import FAILED, forget, step_over
 from rockflex.solve.adaptive.turning import turning
-from rockflex.solve.carrier import begin, first_exit, free_inertia, move, turning_rate
+from rockflex.solve.carrier import begin, first_exit, free_inertia, move, turning_exit, turning_rate
 from rockflex.solve.exits import INSIDE, LIFTED, PASSING, TOUCHED
 from rockflex.solve.history import keep, room_left
 from rockflex.solve.layout import (
     BESIDE,
+    CHANGED,
     EVENT,
     EVENTS,
     FOLLOWING,
     FOLLOWS,
     GUARD,
+    HIGH,
     IMPACTS,
     LEFT,
+    LOW,
     SERIES,
+    TURNED,
+    TURNING,
     UPLIFTS,
     Log,
     Motion,
@@ -29,6 +34,7 @@ from rockflex.solve.layout import (
     System,
     unit_of,
 )
+from rockflex.solve.memory import recollect, remember
 from rockflex.solve.status import Status
 
 CROSSED = int(Status.ENDED)
@@ -37,6 +43,7 @@ BROKEN, CHATTER, GAINED, STALLED = (
     int(each) for each in (Status.BROKEN, Status.CHATTER, Status.GAINED, Status.STALLED)
 )
 
+TURNS = 4  # an event beside those of the guard: the rotation turns back while an element yields
 MOST_EVENTS = 20_000  # in one sample
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
 SNAP = 1e-10  # of a unit: an event this close to the end is handled at the start of the next unit
@@ -44,11 +51,12 @@ RESUME = 1e-7  # where the search in contact resumes after a guard that was touc
 
 
 @kernel
-def enter(system: System, at: Progress, phase: int) -> None:
+def enter(system: System, at: Progress, phase: int, motion: Motion) -> None:
     """Continue in another phase from the present state; in a linear phase the grid is resumed at `at.place`."""
     at.phase, at.tuned, at.stated, at.started = phase, False, True, False
     levels = system.phases[phase].levels
     at.place = min(int(at.begun / unit_of(system, levels)), (1 << levels) - 1)
+    recollect(system, phase, motion)
 
 
 @kernel
@@ -64,9 +72,13 @@ def beside(side: float) -> int:
 
 
 @kernel
-def lacks(system: System, at: Progress, event: int, bound: int, impact: Impact) -> int:
+def lacks(system: System, at: Progress, event: int, bound: int, owner: int, impact: Impact) -> int:
     """Return the place of a phase needed after an event but not yet compiled; -1 if there is none."""
     p = at.phase
+    if event == TURNS:
+        return TURNING if system.links[p, TURNED] < 0 else -1
+    if event == CHANGES:
+        return TURNING + 1 + owner if system.links[p, CHANGED + owner] < 0 else -1
     if event == LANDS:
         for place in range(3):
             needed = place == 0 or (may_pass(impact) and place != beside(system.phases[p].side))
@@ -107,23 +119,27 @@ def cross(
             steps is not None
             and not linear
             and at.onset == INSIDE
-            and nothing_hides(system, steps.flow, p, span, log, steps.room)
+            and nothing_hides(system, steps.flow, p, span, motion.limits, log, steps.room)
         ):
             step_over(steps.room)
             at.begun = sample.length if whole else at.begun + length
             continue
         stop, bound, excess = first_exit(system, steps, at, span, motion)
-        event = system.links[p, EVENT + bound]
+        owner = motion.owners[bound]
+        event = CHANGES if owner >= 0 else system.links[p, EVENT + bound]
+        back = turning_exit(system, steps, at, span, motion)
+        if back < stop:
+            stop, event = back, TURNS
         if stop < 0.0:
-            at.lacking = lacks(system, at, event, bound, impact)
+            at.lacking = lacks(system, at, event, bound, owner, impact)
             if at.lacking >= 0:
                 return LACKS_PHASE
             if side != 0.0:
                 log.tally[EVENTS] += 1
-                enter(system, at, system.links[p, BESIDE + 0])
+                enter(system, at, system.links[p, BESIDE + 0], motion)
                 at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
             else:
-                enter(system, at, system.links[p, FOLLOWS + bound])
+                enter(system, at, system.links[p, FOLLOWS + bound], motion)
                 inertia = free_inertia(system, steps, at.phase, motion.state)
                 at.onset, at.lift = LIFTED, system.phases[at.phase].side * excess / inertia
             at.fresh_rows = True
@@ -141,17 +157,18 @@ def cross(
             if turns:
                 stop, ends, tipped = turn, True, False
         if not ends:
-            at.lacking = lacks(system, at, event, bound, impact)
+            at.lacking = lacks(system, at, event, bound, owner, impact)
             if at.lacking >= 0:
                 return LACKS_PHASE
-        if at.onset >= LIFTED:
+        if at.onset >= LIFTED and not (event == CHANGES and stop == 0.0):
             log.tally[UPLIFTS] += 1
             log.tally[EVENTS] += 1
             keep(log, now, 0.0, here, motion.state)
             keep(log, now, side, here, motion.state)
         move(system, steps, at, span, stop, turns, log, motion)
         at.begun = sample.length if whole and stop == 1.0 and not linear else at.begun + stop * length
-        at.onset, at.lift = INSIDE, np.nan
+        if not (event == CHANGES and stop == 0.0):
+            at.onset, at.lift = INSIDE, np.nan
         if ends:
             at.resume = 0.0
             if linear:
@@ -162,8 +179,25 @@ def cross(
             continue
         here = sample.ground + sample.slope * at.begun
         now = min(sample.time + at.begun, sample.until)
+        if event in (CHANGES, TURNS) and not turns:
+            keep(log, now, side, here, motion.state)
+            log.tally[EVENTS] += 1
+            if event == TURNS:
+                motion.state[system.layout.spin] = 0.0
+                remember(system, p, motion)
+                keep(log, now, side, here, motion.state)
+                enter(system, at, system.links[p, TURNED], motion)
+            else:
+                enter(system, at, int(system.links[p, CHANGED + int(owner)]), motion)
+            at.resume = 0.0
+            at.fresh_rows = True
+            if steps is not None:
+                forget(steps.room)
+            if log.tally[EVENTS] > MOST_EVENTS:
+                return CHATTER
+            continue
         if tipped:
-            limit = system.phases[p].high if side > 0.0 else system.phases[p].low
+            limit = motion.limits[HIGH] if side > 0.0 else motion.limits[LOW]
             log.peaks[GUARD], log.times[GUARD] = abs(limit), now
             motion.state[system.layout.rotation] = limit
             keep(log, now, side, here, motion.state)
@@ -171,17 +205,18 @@ def cross(
         motion.state[system.layout.rotation] = 0.0
         if event == LANDS:
             keep(log, now, side, here, motion.state)
+            remember(system, p, motion)
             status, next_side = land(system, steps, impact, p, here, motion)
             if status != CROSSED:
                 return status
             log.tally[EVENTS] += 1
             log.tally[IMPACTS] += 1
             keep(log, now, next_side, here, motion.state)
-            enter(system, at, system.links[p, BESIDE + beside(next_side)])
+            enter(system, at, system.links[p, BESIDE + beside(next_side)], motion)
             at.onset = PASSING if next_side != 0.0 else INSIDE
         else:
             motion.state[system.layout.spin] = 0.0
-            enter(system, at, system.links[p, FOLLOWS + bound])
+            enter(system, at, system.links[p, FOLLOWS + bound], motion)
             inertia = free_inertia(system, steps, at.phase, motion.state)
             at.lift = system.phases[at.phase].side * excess / inertia
             at.onset = LIFTED if excess > 0.0 else TOUCHED

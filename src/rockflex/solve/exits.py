@@ -4,10 +4,9 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.solve.layout import GUARD, Progress, System
+from rockflex.solve.layout import GUARD, HIGH, LOW, Motion, Progress, System
 from rockflex.solve.polynomials import evaluate, first_descent
 
-LOW, HIGH = 0, 1  # the limits of a guard
 BEFORE = -1.0  # the phase ended before it started
 
 # How a rotation leaves zero at the start of the stretch: the order of its first nonzero term.
@@ -15,19 +14,21 @@ INSIDE, PASSING, LIFTED, TOUCHED = 0, 1, 2, 3
 
 
 @kernel
-def phase_exit(system: System, at: Progress, polys: Array) -> tuple[float, int, float]:
+def phase_exit(system: System, at: Progress, motion: Motion, polys: Array) -> tuple[float, int, float]:
     """Return where the guard first passes a limit, which limit, and by how much it then exceeds it.
 
     The place is inf if no limit is passed. It is `BEFORE` if a moment in contact exceeds a limit from the start, or if
     a rotation never left zero.
     """
-    p = at.phase
-    side, low, high = system.phases[p].side, system.phases[p].low, system.phases[p].high
+    side, low, high = system.phases[at.phase].side, motion.limits[LOW], motion.limits[HIGH]
     if side != 0.0:
         inner = LOW if side > 0.0 else HIGH
-        lands = landing(polys, side, at.onset)
-        if lands < 0.0:
-            return BEFORE, inner, 0.0
+        if motion.owners[inner] < 0:
+            lands = landing(polys, side, at.onset)
+            if lands < 0.0:
+                return BEFORE, inner, 0.0
+        else:
+            lands = approach(polys, side, side * motion.limits[inner])
         tips = overturning(polys, side, high if side > 0.0 else -low)
         if tips < lands and tips < 1.0:
             return tips, 1 - inner, 0.0
@@ -76,6 +77,27 @@ def landing(polys: Array, side: float, zeros: int) -> float:
         return BEFORE
     if polys[work, 0] < 0.0:
         polys[work, 0] = 0.0
+    return first_descent(polys, work, 0.0, 1.0)
+
+
+@kernel
+def approach(polys: Array, side: float, limit: float) -> float:
+    """Return the place where the magnitude of the rotation falls to a limit; inf if it does not."""
+    work = polys.shape[0] - 1
+    for k in range(polys.shape[1]):
+        polys[work, k] = side * polys[GUARD, k]
+    polys[work, 0] -= limit
+    return first_descent(polys, work, 0.0, 1.0)
+
+
+@kernel
+def turn_back(polys: Array, row: int, sign: float, zeros: int) -> float:
+    """Return the place where a velocity of a sign falls to zero; inf if it does not. Its `zeros` at 0 are divided out."""
+    work, terms = polys.shape[0] - 1, polys.shape[1]
+    for k in range(terms):
+        polys[work, k] = sign * polys[row, k + zeros] if k + zeros < terms else 0.0
+    if zeros > 0 and polys[work, 0] <= 0.0:
+        return np.inf
     return first_descent(polys, work, 0.0, 1.0)
 
 

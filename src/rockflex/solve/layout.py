@@ -35,10 +35,17 @@ CONSTANT, DRIVE = 0, 1
 
 # Indices in `System.links`, for two limits each: the event there, and the phase that follows; -1 for none, or for a
 # phase not yet compiled. Then the same branches with the base in contact, on its right pivot and on its left pivot.
-EVENT, FOLLOWS, BESIDE, LINKS = 0, 2, 4, 7
+# Next the phase that follows where an element that yields turns back, and those that follow the `System.changes`.
+EVENT, FOLLOWS, BESIDE, TURNED, CHANGED = 0, 2, 4, 7, 8
 
-# `Progress.lacking`: first the offsets from `BESIDE`, then those from `FOLLOWS`.
-FOLLOWING = 3
+# `Progress.lacking`: first the offsets from `BESIDE`, then those from `FOLLOWS`, then those from `TURNED`.
+FOLLOWING, TURNING = 3, 5
+
+# Indices in `System.limits` and `Motion.limits`; in `System.changes`, `change_kinds` and `turnings`
+LOW, HIGH = 0, 1
+PLACE, RECALL = 0, 1
+OUTER, MEMORY = 0, 1
+ARM, OFFSET = 0, 1
 
 # Indices in `System.basis` and `System.rows`
 OUT, INTO = 0, 1
@@ -62,8 +69,7 @@ def _record(fields: list[tuple[str, Any]]) -> np.dtype[Any]:
 PHASE = _record(
     [
         ("side", np.float64),  # pivot about which the base rotates
-        ("low", np.float64),  # limits of the guard
-        ("high", np.float64),
+        ("turns", np.int64),  # sign of |θ|' while an element yields; 0 if none does
         ("levels", np.int64),  # of the grid
         ("terms", np.int64),  # of the power series that converge over the finest step
         ("linear", np.bool_),  # solved in closed form
@@ -83,16 +89,22 @@ class System(NamedTuple):
     dt: float
     modes: Array  # (2, N): ω² and 2ζω
     phases: Any  # (P,): records of `PHASE`
-    links: NDArray[np.int64]  # (P, LINKS): what follows each phase
+    turning_row: int  # index of the row of θ', which guards elements that yield; -1 if no element can
+    links: NDArray[np.int64]  # (P, CHANGED + X): what follows each phase
+    limits: Array  # (P, 2, 1 + M): limits of the guard, and what each memory adds to them
+    changes: Array  # (P, X, 2): limits of |θ| at which an element changes its branch: place, and factor of its memory
+    change_kinds: NDArray[np.int64]  # (P, X, 2): 1 if reached from below, 0 from above, -1 for none; memory's index
+    turnings: Array  # (P, M, 2): memory = arm |θ| - offset, of an element whose yielding ends; NaN for others
+    recall: Array  # (P, b, M): factors of the memories in the forces on the base
     border: Array  # (P, b, 2, N): c and m* c of `rockflex.models.Arrow`
     base: Array  # (P, 3, b, b): flexibility, damping and stiffness of the base
     push: Array  # (P, 2, b): constant forces on the base, and the factor of the ground acceleration
     # For the motion
     plain_rows: Array  # (P, F, C): the rows over the state, a and 1
     basis: Array  # (P, 2, S, S), S = 2 N + 2 b: from coordinates to states and back, both transposed
-    forced: Array  # (P, 3, S): coefficients of a, a', 1 in the forced part
+    forced: Array  # (P, 3 + M, S): coefficients of a, a', 1 and the memories in the forced part
     rows: Array  # (P, 2, F, S): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
-    row_forcing: Array  # (P, F, 3): coefficients of a, a', 1 in the rows
+    row_forcing: Array  # (P, F, 3 + M): coefficients of a, a', 1 and the memories in the rows
     blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
     propagator: Array  # (P, J + 1, S, S): exp(B h) if some phase is dense; otherwise (0, 0, 0, 0)
     bounds: Array  # (P, 3, J + 1, F, K): sag, swing and ripple of each row over a step, times |w| of the pair
@@ -142,6 +154,12 @@ class Motion(NamedTuple):
     series: Array  # (N + b, terms)
     polys: Array  # (F + 1, terms): polynomials of the rows, and one for work
     push: Array  # (b,): forces on the base, coefficient by coefficient
+    # Of the present phase, with the memories as they are: see `memory.recollect`
+    limits: Array  # (2,): of the guard
+    owners: NDArray[np.int64]  # (2,): the change of an element at each limit; -1 if it is the base's own
+    load: Array  # (b,): constant forces on the base
+    still: Array  # (S,): constant part of the forced motion
+    offset: Array  # (F,): constant part of the rows
 
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.
@@ -151,6 +169,7 @@ _PROGRESS = _record(
         ("phase", np.int64),
         ("offset", np.int64),  # samples before the present stretch of acceleration
         ("index", np.int64),  # sample within it
+        ("entered", np.bool_),  # whether the limits and constants of the present phase are known
         ("last", np.float64),  # acceleration at the end of the previous stretch; NaN at first
         ("slope", np.float64),  # of the acceleration, to which w refers
         ("stated", np.bool_),  # whether the state is up to date, and at least as accurate as w
@@ -211,6 +230,11 @@ def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> 
         series=np.zeros((pairs, terms)),
         polys=np.zeros((rows + 1, terms)),
         push=np.zeros(freedoms),
+        limits=np.zeros(2),
+        owners=np.full(2, -1, dtype=np.int64),
+        load=np.zeros(freedoms),
+        still=np.zeros(core),
+        offset=np.zeros(rows),
     )
 
 

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of
+from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of, turning_row
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
-from rockflex.solve.layout import BESIDE, EVENT, FOLLOWING, FOLLOWS, LINKS, System
+from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWING, FOLLOWS, TURNED, TURNING, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance
 CAPACITY = 3  # initial number of phases: contact, and rocking on either side
@@ -51,7 +51,10 @@ class CompiledPhases:
     def _compiled(self, key: Key) -> int:
         model = self._model
         phase = model.phase(key)
-        rows = np.vstack((phase.guards[0].row, rows_of(model, self._quantities, key), lost_support_row(model, key)))
+        parts = [phase.guard.row, rows_of(model, self._quantities, key), lost_support_row(model, key)]
+        if model.layout.remembered:
+            parts.insert(2, turning_row(model))
+        rows = np.vstack(parts)
         basis, twin = None, -1
         if phase.arrow is not None:
             twin = self._alike(phase.arrow)
@@ -59,7 +62,7 @@ class CompiledPhases:
             if known is None:
                 known = basis_of(model, phase.arrow, model.accelerations(key))
             # All phases include constant forces in the same way, so that the order of compilation does not affect bits.
-            basis = with_constant(known, phase.arrow) if phase.arrow.free else known
+            basis = with_constant(known, phase.arrow)
         self._phases.append(phase)
         self._bases.append(basis)
         self._rows.append(rows)
@@ -80,7 +83,10 @@ class CompiledPhases:
         if lacking < FOLLOWING:
             self.place(self._beside(known, lacking))
             return
-        for leads in (known.guards[0].below, known.guards[0].above):
+        if lacking >= TURNING:
+            self.place(self._turned(known) if lacking == TURNING else known.changes[lacking - TURNING - 1].key)
+            return
+        for leads in (known.guard.below, known.guard.above):
             if leads is not None:
                 self.place(leads.key)
 
@@ -142,15 +148,22 @@ class CompiledPhases:
 
     def _links(self, capacity: int) -> NDArray[np.int64]:
         """Return the events at the limits of every phase, and the phases that follow, as far as they are compiled."""
-        links = np.full((capacity, LINKS), -1, dtype=np.int64)
+        links = np.full((capacity, CHANGED + self._model.most_changes), -1, dtype=np.int64)
         for p, phase in enumerate(self._phases):
             for place in range(3):
                 links[p, BESIDE + place] = self._places.get(self._beside(phase, place), -1)
-            for bound, leads in enumerate((phase.guards[0].below, phase.guards[0].above)):
+            for bound, leads in enumerate((phase.guard.below, phase.guard.above)):
                 if leads is not None:
                     links[p, EVENT + bound], links[p, FOLLOWS + bound] = leads.event, self._places.get(leads.key, -1)
+            links[p, TURNED] = self._places.get(self._turned(phase), -1)
+            for x, change in enumerate(phase.changes):
+                links[p, CHANGED + x] = self._places.get(change.key, -1)
         return links
 
     def _beside(self, phase: Phase, place: int) -> Key:
-        """Return the same branches with the base in contact, on its right pivot or on its left pivot."""
-        return ((0, 1, -1)[place], *phase.key[1:])
+        """Return the branches after a landing, with the base in contact, on its right pivot or on its left one."""
+        return ((0, 1, -1)[place], *phase.landed)
+
+    def _turned(self, phase: Phase) -> Key:
+        """Return the branches after the rotation has turned back."""
+        return (phase.side, *phase.landed)

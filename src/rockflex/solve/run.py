@@ -18,7 +18,23 @@ from rockflex.solve.events import CROSSED, PAUSED
 from rockflex.solve.exact.march import march, to_coordinates, to_state
 from rockflex.solve.exact.probe import NOTHING
 from rockflex.solve.history import MARGIN, keep, room_left
-from rockflex.solve.layout import CARRY, EVENTS, GUARD, LEFT, NOW, VALUES, Course, Log, Motion, Progress, Span, System
+from rockflex.solve.layout import (
+    CARRY,
+    EVENTS,
+    GUARD,
+    HIGH,
+    LEFT,
+    LOW,
+    NOW,
+    VALUES,
+    Course,
+    Log,
+    Motion,
+    Progress,
+    Span,
+    System,
+)
+from rockflex.solve.memory import recollect
 from rockflex.solve.peaks import raise_row, raise_to_state
 from rockflex.solve.sample import cross_sample
 from rockflex.solve.status import Status
@@ -35,6 +51,9 @@ def run(
 ) -> int:
     """Continue the motion; return how the run ended, or why it is interrupted."""
     rate = 1.0 / course.dt
+    if not at.entered:
+        recollect(system, at.phase, motion)
+        at.entered = True
     while True:
         remaining = course.free + course.record.size - 1 - at.offset
         piece = course.record
@@ -107,7 +126,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
         for k in range(pairs):
             size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
             bound += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
-        if bound > (min(system.phases[p].high, -system.phases[p].low) if f == GUARD else log.peaks[f]):
+        if bound > (min(motion.limits[HIGH], -motion.limits[LOW]) if f == GUARD else log.peaks[f]):
             return False
     return True
 
@@ -118,7 +137,7 @@ def carry(
 ) -> bool:
     """Advance the motion over whole samples; return True if the next one needs a closer look."""
     if steps is not None and not system.phases[at.phase].linear:
-        return step_through(system, steps.flow, piece, dt, at, log, steps.room)
+        return step_through(system, steps.flow, piece, dt, motion.limits, at, log, steps.room)
     first = at.index
     most = BLOCK
     if log.history.shape[0] > 0:

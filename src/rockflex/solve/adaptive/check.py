@@ -5,16 +5,17 @@ the phase of no mode advances by more than about a radian. Over this range a row
 hundredths of the curvature of the cubic (for a harmonic of ω: (ωh)²/48); a fifth of the curvature is allowed for.
 """
 
+from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel
 from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
-from rockflex.solve.layout import GUARD, Log, Span, System
+from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System
 from rockflex.solve.peaks import raise_peaks, size_of
 
 
 @inlined_kernel
-def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, room: Stages) -> bool:
+def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Array, log: Log, room: Stages) -> bool:
     """Return True if the step contains no event and no new peak except at its end; the latter is recorded."""
     rows, side, step = system.plain_rows, system.phases[phase].side, span.length
     n, modes = rows.shape[2] - 2, flow.field.modes.shape[1]
@@ -29,7 +30,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, log: Log, 
         and curves_hide(system, flow, phase, span, room.vectors[TRIAL], room.rates[LAST], log, room)
     ):
         return False
-    low_limit, high_limit = system.phases[phase].low, system.phases[phase].high
+    low_limit, high_limit = limits[LOW], limits[HIGH]
     for f in range(log.peaks.size):
         if is_curved(flow, f, side):
             continue

@@ -10,7 +10,9 @@ from rockflex.solve.layout import CARRY, LEFT, Log, Progress, Span, System
 
 
 @inlined_kernel
-def step_through(system: System, flow: Flow, piece: Array, dt: float, at: Progress, log: Log, stages: Stages) -> bool:
+def step_through(
+    system: System, flow: Flow, piece: Array, dt: float, limits: Array, at: Progress, log: Log, stages: Stages
+) -> bool:
     """Integrate the motion over samples, starting `at.begun` s into the sample `at.index`.
 
     Returns True before a step that needs a closer look. Returns False when the work or the memory for the history is
@@ -27,7 +29,8 @@ def step_through(system: System, flow: Flow, piece: Array, dt: float, at: Progre
             step = take_step(flow, side, Span(time + at.begun, until, here, slope, longest), stages)
             if step == FAILED:
                 return True
-            if not nothing_hides(system, flow, at.phase, Span(time + at.begun, until, here, slope, step), log, stages):
+            span = Span(time + at.begun, until, here, slope, step)
+            if not nothing_hides(system, flow, at.phase, span, limits, log, stages):
                 return True
             step_over(stages)
             at.begun = dt if step == longest else at.begun + step

@@ -30,7 +30,7 @@ class Basis:
     matrix: Array  # (2K, 2K): B; block diagonal in the pairs unless `dense`
     pairs: Array  # (K, 2, 2): the blocks of B
     roots: Complex  # (K, 2): their eigenvalues, the one with the larger real part first
-    steady: Array  # (3, 2K): coefficients of a, a', 1 in the forced solution, as states
+    steady: Array  # (3 + M, 2K): coefficients of a, a', 1 and the memories in the forced solution, as states
     dense: bool
     fastest: float  # largest eigenvalue magnitude, rad/s
 
@@ -45,12 +45,15 @@ def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:
 
 
 def with_constant(known: Basis, arrow: Arrow) -> Basis:
-    """Return the basis of a phase whose arrow differs from a known one only in its constant forces."""
-    steady = known.steady.copy()
-    steady[2] = 0.0
+    """Return the basis of a phase whose arrow differs from a known one only in constant forces and memories."""
+    steady = np.zeros((3 + arrow.recall.shape[1], known.steady.shape[1]))
+    steady[:2] = known.steady[:2]
+    if not arrow.free:
+        return replace(known, steady=steady)
     places = known.steady.shape[1] // 2 - arrow.constant.size
     # At rest the modes are zero, and the stiffness of the base balances the constant forces.
-    steady[2, 2 * places :: 2] = np.linalg.solve(arrow.stiffness, arrow.constant)
+    forces = np.column_stack((arrow.constant, arrow.recall))
+    steady[2:, 2 * places :: 2] = np.linalg.solve(arrow.stiffness, forces).T
     return replace(known, steady=steady)
 
 

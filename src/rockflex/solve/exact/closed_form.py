@@ -56,7 +56,7 @@ class ClosedForm:
         for side, basis in self._bases.items():
             chosen = states[:-1, SIDE] == side
             if chosen.any():
-                forced = basis.steady @ basis.inverse.T
+                forced = basis.steady[:3] @ basis.inverse.T
                 w = moved[chosen] @ basis.inverse.T - start[chosen] @ forced
                 carried = propagate(basis, w, fraction * steps[chosen]) + end[chosen] @ forced
                 moved[chosen] = carried @ basis.basis.T

@@ -36,7 +36,7 @@ def to_state(system: System, at: Progress, ground: float, motion: Motion) -> Non
         motion.state[i] = 0.0
     for k in range(size):
         forced = system.forced[p, 0, k] * ground + system.forced[p, 1, k] * at.slope
-        value = motion.w[NOW, k] + forced + system.forced[p, 2, k]
+        value = motion.w[NOW, k] + forced + motion.still[k]
         for i in range(size):
             motion.state[i] += system.basis[p, OUT, k, i] * value
 
@@ -47,7 +47,7 @@ def to_coordinates(system: System, at: Progress, ground: float, motion: Motion) 
     p, size = at.phase, motion.w.shape[1]
     for k in range(size):
         forced = system.forced[p, 0, k] * ground + system.forced[p, 1, k] * at.slope
-        motion.w[NOW, k] = -forced - system.forced[p, 2, k]
+        motion.w[NOW, k] = -forced - motion.still[k]
     for i in range(size):
         for k in range(size):
             motion.w[NOW, k] += system.basis[p, INTO, i, k] * motion.state[i]
@@ -86,7 +86,7 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
                 ends[k] = blocks[0, k] * x + blocks[1, k] * y
                 ends[pairs + k] = blocks[2, k] * x + blocks[3, k] * y
             for f in range(begins.size):
-                value = forcing[f, 0] * there + forcing[f, 1] * slope + forcing[f, 2]
+                value = forcing[f, 0] * there + forcing[f, 1] * slope + motion.offset[f]
                 for k in range(active):
                     value += rows[f, k] * ends[k]
                     value += rows[f, pairs + k] * ends[pairs + k]

@@ -12,6 +12,8 @@ from rockflex.solve.layout import (
     FINAL,
     FIRST,
     GUARD,
+    HIGH,
+    LOW,
     LOWER,
     NOW,
     RIPPLE,
@@ -37,12 +39,17 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
         motion.values[LOWER, f] = -log.peaks[f]
         motion.values[UPPER, f] = log.peaks[f]
     if system.phases[phase].side == 0.0:
-        motion.values[LOWER, GUARD] = system.phases[phase].low
-        motion.values[UPPER, GUARD] = system.phases[phase].high
+        motion.values[LOWER, GUARD] = motion.limits[LOW]
+        motion.values[UPPER, GUARD] = motion.limits[HIGH]
     else:
-        motion.values[LOWER, GUARD] = max(system.phases[phase].low, -log.peaks[GUARD])
-        motion.values[UPPER, GUARD] = min(system.phases[phase].high, log.peaks[GUARD])
+        motion.values[LOWER, GUARD] = max(motion.limits[LOW], -log.peaks[GUARD])
+        motion.values[UPPER, GUARD] = min(motion.limits[HIGH], log.peaks[GUARD])
     motion.values[LOWER, support] = -np.inf
+    turning = system.turning_row
+    if turning >= 0:
+        sign = system.phases[phase].turns * system.phases[phase].side
+        motion.values[LOWER, turning] = 0.0 if sign > 0.0 else -np.inf
+        motion.values[UPPER, turning] = 0.0 if sign < 0.0 else np.inf
 
 
 @kernel
@@ -63,7 +70,7 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
     for f in range(motion.values.shape[1]):
         if not motion.flags[ASKED, f]:
             continue
-        common = system.row_forcing[phase, f, 1] * slope + system.row_forcing[phase, f, 2]
+        common = system.row_forcing[phase, f, 1] * slope + motion.offset[f]
         before = common + system.row_forcing[phase, f, 0] * here
         after = common + system.row_forcing[phase, f, 0] * there
         for k in range(count):
@@ -113,11 +120,13 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
             hidden = low - ripple < motion.values[LOWER, f] or high + ripple > motion.values[UPPER, f]
         elif f == GUARD:
             # A rotation may start on its limit, where it has just left the ground, but not end there.
-            hidden = first < system.phases[phase].low or first > system.phases[phase].high
-            hidden = hidden or last <= system.phases[phase].low or last >= system.phases[phase].high
+            hidden = first < motion.limits[LOW] or first > motion.limits[HIGH]
+            hidden = hidden or last <= motion.limits[LOW] or last >= motion.limits[HIGH]
+        elif f == system.turning_row:
+            hidden = last <= motion.values[LOWER, f] or last >= motion.values[UPPER, f]
         motion.flags[DOUBT, f] = hidden
         if hidden:
-            finding = max(finding, EVENT if f == GUARD else PEAK)
+            finding = max(finding, EVENT if f in (GUARD, system.turning_row) else PEAK)
     return finding
 
 

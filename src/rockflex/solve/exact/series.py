@@ -9,7 +9,6 @@ import math
 
 from rockflex._kernel import kernel
 from rockflex.solve.layout import (
-    CONSTANT,
     COUPLING,
     DAMPING,
     DRAG,
@@ -73,7 +72,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
                 force -= system.base[phase, STIFFNESS, j, m] * square * series[n + m, k]
                 force -= system.base[phase, DAMPING, j, m] * step * (k + 1.0) * series[n + m, k + 1]
             if k == 0:
-                force += system.push[phase, CONSTANT, j] * square
+                force += motion.load[j] * square
             motion.push[j] += force
         for j in range(freedoms):
             turn = 0.0
@@ -104,6 +103,8 @@ def row_series(system: System, phase: int, row: int, motion: Motion, span: Span)
             for k in range(terms - 1):
                 polys[row, k] += weight * (k + 1.0) * series[i, k + 1]
     polys[row, 0] += rows[phase, row, ground] * span.ground + rows[phase, row, ground + 1]
+    for i in range(system.layout.memory, system.layout.memory + system.layout.remembered):
+        polys[row, 0] += rows[phase, row, i] * motion.state[i]
     polys[row, 1] += rows[phase, row, ground] * span.slope * step
 
 

@@ -16,14 +16,16 @@ from rockflex._errors import InputError
 from rockflex.models import FREEDOMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis
 from rockflex.solve.layout import (
+    CHANGED,
     CONSTANT,
     COUPLING,
     DAMPING,
     DRIVE,
     FLEXIBILITY,
+    HIGH,
     INTO,
     LEVERAGE,
-    LINKS,
+    LOW,
     OUT,
     PHASE,
     RIPPLE,
@@ -74,21 +76,28 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
     p, layout, b = model.properties, model.layout, len(FREEDOMS)
     n, core, pairs, columns = layout.modes, layout.core, layout.core // 2, layout.columns
     whole = (capacity, levels + 1)
-    links = np.full((capacity, LINKS), -1, dtype=np.int64)
+    memories, changes = layout.remembered, model.most_changes
+    links = np.full((capacity, CHANGED + changes), -1, dtype=np.int64)
     return System(
         layout=layout,
         dt=dt,
         modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
         phases=np.zeros(capacity, dtype=PHASE),
+        turning_row=rows - 2 if memories else -1,
         links=links,
+        limits=np.zeros((capacity, 2, 1 + memories)),
+        changes=np.zeros((capacity, changes, 2)),
+        change_kinds=np.full((capacity, changes, 2), -1, dtype=np.int64),
+        turnings=np.full((capacity, memories, 2), np.nan),
+        recall=np.zeros((capacity, b, memories)),
         border=np.zeros((capacity, b, 2, n)),
         base=np.zeros((capacity, 3, b, b)),
         push=np.zeros((capacity, 2, b)),
         plain_rows=np.zeros((capacity, rows, columns)),
         basis=np.zeros((capacity, 2, core, core)),
-        forced=np.zeros((capacity, 3, core)),
+        forced=np.zeros((capacity, 3 + memories, core)),
         rows=np.zeros((capacity, 2, rows, core)),
-        row_forcing=np.zeros((capacity, rows, 3)),
+        row_forcing=np.zeros((capacity, rows, 3 + memories)),
         blocks=np.zeros((*whole, 4, pairs)),
         propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
         bounds=np.zeros((capacity, 3, levels + 1, rows, pairs)),
@@ -98,6 +107,8 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
 def grown(system: System, larger: System) -> System:
     """Return `larger` with the content of `system`."""
     for old, new in zip(system[2:], larger[2:], strict=True):
+        if isinstance(old, int):
+            continue
         if old.size and new.shape != old.shape:
             new[tuple(slice(length) for length in old.shape)] = old
         elif old.size:
@@ -110,17 +121,24 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
 
     `twin` is the index of a phase that differs only in constant forces, or -1; the common tables are copied.
     """
-    guard, arrow, dt = phase.guards[0], phase.arrow, system.dt
+    guard, arrow, dt = phase.guard, phase.arrow, system.dt
     system.plain_rows[p] = plain_rows
+    system.limits[p, LOW], system.limits[p, HIGH] = (guard.low, *guard.recall[LOW]), (guard.high, *guard.recall[HIGH])
+    for x, change in enumerate(phase.changes):
+        system.changes[p, x] = change.place, change.recall
+        system.change_kinds[p, x] = change.outer, change.memory
+    for turning in phase.turnings:
+        system.turnings[p, turning.memory] = turning.arm, turning.offset
     if basis is None or arrow is None:
-        system.phases[p] = phase.side, guard.low, guard.high, 0, 0, False, False
+        system.phases[p] = phase.side, phase.turns, 0, 0, False, False
         return
     levels = levels_of(basis.fastest, dt)
-    system.phases[p] = phase.side, guard.low, guard.high, levels, terms_of(basis.fastest, dt), True, basis.dense
+    system.phases[p] = phase.side, phase.turns, levels, terms_of(basis.fastest, dt), True, basis.dense
     system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
     system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
+    system.recall[p] = arrow.recall
     core, own = basis.basis.shape[0], slice(levels + 1)
     moving = plain_rows[:, :core]
     rows = moving @ basis.basis
@@ -128,6 +146,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     forcing = moving @ basis.steady.T
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
+    forcing[:, 3:] += plain_rows[:, core : core + forcing.shape[1] - 3] if basis.steady.shape[0] > 3 else 0.0
     system.basis[p, OUT], system.basis[p, INTO] = basis.basis.T, basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T
     system.rows[p, VALUES], system.rows[p, SLOPES] = rows, first

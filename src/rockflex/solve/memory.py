@@ -1,0 +1,93 @@
+"""What the memories of the elements do in a phase: its limits and its constants are computed when it is entered."""
+
+import math
+
+from rockflex._kernel import kernel
+from rockflex.solve.layout import (
+    ARM,
+    CONSTANT,
+    HIGH,
+    LOW,
+    MEMORY,
+    OFFSET,
+    OUTER,
+    PLACE,
+    RECALL,
+    Array,
+    Motion,
+    System,
+)
+
+CLOSE = 1e-13  # of the terms of a limit: this close to the rotation, it is the one at which the phase was entered
+ULP = 4e-16  # relative: how far such a limit is moved away, so that rounding does not end the phase at once
+
+
+@kernel
+def recollect(system: System, phase: int, motion: Motion) -> None:
+    """Set the limits and the constants of a phase that is entered in the present state."""
+    first, count = system.layout.memory, system.layout.remembered
+    for bound in range(2):
+        motion.limits[bound] = recalled(system, system.limits[phase, bound], motion.state)
+        motion.owners[bound] = -1
+    if system.phases[phase].side != 0.0:
+        nearest_changes(system, phase, motion)
+    for k in range(motion.still.size):
+        motion.still[k] = system.forced[phase, 2, k]
+        for m in range(count):
+            motion.still[k] += system.forced[phase, 3 + m, k] * motion.state[first + m]
+    for f in range(motion.offset.size):
+        motion.offset[f] = system.row_forcing[phase, f, 2]
+        for m in range(count):
+            motion.offset[f] += system.row_forcing[phase, f, 3 + m] * motion.state[first + m]
+    for j in range(motion.load.size):
+        motion.load[j] = load_in(system, phase, j, motion.state)
+
+
+@kernel
+def recalled(system: System, factors: Array, state: Array) -> float:
+    """Return a constant and what the memories add to it."""
+    value = factors[0]
+    for m in range(system.layout.remembered):
+        value += factors[1 + m] * state[system.layout.memory + m]
+    return value
+
+
+@kernel
+def load_in(system: System, phase: int, freedom: int, state: Array) -> float:
+    """Return the constant force on a degree of freedom of the base in a phase."""
+    force = system.push[phase, CONSTANT, freedom]
+    for m in range(system.layout.remembered):
+        force += system.recall[phase, freedom, m] * state[system.layout.memory + m]
+    return force
+
+
+@kernel
+def nearest_changes(system: System, phase: int, motion: Motion) -> None:
+    """Narrow the limits of the rotation to the nearest ones at which an element changes its branch."""
+    side, size = system.phases[phase].side, abs(motion.state[system.layout.rotation])
+    inner, outer = (LOW, HIGH) if side > 0.0 else (HIGH, LOW)
+    for x in range(system.change_kinds.shape[1]):
+        kind = system.change_kinds[phase, x, OUTER]
+        if kind < 0:
+            continue
+        memory = motion.state[system.layout.memory + system.change_kinds[phase, x, MEMORY]]
+        place, recall = system.changes[phase, x, PLACE], system.changes[phase, x, RECALL]
+        limit, rounding = place + recall * memory, CLOSE * (abs(place) + abs(recall * memory))
+        if kind == 0 and limit <= rounding:
+            continue  # the base lands first, or at the same instant
+        if abs(limit - size) <= rounding:
+            limit = size * (1.0 + ULP) if kind == 1 else size * (1.0 - ULP)
+        if kind == 1 and limit < side * motion.limits[outer]:
+            motion.limits[outer], motion.owners[outer] = side * limit, x
+        elif kind == 0 and limit > side * motion.limits[inner]:
+            motion.limits[inner], motion.owners[inner] = side * limit, x
+
+
+@kernel
+def remember(system: System, phase: int, motion: Motion) -> None:
+    """Set the memories of the elements whose yielding ends at the present rotation."""
+    size = abs(motion.state[system.layout.rotation])
+    for m in range(system.layout.remembered):
+        arm = system.turnings[phase, m, ARM]
+        if not math.isnan(arm):
+            motion.state[system.layout.memory + m] = arm * size - system.turnings[phase, m, OFFSET]
