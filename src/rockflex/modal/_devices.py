@@ -129,8 +129,8 @@ def element_set(given: Any) -> tuple[BaseElement, ...]:
     for item in items:
         if not isinstance(item, BaseElement):
             raise InputError(
-                f"elements must be Tendon, YieldingDissipator, ViscousDamper or FrictionDamper objects, but {shown(item)} "
-                "was given. Write Tendon(initial_force, stiffness), for example.",
+                "elements must be Tendon, YieldingDissipator, ViscousDamper or FrictionDamper objects, but "
+                f"{shown(item)} was given. Write Tendon(initial_force, stiffness), for example.",
                 field="elements",
             )
     return items

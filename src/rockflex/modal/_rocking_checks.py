@@ -63,7 +63,7 @@ def elements_within(
         if abs(element.position) > limit * (1.0 + SLACK):
             what = "half_width" if eccentricity == 0.0 else "half_width + |eccentricity|"
             raise InputError(
-                f"Elements must act within the base, {what} = {limit:g} m to each side of the axis of the masses, but a "
+                f"Elements must act within {what} = {limit:g} m to each side of the axis of the masses, but a "
                 f"{type(element).__name__} is at {element.position:g} m.",
                 field="elements",
             )
