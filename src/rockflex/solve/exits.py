@@ -92,7 +92,7 @@ def approach(polys: Array, side: float, limit: float) -> float:
 
 @kernel
 def turn_back(polys: Array, row: int, sign: float, zeros: int) -> float:
-    """Return the place where a velocity of a sign falls to zero; inf if it does not. Its `zeros` at 0 are divided out."""
+    """Return the place where a velocity of a sign falls to zero; inf if it does not. `zeros` at 0 are divided out."""
     work, terms = polys.shape[0] - 1, polys.shape[1]
     for k in range(terms):
         polys[work, k] = sign * polys[row, k + zeros] if k + zeros < terms else 0.0
