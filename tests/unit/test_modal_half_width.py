@@ -17,7 +17,7 @@ def lumped(half_width, tendons=()):
     made = rf.LumpedStructure(
         [3e3, 2e3], stiffness, [4.0, 9.0], base_mass=1e3, half_width=half_width, damping_ratio=0.02
     )
-    return dataclasses.replace(made.rocking(), tendons=tendons)
+    return dataclasses.replace(made.rocking(), elements=tendons)
 
 
 def beam(half_width):

@@ -201,7 +201,7 @@ def test_each_side_of_an_eccentric_base_is_a_concentric_base_of_its_arm(side, n_
     arm = p.half_width - side * 0.7
     # One tendon in the middle of a base as narrow, with the same stiffness about its edges.
     stiffness = sum(each.stiffness * (side * arm - each.position) ** 2 for each in tendons)
-    same = dataclasses.replace(frame().with_half_width(arm), tendons=rf.Tendon(0.0, stiffness / arm**2))
+    same = dataclasses.replace(frame().with_half_width(arm), elements=rf.Tendon(0.0, stiffness / arm**2))
     one, other = rf.uplifted_modes(p, n_modes, side=side), rf.uplifted_modes(same, n_modes)
     np.testing.assert_allclose(one.omega, other.omega, rtol=1e-12)
     np.testing.assert_allclose(one.damping_ratio, other.damping_ratio, rtol=1e-9)

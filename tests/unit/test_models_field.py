@@ -109,7 +109,7 @@ def test_energies_are_counted(n, complete, spring, side):
 def test_guards_are_equations_16_and_24(n, complete, spring):
     model, other = pair(n, complete=complete, spring=spring)
     phases = {side: model.phase(model.start(side)) for side in (0, 1, -1)}
-    (contact,), (right,), (left,) = (phases[side].guards for side in (0, 1, -1))
+    contact, right, left = (phases[side].guard for side in (0, 1, -1))
     assert (contact.low, contact.high) == pytest.approx((-other.resisting(1), other.resisting(-1)), rel=1e-12)
     assert (right.low, right.high) == (0.0, 0.5 * np.pi)
     assert (left.low, left.high) == (-0.5 * np.pi, 0.0)

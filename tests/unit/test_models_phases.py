@@ -86,7 +86,7 @@ def test_in_contact_nothing_of_the_base_is_free(name):
 def test_guards_are_the_resisting_moments_of_the_pivots(name, complete, bouc_wen):
     tied = Model(1, complete=complete).of(CASES[name], bouc_wen=bouc_wen)
     p = tied.properties
-    (contact,) = tied.phase(tied.start(0)).guards
+    contact = tied.phase(tied.start(0)).guard
     assert contact.low == pytest.approx(-p.pivot(1).resisting_moment, rel=1e-14)
     assert contact.high == pytest.approx(p.pivot(-1).resisting_moment, rel=1e-14)
     assert np.array_equal(contact.row, tied.overturning_moment())
@@ -94,7 +94,7 @@ def test_guards_are_the_resisting_moments_of_the_pivots(name, complete, bouc_wen
     assert (contact.above.event, contact.above.key) == (LIFTS, tied.start(-1))
     for side in (1, -1):
         phase = tied.phase(tied.start(side))
-        (rotation,) = phase.guards
+        rotation = phase.guard
         assert phase.side == phase.key[0] == side
         assert rotation.row.tolist() == np.eye(tied.layout.columns)[tied.layout.rotation].tolist()
         inner, outer = (rotation.below, rotation.above) if side > 0 else (rotation.above, rotation.below)

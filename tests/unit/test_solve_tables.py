@@ -15,6 +15,7 @@ from rockflex.solve import ClosedForm, Engine
 from rockflex.solve.exact import basis
 from rockflex.solve.exact.tables import levels_of, propagate, terms_of
 from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES, Log, motion_of, progress_at_start
+from rockflex.solve.memory import recollect
 from rockflex.solve.run import settled
 from twins.exact import Exact
 from twins.frame import frame_properties
@@ -191,6 +192,7 @@ def test_what_contact_can_still_bring_is_bounded(name):
         ):
             motion = motion_of(np.zeros(2 * half), 2 * half, rows.shape[0], 4, 1)
             motion.w[0] = size * state
+            recollect(system, CONTACT, motion)
             log = Log(most * size * wide, np.zeros(wide.size), np.zeros(4, np.int64), np.zeros(5), np.zeros((0, 0)))
             assert settled(system, progress_at_start(CONTACT, stated=True), log, motion) == expected
 

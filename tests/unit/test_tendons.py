@@ -51,7 +51,7 @@ def test_a_restrained_structure_is_the_structure_with_tendons():
     assert restrained.rocking(2).n_modes == 2
     assert restrained.rocking(2).floors is not None
     np.testing.assert_array_equal(restrained.modal(2).omega, frame.modal(2).omega)
-    assert dataclasses.replace(restrained.rocking(), tendons=()).resisting_moment == frame.rocking().resisting_moment
+    assert dataclasses.replace(restrained.rocking(), elements=()).resisting_moment == frame.rocking().resisting_moment
 
 
 @pytest.mark.parametrize(
