@@ -12,7 +12,7 @@ from rockflex.models._impact import (
     VVELSimplified,
     housner,
 )
-from rockflex.models._kept import accelerations, acting_side, rates_of, values_of
+from rockflex.models._kept import accelerations, acting_side, phases_at, rates_of, values_of
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
@@ -94,6 +94,7 @@ __all__ = [
     "observe",
     "observe_all",
     "parse_model",
+    "phases_at",
     "pivot_at",
     "posture_of",
     "printed_reactions",

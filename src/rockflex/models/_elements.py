@@ -4,13 +4,17 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import BaseElement, RockingProperties, ViscousDamper, YieldingDissipator
 from rockflex.models._phase import Border, Change, Key, Turning
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar
+BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
+BROKEN_FOR_GOOD = 1e30  # the memory of an element that has broken, m
 
 
 class Pull(NamedTuple):
@@ -61,6 +65,10 @@ class Element(Protocol):
         """Return δ - m where the elongation turns back on a branch that yields, which ends it; None on others."""
         ...
 
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        """Return the branch at elongations δ in m with the memories at the start of the branch, shape (n,)."""
+        ...
+
 
 @dataclass(frozen=True)
 class Spring:
@@ -89,6 +97,10 @@ class Spring:
     def turning(self, branch: int) -> float | None:
         del branch
 
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        del memory
+        return np.zeros(elongation.size, dtype=np.int64)
+
 
 @dataclass(frozen=True)
 class Dashpot:
@@ -115,6 +127,10 @@ class Dashpot:
 
     def turning(self, branch: int) -> float | None:
         del branch
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        del memory
+        return np.zeros(elongation.size, dtype=np.int64)
 
 
 @dataclass(frozen=True)
@@ -165,6 +181,18 @@ class Bar:
             return None
         sign = 1.0 if branch == UP else -1.0
         return sign * self.yield_force / self.stiffness - self.stretched
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        reach, e = self.yield_force / self.stiffness, elongation + self.stretched
+        found = np.full(e.size, ELASTIC, dtype=np.int64)
+        room = BORDER * (reach + np.abs(e) + np.abs(memory))
+        found[e - memory > reach + room] = UP
+        found[e - memory < -reach - room] = DOWN
+        if self.pulls_only:
+            empty = (1.0 - self.ratio) * memory
+            found[(e < empty - room) & (empty > memory - reach)] = SLACK
+        found[memory == BROKEN_FOR_GOOD] = BROKEN
+        return found
 
 
 def base_border(properties: RockingProperties, side: int, memories: int) -> Border:

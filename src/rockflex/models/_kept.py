@@ -4,11 +4,13 @@ import numpy as np
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import python_kernel
+from rockflex.models._elements import LEFT, RIGHT, arm_of, memories
 from rockflex.models._field import Field, field_rates
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import LINEAR, observe_all
+from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, rows_of
 
 
@@ -35,7 +37,7 @@ def accelerations(model: RockingModel, states: Array) -> Array:
         _rates_at(model.field(), side, states[:, GROUND].copy(), motion, rates)
         return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
     found = np.zeros((states.shape[0], n + 1))
-    for chosen, key, vector in _by_side(model, states, side):
+    for chosen, key, vector in by_phase(model, states, side):
         found[chosen] = vector @ model.accelerations(key).T
     return found
 
@@ -50,7 +52,7 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
     """Return the values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
     side = acting_side(states)
     values = np.zeros((states.shape[0], len(quantities)))
-    for chosen, key, vector in _by_side(model, states, side):
+    for chosen, key, vector in by_phase(model, states, side):
         values[chosen] = vector @ rows_of(model, quantities, key).T
     curved = np.flatnonzero(quantities.kinds != LINEAR)
     rocking = side != 0.0
@@ -64,12 +66,26 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
     return values
 
 
-def _by_side(model: RockingModel, states: Array, side: Array) -> list[tuple[Bools, tuple[int, ...], Array]]:
-    """Return for each side a mask of its states, its phase, and the vectors that its rows multiply."""
+def by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bools, Key, Array]]:
+    """Return for each phase a mask of its states, its key, and the vectors that its rows multiply."""
     moving = states[:, HEADER : HEADER + model.layout.moving]
     vector = np.column_stack((moving, states[:, GROUND], np.ones(side.size)))
-    chosen = [(side == each, model.start(each)) for each in model.sides]
-    return [(which, key, vector[which]) for which, key in chosen if which.any()]
+    rotation = model.layout.of(states, model.layout.rotation)
+    return [(chosen, key, vector[chosen]) for chosen, key in phases_at(model, side, rotation, states)]
+
+
+def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Bools, Key]]:
+    """Return for each phase a mask of its states, by sides and rotations, and by the memories of the states."""
+    branches = np.empty((side.size, 1 + len(model.elements)), dtype=np.int64)
+    branches[:, 0] = side
+    known = memories(model.elements)
+    for place, each in enumerate(model.elements):
+        arms = [arm_of(model.properties, each, which) for which in (RIGHT, LEFT)]
+        elongation = np.abs(rotation) * np.where(side < 0.0, arms[1], arms[0])
+        index = model.layout.memory + known[place] if place in known else 0
+        branches[:, 1 + place] = each.branch_at(elongation, model.layout.of(states, index))
+    found, which = np.unique(branches, axis=0, return_inverse=True)
+    return [(which.ravel() == k, tuple(int(branch) for branch in key)) for k, key in enumerate(found)]
 
 
 @python_kernel

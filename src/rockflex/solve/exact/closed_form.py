@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models import GROUND, HEADER, SIDE, TIME, LinearModel, RockingModel
-from rockflex.solve.exact.basis import Basis, basis_of
+from rockflex.models import GROUND, HEADER, SIDE, TIME, Key, LinearModel, RockingModel, phases_at
+from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.tables import propagate
 
 
@@ -23,14 +23,25 @@ class ClosedForm:
     def __init__(self, model: RockingModel) -> None:
         self._model = model
 
+    def _basis(self, key: Key) -> Basis | None:
+        """Return the uncoupled coordinates of a phase; None if it is not linear."""
+        if key not in self._known:
+            arrow = self._model.phase(key).arrow
+            if arrow is None:
+                self._known[key] = None
+            else:
+                basis = basis_of(self._model, arrow, self._model.accelerations(key))
+                self._known[key] = with_constant(basis, arrow)
+        return self._known[key]
+
+    @cached_property
+    def _known(self) -> dict[Key, Basis | None]:
+        return {}
+
     @cached_property
     def _bases(self) -> dict[int, Basis]:
-        phases = {side: self._model.phase(self._model.start(side)) for side in self._model.sides}
-        return {
-            side: basis_of(self._model, phase.arrow, self._model.accelerations(phase.key))
-            for side, phase in phases.items()
-            if phase.arrow is not None
-        }
+        found = {side: self._basis(self._model.start(side)) for side in self._model.sides}
+        return {side: basis for side, basis in found.items() if basis is not None}
 
     @cached_property
     def fastest(self) -> float:
@@ -52,14 +63,21 @@ class ClosedForm:
         start = np.column_stack((states[:-1, GROUND], slopes, np.ones(steps.size)))
         end = start.copy()
         end[:, 0] += fraction * steps * slopes
+        layout = self._model.layout
         moved = states[:-1, HEADER:].copy()
-        for side, basis in self._bases.items():
-            chosen = states[:-1, SIDE] == side
-            if chosen.any():
-                forced = basis.steady[:3] @ basis.inverse.T
-                w = moved[chosen] @ basis.inverse.T - start[chosen] @ forced
-                carried = propagate(basis, w, fraction * steps[chosen]) + end[chosen] @ forced
-                moved[chosen] = carried @ basis.basis.T
+        memories = moved[:, layout.memory : layout.memory + layout.remembered]
+        start, end = np.column_stack((start, memories)), np.column_stack((end, memories))
+        # The branch of an element over an interval is that in its middle, with the memory at its start.
+        rotation = layout.of(states, layout.rotation)
+        middle = 0.5 * (rotation[:-1] + rotation[1:])
+        for chosen, key in phases_at(self._model, states[:-1, SIDE], middle, states[:-1]):
+            basis = self._basis(key)
+            if basis is None:
+                continue
+            forced = basis.steady @ basis.inverse.T
+            w = moved[chosen][:, : layout.core] @ basis.inverse.T - start[chosen] @ forced
+            carried = propagate(basis, w, fraction * steps[chosen]) + end[chosen] @ forced
+            moved[np.flatnonzero(chosen)[:, None], np.arange(layout.core)] = carried @ basis.basis.T
         return moved
 
 
