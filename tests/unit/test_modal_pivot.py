@@ -163,11 +163,11 @@ def test_there_are_two_sides(side):
         ({"eccentricity": math.nan}, "eccentricity must be a finite number in m, but nan was given"),
         ({"eccentricity": "left"}, "eccentricity must be a finite number in m, but 'left' was given"),
         (
-            {"eccentricity": 0.3, "tendons": rf.Tendon(1.0, 1.0, 1.0)},
-            "Tendons must pass through the base, from -1.5 to 0.9 m, but one is at 1 m. Positions are measured "
-            "from the axis of the masses, as the edges of the base are.",
+            {"eccentricity": 0.3, "elements": rf.Tendon(1.0, 1.0, 1.6)},
+            "Elements must act within half_width + |eccentricity| = 1.5 m to each side of the axis of the masses, but "
+            "a Tendon is at 1.6 m.",
         ),
-        ({"eccentricity": -0.3, "tendons": rf.Tendon(1.0, 1.0, -1.0)}, "from -0.9 to 1.5 m, but one is at -1 m."),
+        ({"elements": rf.ViscousDamper(1.0, -1.3)}, "but a ViscousDamper is at -1.3 m."),
         (
             {"eccentricity": B * (1.0 - 1e-15), "i_theta": 150e3 * 121.0 + 30e3 * 9.0 + 240e3 * B**2},
             "eccentricity must leave rotational inertia about the nearer pivot, but with 1.2 m and half_width = 1.2 m "

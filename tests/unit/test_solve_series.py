@@ -14,6 +14,7 @@ from rockflex.response import asked_of
 from rockflex.solve import Engine
 from rockflex.solve.exact.series import advance, expand, row_series
 from rockflex.solve.layout import Span, motion_of
+from rockflex.solve.memory import recollect
 from rockflex.solve.polynomials import bend, evaluate, first_descent
 from twins.exact import Exact
 from twins.frame import frame_properties
@@ -65,6 +66,7 @@ def test_series_is_the_exponential(n, rocking, u):
     state, acceleration, slope, side = draw(n, rocking=rocking)
     step = 0.9 / twin.fastest  # as a unit of the grid: no mode turns by more than a radian
     motion = room(system, state)
+    recollect(system, places[side], motion)
     expand(system, places[side], motion, Span(0.0, step, acceleration, slope, step), np.nan)
     advance(system, motion, u, step)
     moved = motion.state

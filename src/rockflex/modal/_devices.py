@@ -124,8 +124,7 @@ def element_set(given: Any) -> tuple[BaseElement, ...]:
     InputError
         If something is not an element.
     """
-    single = isinstance(given, BaseElement) or not isinstance(given, Iterable)
-    items: tuple[Any, ...] = (given,) if single else tuple(given)
+    items: tuple[Any, ...] = tuple(given) if isinstance(given, Iterable) else (given,)
     for item in items:
         if not isinstance(item, BaseElement):
             raise InputError(

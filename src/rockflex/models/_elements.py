@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
-from rockflex.modal import BaseElement, RockingProperties, ViscousDamper, YieldingDissipator
+from rockflex._errors import InputError
+from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, ViscousDamper, YieldingDissipator
 from rockflex.models._phase import Border, Change, Key, Turning
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
@@ -281,6 +282,8 @@ def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
 def _element_of(given: BaseElement) -> Element:
     if isinstance(given, ViscousDamper):
         return Dashpot(given.coefficient, given.position)
+    if isinstance(given, FrictionDamper):
+        raise InputError("Friction dampers cannot be simulated yet.")
     rupture = np.inf if given.rupture_elongation is None else given.rupture_elongation
     if isinstance(given, YieldingDissipator):
         return Bar(

@@ -1,4 +1,4 @@
-"""A structure whose base is held down by tendons."""
+"""A structure with tendons, dissipators and dampers at its base."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -6,17 +6,17 @@ from typing import SupportsIndex
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import BaseElement, ModalProperties, RockingProperties, element_set
+from rockflex.modal import BaseElement, ModalProperties, RockingProperties, Tendon, element_set
 from rockflex.structure._based import Based, is_structure
 
 
 @dataclass(frozen=True, init=False)
 class Restrained:
-    """A structure whose base is held down by unbonded post-tensioned tendons.
+    """A structure with elements between its base and the ground: tendons, dissipators, viscous and friction dampers.
 
-    The tendons increase the resisting moment and add a restoring rotational stiffness (Silva & Stojadinović 2024,
-    Section 4.1); the modes on a fixed base do not change. For a structure given only by its `RockingProperties`, set
-    `tendons` there.
+    Unbonded post-tensioned tendons increase the resisting moment and add a restoring rotational stiffness (Silva &
+    Stojadinović 2024, Section 4.1); the other elements take energy out of the rocking. The modes on a fixed base do
+    not change. For a structure given only by its `RockingProperties`, set `elements` there.
 
     Attributes
     ----------
@@ -55,6 +55,11 @@ class Restrained:
             )
         vars(self).update(structure=structure, elements=element_set(elements))
         self.rocking(1)  # checks that they are within the base
+
+    @property
+    def tendons(self) -> tuple[Tendon, ...]:
+        """The tendons among the elements."""
+        return tuple(each for each in self.elements if isinstance(each, Tendon))
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
         """Return the first `n_modes` modes on a fixed base (default: all)."""

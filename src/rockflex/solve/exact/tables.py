@@ -107,7 +107,7 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
 def grown(system: System, larger: System) -> System:
     """Return `larger` with the content of `system`."""
     for old, new in zip(system[2:], larger[2:], strict=True):
-        if isinstance(old, int):
+        if isinstance(old, int) or isinstance(new, int):
             continue
         if old.size and new.shape != old.shape:
             new[tuple(slice(length) for length in old.shape)] = old
