@@ -29,7 +29,21 @@ from rockflex.models._observe import (
     observe_all,
     posture_of,
 )
-from rockflex.models._phase import CHANGES, FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._phase import (
+    CHANGES,
+    FREEDOMS,
+    LANDS,
+    LIFTS,
+    OVERTURNS,
+    RELEASES,
+    TURNS,
+    Arrow,
+    Border,
+    Exit,
+    Guard,
+    Key,
+    Phase,
+)
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
 from rockflex.models._reactions import Reactions, printed_reactions, reactions
 from rockflex.models._stored import floor_accelerations, stored_energies, stretch_per_arm, tendon_energy
@@ -49,10 +63,12 @@ __all__ = [
     "LIFTS",
     "LINEAR",
     "OVERTURNS",
+    "RELEASES",
     "RIGHT",
     "SIDE",
     "SWAY",
     "TIME",
+    "TURNS",
     "VERTICAL",
     "Arrow",
     "Border",

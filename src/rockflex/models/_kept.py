@@ -4,7 +4,7 @@ import numpy as np
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import python_kernel
-from rockflex.models._elements import LEFT, RIGHT, arm_of, memories
+from rockflex.models._elements import LEFT, RIGHT, memories
 from rockflex.models._field import Field, field_rates
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
@@ -80,10 +80,12 @@ def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) 
     branches[:, 0] = side
     known = memories(model.elements)
     for place, each in enumerate(model.elements):
-        arms = [arm_of(model.properties, each, which) for which in (RIGHT, LEFT)]
-        elongation = np.abs(rotation) * np.where(side < 0.0, arms[1], arms[0])
+        right, left = (model.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
+        elongation = np.where(side < 0.0, left, right)
         index = model.layout.memory + known[place] if place in known else 0
-        branches[:, 1 + place] = each.branch_at(elongation, model.layout.of(states, index))
+        found = each.branch_at(elongation, model.layout.of(states, index))
+        at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
+        branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
     found, which = np.unique(branches, axis=0, return_inverse=True)
     return [(which.ravel() == k, tuple(int(branch) for branch in key)) for k, key in enumerate(found)]
 

@@ -11,7 +11,9 @@ FREEDOMS = ("rotation",)  # of the base, in the order of the borders
 
 Key = tuple[int, ...]  # the branch of every element, the base first
 
-LIFTS, LANDS, OVERTURNS, CHANGES = 0, 1, 2, 3  # events that end a phase; CHANGES: an element takes another branch
+# Events that end a phase. RELEASES: a base that friction dampers held begins to rotate. CHANGES: an element takes
+# another branch. TURNS: the rotation turns back while an element yields or slides.
+LIFTS, LANDS, OVERTURNS, RELEASES, CHANGES, TURNS = range(6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +136,8 @@ class Guard:
         What happens at each limit; None if there is no limit.
     recall : ndarray, shape (2, M)
         What the memories add to the lower and to the upper limit.
+    turn
+        What the rotation adds to both limits, per rad; zero unless the base is held at a rotation.
     """
 
     row: Array
@@ -142,6 +146,7 @@ class Guard:
     below: Exit | None
     above: Exit | None
     recall: Array
+    turn: float = 0.0
 
 
 class Change(NamedTuple):
@@ -181,19 +186,28 @@ class Phase:
         The condition that ends the phase: on the rotation while the base rocks, on the overturning moment in contact.
     changes
         Rotations at which an element changes its branch.
+    free
+        Whether the base rotates: it neither rests on the ground nor is held by friction dampers.
     turns
-        Sign of the velocity |θ|' while an element yields, whose branch ends at zero velocity; 0 if none yields.
+        Sign of the velocity |θ|' while an element yields or slides, whose branch ends at zero velocity; 0 if none does.
     turnings
         The memories of the elements that yield, as their branches end.
-    landed
-        The branches of the elements after their elongation has stopped.
+    marks
+        The memories that have a value of their own in this phase, by index.
+    turned
+        The phase that follows at zero velocity.
+    beside
+        The phases after a landing: in contact, about the right pivot and about the left pivot.
     """
 
     key: Key
     side: int
     arrow: Arrow | None
     guard: Guard
-    changes: tuple[Change, ...] = ()
+    changes: tuple[Change, ...]
+    turned: Key
+    beside: tuple[Key, Key, Key]
+    free: bool = False
     turns: int = 0
     turnings: tuple[Turning, ...] = ()
-    landed: tuple[int, ...] = ()
+    marks: tuple[tuple[int, float], ...] = ()

@@ -15,6 +15,8 @@ class Solution:
         How the run ended: at a rotation of π/2, or at rest; neither means at the end of the given time.
     end_time
         Time of the last state, s.
+    residual_rotation
+        Rotation at the end, rad: that which remains if the run has settled. NaN if the structure overturned.
     peaks, peak_times
         Largest magnitude of each row and its time (s), shape (F,); row 0 is the rotation.
     lost_support, time_of_lost_support
@@ -30,6 +32,7 @@ class Solution:
     overturned: bool
     settled: bool
     end_time: float
+    residual_rotation: float
     peaks: Array
     peak_times: Array
     lost_support: float

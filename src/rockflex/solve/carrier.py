@@ -126,7 +126,7 @@ def move(
 def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
     """Move the motion to `stop` by its power series."""
     p = at.phase
-    if system.phases[p].side != 0.0:
+    if system.phases[p].free:
         raise_peak(motion.polys, GUARD, stop, span, log)
     advance(system, motion, stop, span.length)
     time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop

@@ -13,7 +13,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
-from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, NonlinearModel, Quantities, RockingModel, impact_of
+from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, Key, NonlinearModel, Quantities, RockingModel, impact_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
@@ -135,9 +135,10 @@ class Engine:
         start = np.zeros(layout.size)
         if state is not None:
             start[: layout.core] = state
-        outward = float(start[layout.rotation] or start[layout.spin])
-        side = (outward > 0.0) - (outward < 0.0)
-        at = progress_at_start(self._place(side), stated=True)
+        key, start[layout.memory : layout.memory + layout.remembered] = self.model.begin(
+            float(start[layout.rotation]), float(start[layout.spin])
+        )
+        at = progress_at_start(self._place(key), stated=True)
         course = self._course(acceleration, dt, free_vibration)
         room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
         log = Log(
@@ -176,11 +177,10 @@ class Engine:
                 log = log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
             check_interruption()
         self._complain(status, at, dt, motion.state)
-        return self._solution(status, at, dt, log, history=history)
+        return self._solution(status, at, dt, log, float(motion.state[layout.rotation]), history=history)
 
-    def _place(self, side: int) -> int:
+    def _place(self, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
-        key = self.model.start(side)
         if self._phases.knows(key):
             return self._phases.place(key)
         with preparing(self.model):
@@ -224,12 +224,13 @@ class Engine:
         slowest = float(p.omega.min(initial=math.inf))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
-    def _solution(self, status: int, at: Progress, dt: float, log: Log, *, history: bool) -> Solution:
+    def _solution(self, status: int, at: Progress, dt: float, log: Log, rotation: float, *, history: bool) -> Solution:
         overturned = status == Status.OVERTURNED
         return Solution(
             overturned=overturned,
             settled=status == Status.SETTLED,
             end_time=float(log.times[0]) if overturned else _samples(at) * dt,
+            residual_rotation=math.nan if overturned else rotation,
             peaks=log.peaks[: self._n_peaks],
             peak_times=log.times[: self._n_peaks],
             lost_support=float(log.peaks[-1]),

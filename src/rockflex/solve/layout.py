@@ -69,7 +69,9 @@ def _record(fields: list[tuple[str, Any]]) -> np.dtype[Any]:
 PHASE = _record(
     [
         ("side", np.float64),  # pivot about which the base rotates
-        ("turns", np.int64),  # sign of |θ|' while an element yields; 0 if none does
+        ("free", np.bool_),  # whether it rotates: it neither rests on the ground nor is held at a rotation
+        ("decays", np.bool_),  # whether free vibration comes to rest
+        ("turns", np.int64),  # sign of |θ|' while an element yields or slides; 0 if none does
         ("levels", np.int64),  # of the grid
         ("terms", np.int64),  # of the power series that converge over the finest step
         ("linear", np.bool_),  # solved in closed form
@@ -91,9 +93,10 @@ class System(NamedTuple):
     phases: Any  # (P,): records of `PHASE`
     turning_row: int  # index of the row of θ', which guards elements that yield; -1 if no element can
     links: NDArray[np.int64]  # (P, CHANGED + X): what follows each phase
-    limits: Array  # (P, 2, 1 + M): limits of the guard, and what each memory adds to them
+    limits: Array  # (P, 2, 2 + M): limits of the guard, and what the rotation and each memory add to them
     changes: Array  # (P, X, 2): limits of |θ| at which an element changes its branch: place, and factor of its memory
     change_kinds: NDArray[np.int64]  # (P, X, 2): 1 if reached from below, 0 from above, -1 for none; memory's index
+    marks: Array  # (P, M): memories with a value of their own in a phase; NaN for others
     turnings: Array  # (P, M, 2): memory = arm |θ| - offset, of an element whose yielding ends; NaN for others
     recall: Array  # (P, b, M): factors of the memories in the forces on the base
     border: Array  # (P, b, 2, N): c and m* c of `rockflex.models.Arrow`

@@ -26,10 +26,13 @@ ULP = 4e-16  # relative: how far such a limit is moved away, so that rounding do
 def recollect(system: System, phase: int, motion: Motion) -> None:
     """Set the limits and the constants of a phase that is entered in the present state."""
     first, count = system.layout.memory, system.layout.remembered
+    for m in range(count):
+        if not math.isnan(system.marks[phase, m]):
+            motion.state[first + m] = system.marks[phase, m]
     for bound in range(2):
         motion.limits[bound] = recalled(system, system.limits[phase, bound], motion.state)
         motion.owners[bound] = -1
-    if system.phases[phase].side != 0.0:
+    if system.phases[phase].free:
         nearest_changes(system, phase, motion)
     for k in range(motion.still.size):
         motion.still[k] = system.forced[phase, 2, k]
@@ -45,10 +48,12 @@ def recollect(system: System, phase: int, motion: Motion) -> None:
 
 @kernel
 def recalled(system: System, factors: Array, state: Array) -> float:
-    """Return a constant and what the memories add to it."""
+    """Return a limit with what the rotation and the memories add to it."""
     value = factors[0]
+    if factors[1] != 0.0:
+        value += factors[1] * state[system.layout.rotation]
     for m in range(system.layout.remembered):
-        value += factors[1 + m] * state[system.layout.memory + m]
+        value += factors[2 + m] * state[system.layout.memory + m]
     return value
 
 

@@ -85,9 +85,10 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
         phases=np.zeros(capacity, dtype=PHASE),
         turning_row=rows - 2 if memories else -1,
         links=links,
-        limits=np.zeros((capacity, 2, 1 + memories)),
+        limits=np.zeros((capacity, 2, 2 + memories)),
         changes=np.zeros((capacity, changes, 2)),
         change_kinds=np.full((capacity, changes, 2), -1, dtype=np.int64),
+        marks=np.full((capacity, memories), np.nan),
         turnings=np.full((capacity, memories, 2), np.nan),
         recall=np.zeros((capacity, b, memories)),
         border=np.zeros((capacity, b, 2, n)),
@@ -123,17 +124,22 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     """
     guard, arrow, dt = phase.guard, phase.arrow, system.dt
     system.plain_rows[p] = plain_rows
-    system.limits[p, LOW], system.limits[p, HIGH] = (guard.low, *guard.recall[LOW]), (guard.high, *guard.recall[HIGH])
+    for bound, limit in ((LOW, guard.low), (HIGH, guard.high)):
+        system.limits[p, bound] = limit, guard.turn, *guard.recall[bound]
     for x, change in enumerate(phase.changes):
         system.changes[p, x] = change.place, change.recall
         system.change_kinds[p, x] = change.outer, change.memory
+    for memory, mark in phase.marks:
+        system.marks[p, memory] = mark
     for turning in phase.turnings:
         system.turnings[p, turning.memory] = turning.arm, turning.offset
     if basis is None or arrow is None:
-        system.phases[p] = phase.side, phase.turns, 0, 0, False, False
+        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, 0, False, False
         return
     levels = levels_of(basis.fastest, dt)
-    system.phases[p] = phase.side, phase.turns, levels, terms_of(basis.fastest, dt), True, basis.dense
+    terms = terms_of(basis.fastest, dt)
+    decays = not phase.free or (not basis.dense and bool((basis.roots.real < 0.0).all()))
+    system.phases[p] = phase.side, phase.free, decays, phase.turns, levels, terms, True, basis.dense
     system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
