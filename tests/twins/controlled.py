@@ -1,4 +1,4 @@
-"""Controlled rocking by adaptive integration with events (SciPy): dampers, fuses and tendons that yield.
+"""Controlled rocking by adaptive integration with events (SciPy): dampers, fuses, tendons that yield, friction.
 
 Equations 15 and 23-25 of Silva & Stojadinović 2024 about each pivot, with the moment -s F r of every element at the
 distance r from the pivot, stretched by r |θ|. State ``[θ, θ', D, D']``; every sample is integrated anew. Elements
@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from twins.result import Ledger, TwinResult, Vector
 
 GRAVITY = 9.81
-ELASTIC, UP, DOWN, SLACK = "elastic", "up", "down", "slack"
+ELASTIC, UP, DOWN, SLACK, BROKEN = "elastic", "up", "down", "slack", "broken"
 NEAR = 1e-10  # of a sample
 TERMS = 14
 
@@ -30,6 +30,18 @@ class Dashpot:
 
 
 @dataclass
+class Slider:
+    """F = ± F_0 in the `direction` of δ'; 0 while it sticks."""
+
+    force: float
+    position: float = 0.0
+    direction: float = 0.0
+
+    def tangent(self) -> tuple[float, float, float]:
+        return 0.0, 0.0, self.direction * self.force
+
+
+@dataclass
 class Bar:
     """F = α k e + (1 - α) z with z' = k e' while |z| < F_y, e = δ + `stretched`; without compression if `no_push`."""
 
@@ -39,13 +51,14 @@ class Bar:
     position: float = 0.0
     stretched: float = 0.0
     no_push: bool = False
+    rupture: float = np.inf
     plastic: float = 0.0
     branch: str = ELASTIC
 
     def tangent(self) -> tuple[float, float, float]:
         """Stiffness, damping, and the force at δ = δ' = 0 on the branch."""
         k, a = self.stiffness, self.post_yield_ratio
-        if self.branch == SLACK:
+        if self.branch in (SLACK, BROKEN):
             return 0.0, 0.0, 0.0
         if self.branch == ELASTIC:
             return k, 0.0, k * self.stretched - (1.0 - a) * k * self.plastic
@@ -57,12 +70,15 @@ class Bar:
         k, a = self.stiffness, self.post_yield_ratio
         reach = self.yield_force / k
         empty = (1.0 - a) * self.plastic - self.stretched
+        if self.branch == BROKEN:
+            return -np.inf, "", np.inf, ""
         if self.branch == SLACK:
             return -np.inf, "", empty, ELASTIC
         low, below = self.plastic - reach - self.stretched, DOWN
         if self.no_push and empty > low:
             low, below = empty, SLACK
-        return low, below, self.plastic + reach - self.stretched, UP
+        high = self.plastic + reach - self.stretched
+        return (low, below, high, UP) if high < self.rupture else (low, below, self.rupture, BROKEN)
 
     def settle(self, delta: float) -> None:
         """Leave a yielding branch for the elastic one at the stretch δ."""
@@ -73,6 +89,8 @@ class Bar:
 
     def rest(self) -> None:
         """The branch while the base is closed."""
+        if self.branch == BROKEN:
+            return
         self.settle(0.0)
         self.branch = ELASTIC
         if self.no_push and self.tangent()[2] < 0.0:
@@ -146,6 +164,10 @@ class ControlledTwin:
         weight = self.m_tot * GRAVITY
         right, left = weight * self.arms[0], weight * self.arms[1]
         for each in self.elements:
+            if isinstance(each, Slider):
+                right += each.force * abs(self.arm(each, 1))
+                left += each.force * abs(self.arm(each, -1))
+                continue
             force = each.tangent()[2]
             right += force * self.arm(each, 1)
             left += force * self.arm(each, -1)
@@ -161,7 +183,7 @@ class ControlledTwin:
         segments = [(k * dt, record[k], record[k + 1]) for k in range(record.size - 1)]
         end = dt * (record.size - 1)
         segments += [(end + k * dt, 0.0, 0.0) for k in range(int(np.ceil(free / dt - 1e-9)))]
-        self.y, self.side, self.ledger = np.zeros(2 + 2 * self.n), 0, Ledger()
+        self.y, self.side, self.held, self.ledger = np.zeros(2 + 2 * self.n), 0, False, Ledger()
         for each in self.elements:
             if isinstance(each, Bar):
                 each.rest()
@@ -182,6 +204,8 @@ class ControlledTwin:
                 if side:
                     tau = self._lift(start, tau, dt, a, slope, side, jumped=True)
                     continue
+            if self.held:
+                self.held = not self._released(a)
             tau, what = self._integrate(start, tau, dt, first, slope)
             a = first + slope * tau
             if what == "lift":
@@ -197,6 +221,7 @@ class ControlledTwin:
                 self.y[2 + self.n :] += self.height * self.y[1]
                 self.y[:2] = 0.0
                 self.side = 0
+                self._slide(0)
                 for each in self.elements:
                     if isinstance(each, Bar):
                         each.rest()
@@ -204,10 +229,33 @@ class ControlledTwin:
                 return start + tau, True
         return start + dt, False
 
+    def _slide(self, turn: int) -> None:
+        """Set the directions of the friction dampers, for the sign of θ'."""
+        for each in self.elements:
+            if isinstance(each, Slider):
+                each.direction = float(np.sign(self.side * turn * self.arm(each, self.side))) if turn else 0.0
+
+    def _held_moments(self) -> tuple[Vector, float, float]:
+        """The moment that turns a held base, as a row over the state and by a and 1, and the largest that holds it."""
+        A, by_a, rest = self.field_of(self.side)
+        sliders = [each for each in self.elements if isinstance(each, Slider)]
+        hold = sum(each.force * abs(self.arm(each, self.side)) for each in sliders)
+        inertia = self.i_theta[0 if self.side > 0 else 1] - self.mass @ self.height**2
+        return inertia * np.concatenate((A[1], [by_a[1], rest[1]])), hold, inertia
+
+    def _released(self, a: float) -> bool:
+        row, hold, _ = self._held_moments()
+        moment = row @ np.concatenate((self.y, [a, 1.0]))
+        if abs(moment) < hold * (1.0 - 1e-13):
+            return False
+        self._slide(1 if moment > 0.0 else -1)
+        return True
+
     def _lift(self, start, tau, dt, a, slope, side, *, jumped: bool) -> float:
         """Leave the ground by a short step of the Taylor series, in which the rotation grows."""
         self.ledger.uplifts.append(start + tau)
         self.side = side
+        self._slide(side)
         A, by_a, rest = self.field_of(side)
         terms = [self.y, A @ self.y + by_a * a + rest]
         if not jumped:
@@ -247,29 +295,43 @@ class ControlledTwin:
             add("lift", lambda t, y: self.guard @ y + self.guard_a * (first + slope * t) - low, -1.0)
             add("lift", lambda t, y: self.guard @ y + self.guard_a * (first + slope * t) - high, 1.0)
             return found
+        if self.held:
+            row, hold, _ = self._held_moments()
+            n = row.size - 2
+            for sign in (1.0, -1.0):
+                add(
+                    "release",
+                    lambda t, y, g=sign: g * (row[:n] @ y + row[n] * (first + slope * t) + row[n + 1]) - hold,
+                    1.0,
+                )
+            return found
         add("land", lambda t, y: s * y[0], -1.0)
         add("overturn", lambda t, y: s * y[0] - 0.5 * np.pi, 1.0)
         for each in self.elements:
-            if not isinstance(each, Bar):
-                continue
             r = self.arm(each, s)
-            if r == 0.0:
+            if r == 0.0 or isinstance(each, Dashpot):
+                continue
+            if isinstance(each, Slider):
+                add((each, ELASTIC), lambda t, y, r=r: r * s * y[1], -each.direction)
                 continue
             if each.branch in (UP, DOWN):
                 up = each.branch == UP
                 add((each, ELASTIC), lambda t, y, r=r: r * s * y[1], -1.0 if up else 1.0)
+                if up and np.isfinite(each.rupture):
+                    add((each, BROKEN), lambda t, y, r=r, at=each.rupture: r * s * y[0] - at, 1.0)
                 continue
             low, below, high, above = each.limits()
             if np.isfinite(low):
                 add((each, below), lambda t, y, r=r, low=low: r * s * y[0] - low, -1.0)
-            add((each, above), lambda t, y, r=r, high=high: r * s * y[0] - high, 1.0)
+            if np.isfinite(high):
+                add((each, above), lambda t, y, r=r, high=high: r * s * y[0] - high, 1.0)
         return found
 
     def _overdue(self) -> bool:
         """Change at once what is past its limit and still moves outward."""
         s = self.side
         for each in self.elements:
-            if not isinstance(each, Bar) or s == 0 or each.branch in (UP, DOWN):
+            if not isinstance(each, Bar) or s == 0 or self.held or each.branch in (UP, DOWN):
                 continue
             r = self.arm(each, s)
             delta, rate = r * s * self.y[0], r * s * self.y[1]
@@ -285,7 +347,7 @@ class ControlledTwin:
     def _integrate(self, start, tau, dt, first, slope):
         while self._overdue():
             pass
-        A, by_a, rest = self.field_of(self.side)
+        A, by_a, rest = self.field_of(0 if self.held else self.side)
         events = self._events(first, slope)
         sol = solve_ivp(
             lambda t, y: A @ y + by_a * (first + slope * t) + rest,
@@ -323,11 +385,13 @@ class ControlledTwin:
                 self.y[0] = 0.0
             return now, what
         each, branch = what
-        if branch == ELASTIC and each.branch in (UP, DOWN):
+        if isinstance(each, Slider) or (branch == ELASTIC and each.branch in (UP, DOWN)):
             for other in self.elements:  # all of them turn together
                 if isinstance(other, Bar):
                     other.settle(self.arm(other, self.side) * abs(self.y[0]))
             self.y[1] = 0.0
+            self._slide(0)
+            self.held = any(isinstance(other, Slider) and self.arm(other, self.side) != 0.0 for other in self.elements)
         else:
             each.branch = branch
         return now, "branch"
