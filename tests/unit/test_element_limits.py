@@ -38,9 +38,8 @@ def test_an_element_of_zero_changes_no_bit(nothing, model):
 
 def test_a_fuse_that_never_yields_is_a_tendon_without_prestress():
     elastic = peaks([rf.Tendon(0.0, K, x) for x in SIDES])
-    np.testing.assert_allclose(
-        peaks([rf.YieldingDissipator(K, 1e3 * WEIGHT, 0.0, x) for x in SIDES]), elastic, rtol=1e-11
-    )
+    fuses = [rf.YieldingDissipator(K, 1e3 * WEIGHT, 0.0, x) for x in SIDES]
+    np.testing.assert_allclose(peaks(fuses), elastic, rtol=1e-11)
     unyielding = [rf.Tendon(0.0, K, x, yield_force=1e3 * WEIGHT, post_yield_ratio=0.0) for x in SIDES]
     np.testing.assert_allclose(peaks(unyielding), elastic, rtol=1e-11)
 
@@ -49,13 +48,13 @@ def test_a_friction_damper_is_a_fuse_of_infinite_stiffness():
     """The difference falls like 1/k: the stretch at yield is F_y/k."""
     exact = peaks([rf.FrictionDamper(FORCE, x) for x in SIDES])[:3]
     errors = []
-    for stiffer in (1e4, 1e5, 1e6):
+    for stiffer in (1e4, 1e6):
         fuses = [rf.YieldingDissipator(stiffer * K, FORCE, 0.0, x) for x in SIDES]
         errors.append(np.abs(peaks(fuses)[:3] / exact - 1.0))
     assert errors[0].max() < 1e-3
-    orders = np.log10(np.array(errors[:-1]) / np.array(errors[1:]))
-    assert orders[:, 0] == pytest.approx(1.0, abs=0.15)
-    assert errors[-1].max() < 1e-5
+    assert errors[1].max() < 1e-5
+    order = np.log10(errors[0] / errors[1]) / 2.0
+    assert order[0] == pytest.approx(1.0, abs=0.25)
 
 
 def test_elements_that_yield_leave_the_base_open_where_they_outdo_the_weight():
@@ -108,7 +107,7 @@ def test_the_damped_rigid_block_in_closed_form():
     # θ = balance + a exp(one t) + b exp(two t), from θ_0 at rest
     a = (theta_0 - balance) * two / (two - one)
     e = theta_0 - balance - a
-    model = rf.parse_model("rigid").of(held) if hasattr(rf, "parse_model") else rf.Model(0).of(held)
+    model = rf.Model(0).of(held)
     engine = Engine(model, asked_of(model))
     dt = 0.01
     run = engine.run(np.zeros(30), dt, state=np.array([theta_0, 0.0]), history=True)
