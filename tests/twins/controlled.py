@@ -1,8 +1,9 @@
 """Controlled rocking by adaptive integration with events (SciPy): dampers, fuses, tendons that yield, friction.
 
 Equations 15 and 23-25 of Silva & Stojadinović 2024 about each pivot, with the moment -s F r of every element at the
-distance r from the pivot, stretched by r |θ|. State ``[θ, θ', D, D']``; every sample is integrated anew. Elements
-change their branch at events, so the field is linear in between.
+distance r from the pivot, stretched by r |θ|. State ``[θ, θ', D, D']``. Elements change their branch at events, so the
+field is linear in between. Every sample is integrated anew; with ``whole`` the solver gets the record at once, as a
+user would call it.
 """
 
 from dataclasses import dataclass, field
@@ -112,6 +113,8 @@ class ControlledTwin:
     m_tot: float
     elements: list
     rtol: float = 1e-11
+    method: str = "DOP853"
+    whole: bool = False
     energy: Vector = field(init=False)
 
     def __post_init__(self) -> None:
@@ -179,41 +182,51 @@ class ControlledTwin:
         return 1 if moment < low else -1 if moment > high else 0
 
     def run(self, record: Vector, dt: float, free: float = 0.0) -> TwinResult:
-        record = np.concatenate((np.asarray(record, float), np.zeros(0)))
-        segments = [(k * dt, record[k], record[k + 1]) for k in range(record.size - 1)]
+        record = np.asarray(record, float)
         end = dt * (record.size - 1)
-        segments += [(end + k * dt, 0.0, 0.0) for k in range(int(np.ceil(free / dt - 1e-9)))]
+        segments = [(k * dt, dt, record[k : k + 2]) for k in range(record.size - 1)]
+        if self.whole:
+            segments = [(0.0, end, record)]
+        segments += [(end + k * dt, dt, np.zeros(2)) for k in range(int(np.ceil(free / dt - 1e-9)))]
+        self.dt = dt
         self.y, self.side, self.held, self.ledger = np.zeros(2 + 2 * self.n), 0, False, Ledger()
         for each in self.elements:
             if isinstance(each, Bar):
                 each.rest()
         time, overturned = 0.0, False
-        for start, first, last in segments:
-            time, overturned = self._sample(start, first, last, dt)
+        for start, length, self.record in segments:
+            time, overturned = self._stretch(start, length)
             if overturned:
                 break
         return self.ledger.close(time=time, side=self.side, state=self.y, overturned=overturned, history=None)
 
-    def _sample(self, start: float, first: float, last: float, dt: float) -> tuple[float, bool]:
-        slope = (last - first) / dt
+    def ground(self, tau: float) -> float:
+        k = min(int(tau / self.dt), self.record.size - 2)
+        return self.record[k] + (self.record[k + 1] - self.record[k]) * (tau / self.dt - k)
+
+    def slope(self, tau: float) -> float:
+        k = min(int(tau / self.dt), self.record.size - 2)
+        return (self.record[k + 1] - self.record[k]) / self.dt
+
+    def _stretch(self, start: float, length: float) -> tuple[float, bool]:
         tau = 0.0
-        while dt - tau > NEAR * dt:
-            a = first + slope * tau
+        while length - tau > NEAR * self.dt:
+            a = self.ground(tau)
             if self.side == 0:
                 side = self.side_wanted(self.y, a)
                 if side:
-                    tau = self._lift(start, tau, dt, a, slope, side, jumped=True)
+                    tau = self._lift(start, tau, length, side, jumped=True)
                     continue
             if self.held:
                 self.held = not self._released(a)
-            tau, what = self._integrate(start, tau, dt, first, slope)
-            a = first + slope * tau
+            tau, what = self._integrate(start, tau, length)
+            a = self.ground(tau)
             if what == "lift":
-                if dt - tau > NEAR * dt:
+                if length - tau > NEAR * self.dt:
                     moment = self.guard @ self.y + self.guard_a * a
                     low, high = self.thresholds()
                     side = 1 if abs(moment - low) < abs(moment - high) else -1
-                    tau = self._lift(start, tau, dt, a, slope, side, jumped=False)
+                    tau = self._lift(start, tau, length, side, jumped=False)
             elif what == "land":
                 self.ledger.impacts.append(start + tau)
                 self.ledger.states.append(self.y)
@@ -227,7 +240,7 @@ class ControlledTwin:
                         each.rest()
             elif what == "overturn":
                 return start + tau, True
-        return start + dt, False
+        return start + length, False
 
     def _slide(self, turn: int) -> None:
         """Set the directions of the friction dampers, for the sign of θ'."""
@@ -251,9 +264,10 @@ class ControlledTwin:
         self._slide(1 if moment > 0.0 else -1)
         return True
 
-    def _lift(self, start, tau, dt, a, slope, side, *, jumped: bool) -> float:
+    def _lift(self, start, tau, length, side, *, jumped: bool) -> float:
         """Leave the ground by a short step of the Taylor series, in which the rotation grows."""
         self.ledger.uplifts.append(start + tau)
+        a, slope = self.ground(tau), self.slope(tau)
         self.side = side
         self._slide(side)
         A, by_a, rest = self.field_of(side)
@@ -264,7 +278,8 @@ class ControlledTwin:
         for k in range(3, TERMS + 1):
             terms.append(A @ terms[-1] / k)
         rate = np.array([side * k * terms[k][0] for k in range(2, TERMS + 1)])
-        step = min(0.02 / np.sqrt(abs(np.linalg.eigvals(A @ A)).max()), 0.5 * (dt - tau))
+        kink = min(length, (int(tau / self.dt) + 1) * self.dt) - tau
+        step = min(0.02 / np.sqrt(abs(np.linalg.eigvals(A @ A)).max()), 0.5 * kink or NEAR * self.dt)
         grid = np.linspace(0.0, 1.0, 33)[1:]
         while np.polynomial.polynomial.polyval(step * grid, rate).min() <= 0.0:
             step *= 0.5
@@ -283,7 +298,7 @@ class ControlledTwin:
         self._offer(start, np.array([tau + step]), self.y[:, None])
         return tau + step
 
-    def _events(self, first: float, slope: float):
+    def _events(self):
         s, found = self.side, []
 
         def add(what, function, direction) -> None:
@@ -292,8 +307,8 @@ class ControlledTwin:
 
         if s == 0:
             low, high = self.thresholds()
-            add("lift", lambda t, y: self.guard @ y + self.guard_a * (first + slope * t) - low, -1.0)
-            add("lift", lambda t, y: self.guard @ y + self.guard_a * (first + slope * t) - high, 1.0)
+            add("lift", lambda t, y: self.guard @ y + self.guard_a * self.ground(t) - low, -1.0)
+            add("lift", lambda t, y: self.guard @ y + self.guard_a * self.ground(t) - high, 1.0)
             return found
         if self.held:
             row, hold, _ = self._held_moments()
@@ -301,7 +316,7 @@ class ControlledTwin:
             for sign in (1.0, -1.0):
                 add(
                     "release",
-                    lambda t, y, g=sign: g * (row[:n] @ y + row[n] * (first + slope * t) + row[n + 1]) - hold,
+                    lambda t, y, g=sign: g * (row[:n] @ y + row[n] * self.ground(t) + row[n + 1]) - hold,
                     1.0,
                 )
             return found
@@ -344,16 +359,17 @@ class ControlledTwin:
                 return True
         return False
 
-    def _integrate(self, start, tau, dt, first, slope):
+    def _integrate(self, start, tau, length):
         while self._overdue():
             pass
         A, by_a, rest = self.field_of(0 if self.held else self.side)
-        events = self._events(first, slope)
+        events = self._events()
         sol = solve_ivp(
-            lambda t, y: A @ y + by_a * (first + slope * t) + rest,
-            (tau, dt),
+            lambda t, y: A @ y + by_a * self.ground(t) + rest,
+            (tau, length),
             self.y,
-            method="DOP853",
+            method=self.method,
+            max_step=self.dt,
             rtol=self.rtol,
             atol=1e-3 * self.rtol * self._scale(),
             events=[each for _, each in events],
@@ -361,7 +377,8 @@ class ControlledTwin:
         )
         if not sol.success:
             raise RuntimeError(sol.message)
-        rates = self.outputs @ (A @ sol.y + by_a[:, None] * (first + slope * sol.t) + rest[:, None])
+        a = np.array([self.ground(t) for t in sol.t])
+        rates = self.outputs @ (A @ sol.y + by_a[:, None] * a + rest[:, None])
         self._offer(start, sol.t, sol.y)
         for q in range(4):
             for k in np.flatnonzero(rates[q, :-1] * rates[q, 1:] < 0.0):
@@ -370,12 +387,12 @@ class ControlledTwin:
                 for _ in range(60):
                     middle = 0.5 * (low + high)
                     y = sol.sol(middle)
-                    rate = self.outputs[q] @ (A @ y + by_a * (first + slope * middle) + rest)
+                    rate = self.outputs[q] @ (A @ y + by_a * self.ground(middle) + rest)
                     low, high = (middle, high) if rate * sign > 0.0 else (low, middle)
                 self.ledger.offer(q, float(self.outputs[q] @ sol.sol(low)), start + low)
         self.y = sol.y[:, -1].copy()
         if sol.status != 1:
-            return dt, "end"
+            return length, "end"
         which = next(i for i, times in enumerate(sol.t_events) if times.size)
         what = events[which][0]
         self.y = sol.y_events[which][0].copy()

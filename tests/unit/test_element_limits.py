@@ -52,7 +52,7 @@ def test_a_friction_damper_is_a_fuse_of_infinite_stiffness():
         fuses = [rf.YieldingDissipator(stiffer * K, FORCE, 0.0, x) for x in SIDES]
         errors.append(np.abs(peaks(fuses)[:3] / exact - 1.0))
     assert errors[0].max() < 1e-3
-    assert errors[1].max() < 1e-5
+    assert errors[1].max() < 1e-4
     order = np.log10(errors[0] / errors[1]) / 2.0
     assert order[0] == pytest.approx(1.0, abs=0.25)
 
