@@ -113,10 +113,17 @@ class StructureEntry(Table):
         if self.eccentricity:
             e = self.eccentricity
             built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
-        return self._hold(built)
+        return self.hold(built)
 
-    def _hold(self, built: Built) -> Built:
-        """Return the structure with its tendons and elements, which messages number."""
+    def hold(self, built: Built) -> Built:
+        """Return a structure with the tendons and elements of this one.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range, or an element is outside the base. The message begins with its heading and
+            number.
+        """
         tables = {
             **{("tendons", place): table for place, table in enumerate(self.tendons, start=1)},
             **{("elements", place): table for place, table in enumerate(self.elements or [], start=1)},

@@ -81,8 +81,7 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
     for problem in error.errors():
         spot = spot_of(problem["loc"], content, model)
         key = str(spot.path[-1]) if spot.path and not spot.of_table else ""
-        header = _header(spot.path[:-1] if key else spot.path)
-        label = " ".join(filter(None, (header, key))) if key else header.removesuffix(",")
+        label = label_of(spot.path) if key else _header(spot.path).removesuffix(",")
         known = spot.table.model_fields
         if problem["type"] == "extra_forbidden":
             near = get_close_matches(key, known, n=1)
@@ -163,6 +162,13 @@ def _tags(field: FieldInfo) -> dict[str, type[Table]]:
     if len(tables) < 2:
         return {}
     return {word: table for table in tables for word in get_args(table.model_fields["kind"].annotation)}
+
+
+def label_of(path: Sequence[str | int]) -> str:
+    """Return the words for a key of a file: the heading of its table, and its name; places in its list do not count."""
+    while isinstance(path[-1], int):
+        path = path[:-1]
+    return " ".join(filter(None, (_header(path[:-1]), path[-1])))
 
 
 def _header(path: Sequence[str | int]) -> str:
