@@ -138,6 +138,7 @@ from .study.design import smallest_width as smallest_width
 from .study.incremental import IncrementalStudy as IncrementalStudy
 from .study.incremental import incremental_capacities as incremental_capacities
 from .study.incremental import run_incremental as run_incremental
+from .study.monte_carlo import MonteCarloStudy as MonteCarloStudy
 from .study.plan import Records as Records
 from .study.stripes import StripeStudy as StripeStudy
 from .study.stripes import stripe_counts as stripe_counts

@@ -87,6 +87,7 @@ VALUES = {
     rf.FloorModes: lambda: frame().rocking().floors,
     rf.FloorPeaks: lambda: response().floors,
     rf.Frame: frame,
+    rf.FrictionDamper: lambda: rf.FrictionDamper(1e5, 0.2),
     rf.GroundMotion: motion,
     rf.HazardCurve: lambda: rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]),
     rf.History: lambda: response().history,
@@ -121,7 +122,9 @@ VALUES = {
     rf.UpliftedModes: lambda: rf.uplifted_modes(frame().rocking()),
     rf.VVELComplete: rf.VVELComplete,
     rf.VVELSimplified: rf.VVELSimplified,
+    rf.ViscousDamper: lambda: rf.ViscousDamper(1e5, -0.2),
     rf.WallFrame: lambda: rf.WallFrame(30.0, 3e5, 2.0, 1.0, 1e4, 8.0, 0.02),
+    rf.YieldingDissipator: lambda: rf.YieldingDissipator(1e7, 1e5, 0.02, rupture_elongation=0.1),
     # not in `rockflex` itself, but in what it returns
     ForgottenLaw: lambda: ForgottenLaw("Mine()", "this", "that"),
     LinearModel: lambda: LinearModel("MDOF-S", frame().rocking()),

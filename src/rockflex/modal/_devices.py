@@ -135,6 +135,17 @@ def element_set(given: Any) -> tuple[BaseElement, ...]:
     return items
 
 
+def locked_force(element: BaseElement) -> float:
+    """Return the largest force in N with which an element can keep a base from closing.
+
+    A fuse that has yielded returns to δ = 0 with z = - F_y, so its force there is -(1 - α) F_y. One that cannot push, a
+    tendon or a viscous damper locks nothing in.
+    """
+    if isinstance(element, YieldingDissipator) and not element.tension_only:
+        return (1.0 - element.post_yield_ratio) * element.yield_force
+    return element.force if isinstance(element, FrictionDamper) else 0.0
+
+
 def mirrored(elements: Sequence[BaseElement]) -> bool:
     """Return whether every off-centre element has a mirror image: the same at the same distance on the other side."""
     left = sorted(_values(each, -each.position) for each in elements if each.position < 0.0)
