@@ -52,10 +52,14 @@ class Bar:
         sign = 1.0 if self.branch == UP else -1.0
         return a * k, 0.0, a * k * self.stretched + sign * (1.0 - a) * self.yield_force
 
+    @property
+    def reach(self) -> float:
+        """Stretch from zero force to the first yield."""
+        return self.yield_force / self.stiffness
+
     def limits(self) -> tuple[float, str, float, str]:
         """Stretches δ that end an elastic or a slack branch, and what follows."""
-        k, a = self.stiffness, self.post_yield_ratio
-        reach = self.yield_force / k
+        a, reach = self.post_yield_ratio, self.reach
         empty = (1.0 - a) * self.plastic - self.stretched
         if self.branch == SLACK:
             return -np.inf, "", empty, ELASTIC

@@ -13,7 +13,9 @@ from rockflex.models._elements import (
     CLOSED,
     LEFT,
     RIGHT,
+    Dashpot,
     Element,
+    arm_of,
     border_of,
     changes_of,
     elements_of,
@@ -25,6 +27,7 @@ from rockflex.models._elements import (
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
 from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._pulls import pulls_of
 
 QUARTER_TURN = 0.5 * np.pi
 
@@ -59,7 +62,12 @@ class ModalModel(Value):
     @cached_property
     def layout(self) -> StateLayout:
         """Layout of the state vector."""
-        return layout_of(self.properties.n_modes, integrated=self.integrated, remembered=len(memories(self.elements)))
+        return layout_of(
+            self.properties.n_modes,
+            integrated=self.integrated,
+            viscous=any(isinstance(each, Dashpot) for each in self.elements),
+            remembered=len(memories(self.elements)),
+        )
 
     @cached_property
     def elements(self) -> tuple[Element, ...]:
@@ -74,6 +82,11 @@ class ModalModel(Value):
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts with the base on a side."""
         return first_key(self.elements, side)
+
+    def elongations(self, element: Element, side: int, rotation: Array) -> Array:
+        """Return the elongations δ of an element in m at rotations |θ| about a pivot, shape (n,)."""
+        stretch = 2.0 * np.sin(0.5 * rotation) if self.complete else rotation
+        return arm_of(self.properties, element, side) * stretch
 
     @property
     def sides(self) -> tuple[int, ...]:
@@ -192,7 +205,8 @@ class ModalModel(Value):
         turns, turnings = turnings_of(self.properties, self.elements, key) if key[0] != CLOSED else (0, ())
         changes = changes_of(self.properties, self.elements, key) if key[0] != CLOSED else ()
         stopped = tuple(landed(branch) for branch in key[1:])
-        return Phase(key, key[0], arrow, self.guard(key), changes, turns, turnings, stopped)
+        pulls = pulls_of(self.properties, self.elements, key)
+        return Phase(key, key[0], arrow, self.guard(key), pulls, changes, turns, turnings, stopped)
 
     def guard(self, key: Key) -> Guard:
         """Return the guard of a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""

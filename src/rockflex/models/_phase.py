@@ -145,7 +145,9 @@ class Guard:
 
 
 class Change(NamedTuple):
-    """A limit of |θ|, place + recall m with the memory m of one element, at which this element changes its branch.
+    """A limit of δ/r, place + recall m with the memory m of one element, at which this element changes its branch.
+
+    δ/r, the elongation per unit distance from the pivot, is |θ|, and 2 sin(|θ|/2) in complete models.
 
     The limit is reached from below if `outer`. `memory` is the index of m, and `key` the following phase.
     """
@@ -158,7 +160,7 @@ class Change(NamedTuple):
 
 
 class Turning(NamedTuple):
-    """A memory that is set where the rotation turns back: m = arm |θ| - offset, with the index `memory`."""
+    """A memory that is set where the rotation turns back: m = arm δ/r - offset, with the index `memory`."""
 
     memory: int
     arm: float
@@ -187,12 +189,15 @@ class Phase:
         The memories of the elements that yield, as their branches end.
     landed
         The branches of the elements after their elongation has stopped.
+    pulls : ndarray, shape (6, 1 + M)
+        Sums over the elements for phases that are not linear, and what the memories add to them; see `pulls_of`.
     """
 
     key: Key
     side: int
     arrow: Arrow | None
     guard: Guard
+    pulls: Array
     changes: tuple[Change, ...] = ()
     turns: int = 0
     turnings: tuple[Turning, ...] = ()
