@@ -104,7 +104,8 @@ class ControlledRun(Run):
                 guards["back"] = lambda t, y, sign=outward: sign * y[1]
             elif reach != 0.0:
                 low, below, high, above = bar.limits()
-                guards[place, above] = lambda t, y, b=bar, end=high: end - self.model.stretch(b, y[0], s)
+                if np.isfinite(high):
+                    guards[place, above] = lambda t, y, b=bar, end=high: end - self.model.stretch(b, y[0], s)
                 if np.isfinite(low):
                     guards[place, below] = lambda t, y, b=bar, end=low: self.model.stretch(b, y[0], s) - end
         return guards
