@@ -68,6 +68,17 @@ class Bar:
             low, below = empty, SLACK
         return low, below, self.plastic + reach - self.stretched, UP
 
+    def emptied(self) -> float:
+        """Stretch δ at which a bar that yields downwards and cannot push is without force."""
+        if self.branch != DOWN or not self.no_push or self.post_yield_ratio == 0.0:
+            return -np.inf
+        return (1.0 / self.post_yield_ratio - 1.0) * self.reach - self.stretched
+
+    def slacken(self, delta: float) -> None:
+        """Become slack at the stretch δ."""
+        self.settle(delta)
+        self.branch = SLACK
+
     def settle(self, delta: float) -> None:
         """Leave a yielding branch for the elastic one at the stretch δ."""
         if self.branch in (UP, DOWN):
@@ -262,6 +273,9 @@ class ControlledTwin:
             if each.branch in (UP, DOWN):
                 up = each.branch == UP
                 add((each, ELASTIC), lambda t, y, r=r: r * s * y[1], -1.0 if up else 1.0)
+                low = each.emptied()
+                if np.isfinite(low):
+                    add((each, SLACK), lambda t, y, r=r, low=low: r * s * y[0] - low, -1.0)
                 continue
             low, below, high, above = each.limits()
             if np.isfinite(low):
@@ -332,6 +346,8 @@ class ControlledTwin:
                 if isinstance(other, Bar):
                     other.settle(self.arm(other, self.side) * abs(self.y[0]))
             self.y[1] = 0.0
+        elif branch == SLACK:
+            each.slacken(self.arm(each, self.side) * abs(self.y[0]))
         else:
             each.branch = branch
         return now, "branch"

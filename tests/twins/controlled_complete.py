@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from twins.complete import ATOL, ROOT, CompleteResult, Run, Sample, first_root, sizes
 from twins.complete_model import BoucWen, CompleteModel, Structure
-from twins.controlled import DOWN, UP, Bar, Dashpot
+from twins.controlled import DOWN, SLACK, UP, Bar, Dashpot
 from twins.impact_laws import CompleteVVEL, Law
 from twins.result import Vector
 
@@ -92,7 +92,10 @@ class ControlledRun(Run):
                 each.settle(float(self.model.stretch(each, self.y[0], self.side)))
             self.y[1] = 0.0
         elif isinstance(kind, tuple):
-            self.bars[kind[0]].branch = kind[1]
+            bar, branch = self.bars[kind[0]], kind[1]
+            if branch == SLACK:
+                bar.slacken(float(self.model.stretch(bar, self.y[0], self.side)))
+            bar.branch = branch
         return tau, kind
 
     def _guards(self, sample: Sample):
@@ -102,6 +105,8 @@ class ControlledRun(Run):
             if reach != 0.0 and bar.branch in (UP, DOWN):
                 outward = (1.0 if bar.branch == UP else -1.0) * np.sign(reach) * s
                 guards["back"] = lambda t, y, sign=outward: sign * y[1]
+                if np.isfinite(bar.emptied()):
+                    guards[place, SLACK] = lambda t, y, b=bar, end=bar.emptied(): self.model.stretch(b, y[0], s) - end
             elif reach != 0.0:
                 low, below, high, above = bar.limits()
                 if np.isfinite(high):

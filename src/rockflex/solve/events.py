@@ -189,6 +189,7 @@ def cross(
                 keep(log, now, side, here, motion.state)
                 enter(system, at, system.links[p, TURNED], motion)
             else:
+                remember(system, p, motion)
                 enter(system, at, int(system.links[p, CHANGED + int(owner)]), motion)
             at.resume = 0.0
             at.fresh_rows = True
