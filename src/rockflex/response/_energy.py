@@ -123,10 +123,10 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
 
 def is_impact(model: RockingModel, states: Array) -> Bools:
     """Return True for the interval between the two states of every impact, shape (n_states - 1,)."""
-    spin = model.layout.of(states, model.layout.spin)
+    spin, rotation = (model.layout.of(states, place) for place in (model.layout.spin, model.layout.rotation))
     time, side = states[:, TIME], states[:, SIDE]
-    same_time, rocking = time[1:] == time[:-1], side[:-1] != 0.0
-    return same_time & rocking & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
+    landed = (time[1:] == time[:-1]) & (side[:-1] != 0.0) & (rotation[:-1] == 0.0)
+    return landed & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
 
 
 def _work(model: RockingModel, states: Array) -> tuple[Array, Array]:
