@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._constants import GRAVITY
 from rockflex._values import Value
 from rockflex.modal import BaseElement, RockingProperties
+from rockflex.response._resistance import element_resistance, weight_resistance
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -93,17 +93,12 @@ class MomentRotation(Value):
     @property
     def element_moment(self) -> Array:
         """Contribution s F r of each element to the moment in N m, shape (n, E); it is zero at rest."""
-        arms = {side: self.properties.pivot(side).arm for side in (1, -1)}
-        levers = [[side * arms[side] - each.position for each in self.elements] for side in (1, -1)]
-        table = np.array([np.zeros(len(self.elements)), *levers])
-        return table[self.side] * self.element_force
+        return element_resistance(self.properties, self.side, self.element_force)
 
     @property
     def weight_moment(self) -> Array:
         """Contribution s m_tot g B_s - L_0^r g θ of the weight to the moment in N m, shape (n,)."""
-        p = self.properties
-        table = np.array([0.0, p.pivot(1).weight_moment, -p.pivot(-1).weight_moment])
-        return table[self.side] - p.l0r * GRAVITY * self.rotation
+        return weight_resistance(self.properties, self.side, self.rotation)
 
     @property
     def work(self) -> Array:
