@@ -14,8 +14,8 @@ from rockflex.response._element_path import (
     next_stop,
     passed,
     plastic_stretch,
-    recoverable_energy,
     set_off,
+    stored_energy,
     tension,
 )
 from rockflex.response._moment_rotation import MomentRotation
@@ -33,7 +33,7 @@ def base_path(properties: RockingProperties, rotations: Array) -> MomentRotation
     shape = len(points), len(elements)
     values = np.array(
         [
-            (tension(each, place), place.elongation, plastic_stretch(each, place), recoverable_energy(each, place))
+            (tension(each, place), place.elongation, plastic_stretch(each, place), stored_energy(each, place))
             for *_, places in points
             for each, place in zip(elements, places, strict=True)
         ]
@@ -49,7 +49,7 @@ def base_path(properties: RockingProperties, rotations: Array) -> MomentRotation
         element_force=force,
         element_elongation=elongation,
         plastic_stretch=plastic,
-        element_energy=work - (stored - stored[0]),
+        element_losses=work - (stored - stored[0]),
     )
 
 

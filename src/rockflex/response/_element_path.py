@@ -1,8 +1,9 @@
 """One element of the base along a prescribed path of its elongation, branch by branch."""
 
+import math
 from typing import NamedTuple
 
-from rockflex.models import BROKEN, SLACK, Bar, Element, Slider, Spring
+from rockflex.models import BROKEN, Bar, Element, Slider, Spring
 
 
 class Place(NamedTuple):
@@ -62,19 +63,20 @@ def jumps(element: Element, before: Place, after: Place) -> bool:
 
 
 def plastic_stretch(element: Element, place: Place) -> float:
-    """Return the plastic part of the elongation in m; all of it for a friction damper."""
-    if isinstance(element, Bar):
-        return memory_at(element, place)
-    return place.elongation if isinstance(element, Slider) else 0.0
+    """Return the plastic part of the elongation in m; NaN once the element is broken."""
+    if not isinstance(element, Bar):
+        return 0.0
+    return math.nan if place.branch == BROKEN else memory_at(element, place)
 
 
-def recoverable_energy(element: Element, place: Place) -> float:
-    """Return the energy in J that the element would give back: the integral of F dδ less what it has dissipated."""
-    stretch = place.elongation
+def stored_energy(element: Element, place: Place) -> float:
+    """Return the energy in J that the element has taken and not dissipated, up to a constant.
+
+    A bar is two springs in parallel, of which one slides: F²/2k + α (1 - α) k m²/2 with the plastic stretch m.
+    """
     if isinstance(element, Spring):
-        return element.initial_force * stretch + 0.5 * element.stiffness * stretch**2
+        return (element.initial_force + 0.5 * element.stiffness * place.elongation) * place.elongation
     if not isinstance(element, Bar) or place.branch == BROKEN:
         return 0.0
     k, a, m = element.stiffness, element.ratio, memory_at(element, place)
-    e = (1.0 - a) * m if place.branch == SLACK else stretch + element.stretched
-    return 0.5 * k * (a * e**2 + (1.0 - a) * (e - m) ** 2)
+    return 0.5 * tension(element, place) ** 2 / k + 0.5 * a * (1.0 - a) * k * m**2

@@ -15,7 +15,7 @@ from rockflex.response._resistance import element_resistance, weight_resistance
 if TYPE_CHECKING:
     import pandas as pd
 
-OF_ELEMENTS = ("element_force", "element_elongation", "plastic_stretch", "element_energy")
+OF_ELEMENTS = ("element_force", "element_elongation", "plastic_stretch", "element_losses")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -25,7 +25,7 @@ class MomentRotation(Value):
     Between adjacent points everything is linear: a point stands wherever an element changes its branch, and two of them
     where a force or the moment jumps at a constant rotation. `moment_rotation` returns such paths.
 
-    An *excursion* is the part of a path from a lift-off to the next one.
+    An *excursion* is the part of a path from one lift-off to the next.
 
     Parameters
     ----------
@@ -42,8 +42,8 @@ class MomentRotation(Value):
     element_elongation : ndarray, shape (n, E)
         Elongation δ from the base in contact, in m.
     plastic_stretch : ndarray, shape (n, E)
-        Plastic part of the elongation in m; for a friction damper all of it. Zero for elements that do not yield.
-    element_energy : ndarray, shape (n, E)
+        Plastic part of the elongation in m of fuses and tendons that yield, NaN once they are broken; zero for others.
+    element_losses : ndarray, shape (n, E)
         Energy that each element has dissipated so far, in J. A rupture dissipates what the element had stored.
 
     Examples
@@ -68,7 +68,7 @@ class MomentRotation(Value):
     element_force: Array
     element_elongation: Array
     plastic_stretch: Array
-    element_energy: Array
+    element_losses: Array
 
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
@@ -106,9 +106,14 @@ class MomentRotation(Value):
         return _integral(self.rotation, self.moment)
 
     @property
+    def element_energy(self) -> Array:
+        """Energy that each element has dissipated along the whole path in J, shape (E,)."""
+        return self.element_losses[-1]
+
+    @property
     def dissipated_energy(self) -> Array:
         """Energy that all elements have dissipated up to each point in J, shape (n,)."""
-        return self.element_energy.sum(axis=1)
+        return self.element_losses.sum(axis=1)
 
     @property
     def uplift_moments(self) -> Array:
@@ -148,7 +153,7 @@ class MomentRotation(Value):
         -------
         pandas.DataFrame
             `rotation` (rad), `moment` (N m), `side`, `given`, and for every element, counted from 1,
-            `element_force_1` (N), `element_elongation_1`, `plastic_stretch_1` (m) and `element_energy_1` (J).
+            `element_force_1` (N), `element_elongation_1`, `plastic_stretch_1` (m) and `element_losses_1` (J).
         """
         import pandas as pd
 
