@@ -84,6 +84,7 @@ from .plot import plot_frequency_ratios as plot_frequency_ratios
 from .plot import plot_history as plot_history
 from .plot import plot_hysteresis as plot_hysteresis
 from .plot import plot_ida as plot_ida
+from .plot import plot_loops as plot_loops
 from .plot import plot_mode_shapes as plot_mode_shapes
 from .plot import plot_moment_rotation as plot_moment_rotation
 from .plot import plot_moment_rotation_laws as plot_moment_rotation_laws

@@ -380,7 +380,7 @@ def test_a_structure_or_its_properties():
         (
             base(),
             [0.0, 2.0],
-            "rotations must be below a quarter turn, 1.571 rad, to each side, but rotations[1] = 2 rad was given. "
+            "rotations must be at most a quarter turn, 1.571 rad, to each side, but rotations[1] = 2 rad was given. "
             "Check the units: one degree is 0.01745 rad.",
         ),
         (

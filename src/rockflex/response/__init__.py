@@ -7,6 +7,7 @@ from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._global import GLOBAL, asked_of
 from rockflex.response._history import History
 from rockflex.response._moment_rotation import MomentRotation
+from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
 from rockflex.response._response import PEAKS, Response, respond
 from rockflex.response._warnings import warnings_of
 
@@ -21,7 +22,10 @@ __all__ = [
     "Response",
     "asked_of",
     "base_path",
+    "element_resistance",
     "friction_coefficient",
+    "large_resistance",
     "respond",
     "warnings_of",
+    "weight_resistance",
 ]

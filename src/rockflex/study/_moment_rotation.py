@@ -11,6 +11,8 @@ from rockflex.modal import RockingProperties
 from rockflex.response import MomentRotation, base_path
 from rockflex.study._arguments import RockingStructure, properties_of
 
+QUARTER_TURN = 0.5 * math.pi
+
 
 def moment_rotation(structure: RockingStructure | RockingProperties, rotations: ArrayLike) -> MomentRotation:
     """Rotate the base of a structure slowly to and fro, and return its moment and the forces of its elements.
@@ -40,7 +42,7 @@ def moment_rotation(structure: RockingStructure | RockingProperties, rotations: 
     Raises
     ------
     InputError
-        If there are no rotations, or one is not a finite number below π/2.
+        If there are no rotations, or one is not finite or beyond π/2.
 
     References
     ----------
@@ -67,10 +69,10 @@ def moment_rotation(structure: RockingStructure | RockingProperties, rotations: 
     path = finite_vector("rotations", rotations, "rad")
     if path.size == 0:
         raise InputError("rotations is empty. Give at least one rotation of the base in rad.", field="rotations")
-    beyond = np.flatnonzero(np.abs(path) >= 0.5 * math.pi)
+    beyond = np.flatnonzero(np.abs(path) > QUARTER_TURN * (1.0 + 1e-9))  # a run that overturns ends at π/2
     if beyond.size:
         raise InputError(
-            f"rotations must be below a quarter turn, {0.5 * math.pi:.4g} rad, to each side, but "
+            f"rotations must be at most a quarter turn, {QUARTER_TURN:.4g} rad, to each side, but "
             f"rotations[{beyond[0]}] = {path[beyond[0]]:g} rad was given. Check the units: one degree is 0.01745 rad.",
             field="rotations",
         )
