@@ -72,7 +72,7 @@ def test_many_elements_fill_rows_and_a_free_base_has_none():
     assert [axes.get_title()[:8] for axes in figure.axes[1:]] == [
         "1 tendon", "2 fuse, ", "3 fuse, ", "4 fricti", "5 viscou", "6 tendon"
     ]  # fmt: skip
-    assert len({axes.get_position().y0 for axes in figure.axes[1:]}) == 2
+    assert len({axes.get_position().y0 for axes in figure.axes[1:]}) == 3
     free = drawn(rf.plot_loops(rf.moment_rotation(WALL, [0.02, -0.02])))
     assert len(free.axes) == 1
     assert legend(free) == ["total"]
