@@ -16,6 +16,7 @@ class Order:
         "uplift_and_modes",
         "chimney",
         "restrained_pier",
+        "controlled_rocking",
         "fragility_of_a_frame",
         "ida_with_resurrections",
     )
