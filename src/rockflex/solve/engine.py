@@ -176,7 +176,7 @@ class Engine:
                 log = log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
             check_interruption()
         self._complain(status, at, dt, motion.state)
-        return self._solution(status, at, dt, log, history=history)
+        return self._solution(status, at, dt, log, motion.state, history=history)
 
     def _place(self, side: int) -> int:
         """Return the index of the phase in which a run starts."""
@@ -224,7 +224,7 @@ class Engine:
         slowest = float(p.omega.min(initial=math.inf))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
-    def _solution(self, status: int, at: Progress, dt: float, log: Log, *, history: bool) -> Solution:
+    def _solution(self, status: int, at: Progress, dt: float, log: Log, state: Array, *, history: bool) -> Solution:
         overturned = status == Status.OVERTURNED
         return Solution(
             overturned=overturned,
@@ -236,6 +236,7 @@ class Engine:
             time_of_lost_support=float(log.times[-1]),
             n_uplifts=int(log.tally[UPLIFTS]),
             n_impacts=int(log.tally[IMPACTS]),
+            final_state=state,
             states=log.history[: log.tally[KEPT]] if history else None,
         )
 
