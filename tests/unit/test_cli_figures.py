@@ -87,8 +87,8 @@ def test_figures_replace_nothing_unless_told_to(tmp_path):
         (("--format", "jpg"), "--format must be one of png, svg, pdf, but 'jpg' was given."),
         (
             ("--measure", "pga"),
-            f"--measure is for cloud and incremental studies, but the study in {folder} is of kind stripes. "
-            "Leave it out.",
+            f"--measure is for cloud, incremental and monte_carlo studies, but the study in {folder} is of kind "
+            "stripes. Leave it out.",
         ),
     ):
         refused = invoke(folder, *arguments)

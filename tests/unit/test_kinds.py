@@ -33,8 +33,8 @@ def test_an_unknown_kind():
     with pytest.raises(rf.InputError) as caught:
         kind_named("clod")
     assert str(caught.value) == (
-        'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo", "design", but \'clod\' was '
-        'given. Did you mean "cloud"?'
+        'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo", "design", but '
+        "'clod' was given. Did you mean \"cloud\"?"
     )
 
 
