@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from rockflex.cli._console import grid, moment_unit, number, output, show
+from rockflex.cli._elements import elements_table
 
 if TYPE_CHECKING:
     from rockflex.cli._structures import LoadedStructure
@@ -44,6 +45,9 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
     if not p.symmetric:
         console.print()
         show(console, grid(("About the edge", "right", "left", ""), _each(p)))
+    if p.elements:
+        console.print("\nBetween base and ground, x to the right of the masses", markup=False)
+        show(console, elements_table(p.elements))
 
 
 def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
@@ -54,6 +58,7 @@ def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
     return [
         *([stiffness] if p.tendons else []),
         (f"Resisting moment, M_r = {weight} B", number(p.resisting_moment / size), unit),
+        *((name, values[0], unit) for name, values, unit in _closing(p, size, unit)),
         (f"Nominal limit, 0.7 atan({_slope(p, 'B')})", number(p.nominal_overturning_rotation), "rad"),
     ]
 
@@ -73,7 +78,25 @@ def _each(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
         row("Moment of inertia, I_θ", tuple(each.i_theta for each in sides), "kg m²"),
         *([row("Stiffness of the tendons", stiffness, f"{unit}/rad")] if p.tendons else []),
         row("Resisting moment, M_r", tuple(each.resisting_moment / size for each in sides), unit),
+        *((name, *values, unit) for name, values, unit in _closing(p, size, unit)),
         row(f"Nominal limit, 0.7 atan({_slope(p, 'b')})", nominal, "rad"),
+    ]
+
+
+def _closing(p: "RockingProperties", size: float, unit: str) -> list[tuple[str, list[str], str]]:
+    """What the dissipators change, about each pivot: the name, the two values, and their unit."""
+    sides = (p.pivot(1), p.pivot(-1))
+    if not any(each.dissipator_moment for each in sides):
+        return []
+    return [
+        ("Moment of the dissipators, M_d", [number(each.dissipator_moment / size) for each in sides], unit),
+        ("Re-centring ratio, M_r/M_d", [number(each.recentring_ratio) for each in sides], ""),
+        (
+            "Least moment that lifts it after yielding, M_r - M_d",
+            [number(max(each.resisting_moment - each.dissipator_moment, 0.0) / size) for each in sides],
+            unit,
+        ),
+        ("Self-centring", ["yes" if each.self_centring else "no: it may stay open" for each in sides], ""),
     ]
 
 
