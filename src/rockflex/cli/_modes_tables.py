@@ -6,8 +6,10 @@ from rockflex.cli._console import grid, moment_unit, number, output, show
 from rockflex.cli._elements import elements_table
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rockflex.cli._structures import LoadedStructure
-    from rockflex.modal import RockingProperties
+    from rockflex.modal import Pivot, RockingProperties
 
 Rows = list[dict[str, Any]]
 
@@ -83,20 +85,23 @@ def _each(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
     ]
 
 
-def _closing(p: "RockingProperties", size: float, unit: str) -> list[tuple[str, list[str], str]]:
-    """What the dissipators change, about each pivot: the name, the two values, and their unit."""
-    sides = (p.pivot(1), p.pivot(-1))
-    if not any(each.dissipator_moment for each in sides):
+def _closing(p: "RockingProperties", size: float, unit: str) -> list[tuple[str, tuple[str, str], str]]:
+    """What the dissipators change about each pivot: the name, the values to the right and to the left, their unit."""
+    right, left = p.pivot(1), p.pivot(-1)
+    if not right.dissipator_moment and not left.dissipator_moment:
         return []
+
+    def both(of: "Callable[[Pivot], str]") -> tuple[str, str]:
+        return of(right), of(left)
+
+    def least(pivot: "Pivot") -> str:
+        return number(max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size)
+
     return [
-        ("Moment of the dissipators, M_d", [number(each.dissipator_moment / size) for each in sides], unit),
-        ("Re-centring ratio, M_r/M_d", [number(each.recentring_ratio) for each in sides], ""),
-        (
-            "Least moment that lifts it after yielding, M_r - M_d",
-            [number(max(each.resisting_moment - each.dissipator_moment, 0.0) / size) for each in sides],
-            unit,
-        ),
-        ("Self-centring", ["yes" if each.self_centring else "no: it may stay open" for each in sides], ""),
+        ("Moment of the dissipators, M_d", both(lambda pivot: number(pivot.dissipator_moment / size)), unit),
+        ("Re-centring ratio, M_r/M_d", both(lambda pivot: number(pivot.recentring_ratio)), ""),
+        ("Least moment that lifts it after yielding, M_r - M_d", both(least), unit),
+        ("Self-centring", both(lambda pivot: "yes" if pivot.self_centring else "no: it may stay open"), ""),
     ]
 
 

@@ -24,7 +24,10 @@ FRICTION = (
     "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
     "the base slides where it passes {mu:g}"
 )
-OF_ELEMENTS = "F, E: largest force of each element, and the energy that it took; θ_end: rotation at the end of the run"
+OF_ELEMENTS = (
+    "F, E: largest force of each element, and the energy that it takes (with --out);\n"
+    "θ_end: rotation at the end of the run, where it is not closed"
+)
 STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no_uplift": "green"}
 Columns = list[tuple[str, list[str]]]
 
