@@ -328,6 +328,9 @@ coefficient = 4e5
 """
 
 
+LEAST = ["Least", "moment", "that", "lifts", "it", "after", "yielding,", "M_r", "-", "M_d"]
+
+
 def walled(tmp_path, strength="3e5", only="false", x="0.0", eccentric=False):
     path = tmp_path / "fused.toml"
     content = ECCENTRIC if eccentric else ECCENTRIC.replace("eccentricity = -0.15\n", "")
@@ -344,7 +347,7 @@ def test_elements_are_printed_with_what_closes_the_base(tmp_path):
     assert ["Moment", "of", "the", "dissipators,", "M_d", f"{locked / 1e3:.1f}", "kN", "m"] in rows
     assert ["Re-centring", "ratio,", "M_r/M_d", f"{resisting / locked:.3f}"] in rows
     assert [
-        *"Least moment that lifts it after yielding, M_r - M_d".split(),
+        *LEAST,
         f"{(resisting - locked) / 1e3:.0f}",
         "kN",
         "m",
@@ -361,7 +364,7 @@ def test_elements_are_printed_with_what_closes_the_base(tmp_path):
 def test_a_base_that_its_dissipators_hold_open(tmp_path):
     rows = [line.split() for line in invoke(walled(tmp_path, strength="3e6")).stdout.splitlines()]
     assert ["Self-centring", "no:", "it", "may", "stay", "open"] in rows
-    assert [*"Least moment that lifts it after yielding, M_r - M_d".split(), "0", "kN", "m"] in rows
+    assert [*LEAST, "0", "kN", "m"] in rows
     found = json.loads(invoke(walled(tmp_path, strength="3e6"), "--json").stdout)["rocking"]
     assert found["self_centring"] is False
     assert found["recentring_ratio"] == pytest.approx((160e3 * 9.81 + 2e5) / (0.9 * 3e6 + 1e5))

@@ -156,15 +156,16 @@ def _run(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, timed:
     elapsed = perf_counter() - start if timed else None
     peaks = {name: getattr(response, name) for name in COLUMNS}
     kept = response if batch.history else None
-    friction, elements = _friction(batch, response), _elements(response)
+    friction, elements = _friction(batch, response), _elements(batch, response)
     return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction, elements)
 
 
-def _elements(response: Response) -> dict[str, list[float]]:
+def _elements(batch: Batch, response: Response) -> dict[str, list[float]]:
     """Return the peaks of the elements, and the energy that each dissipated if the history is known."""
+    if not batch.properties.elements:
+        return {}
     names = OF_ELEMENTS if response.history is None else (*OF_ELEMENTS, "element_energy")
-    found = {name: getattr(response, name).tolist() for name in names}
-    return {name: values for name, values in found.items() if values}
+    return {name: getattr(response, name).tolist() for name in names}
 
 
 def _friction(batch: Batch, response: Response) -> dict[str, float | None]:
