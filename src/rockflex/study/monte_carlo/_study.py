@@ -60,7 +60,7 @@ class MonteCarloStudy(RunsSpec):
     4000
     >>> wall = study.structure_of(0)
     >>> round(wall.recentring_ratio, 3)
-    3.105
+    3.246
     """
 
     study: Literal["monte_carlo"] = Field("monte_carlo", description='"monte_carlo"')
