@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.models._pulls import DAMPING, MOMENT, STIFFNESS
+from rockflex.models._pulls import DAMPING, HOLD, MOMENT, STIFFNESS
 
 EXTRA = 4  # components in addition to those of the simplified models
 
@@ -115,7 +115,7 @@ def field_rates(
             moment += side * pulls[MOMENT] + pulls[STIFFNESS] * theta
         moment += pulls[DAMPING] * lever * lever * spin
         moment += acceleration * arm
-        angular = -moment / inertia_left(field, side, motion)
+        angular = -moment / inertia_left(field, side, motion) if pulls[HOLD] == 0.0 else 0.0
         drive = arm * spin
         for i in range(n):
             rates[n + i] -= field.modes[HEIGHT, i] * angular

@@ -200,7 +200,7 @@ class Phase:
         The phase that follows at zero velocity.
     beside
         The phases after a landing: in contact, about the right pivot and about the left pivot.
-    pulls : ndarray, shape (6, 1 + M)
+    pulls : ndarray, shape (7, 1 + M)
         Sums over the elements for phases that are not linear, and what the memories add to them; see `pulls_of`.
     """
 

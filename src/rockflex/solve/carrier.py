@@ -79,8 +79,8 @@ def exit_of_step(
     extend(flow, system.phases[p].side, span, room)
     row_poly(system, p, GUARD, span, room)
     if not math.isnan(at.lift):
-        # θ and θ' start exactly from zero, and θ'' exactly from the value given by the guard.
-        polys[GUARD, 0] = polys[GUARD, 1] = 0.0
+        # θ' starts exactly from zero, θ from zero or where it was held, and θ'' from the value given by the guard.
+        polys[GUARD, 0], polys[GUARD, 1] = motion.state[system.layout.rotation], 0.0
         polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
     return phase_exit(system, at, motion, polys)
 
@@ -143,7 +143,7 @@ def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: flo
     """Move the motion to `stop` by the polynomials of the step."""
     p = at.phase
     side = system.phases[p].side
-    if side != 0.0:
+    if system.phases[p].free:
         raise_peak(room.polys, GUARD, stop, span, log)
         if flow.field.complete:
             raise_curves(system, flow, p, span, stop, log, room)

@@ -9,10 +9,10 @@ import math
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel, python_kernel
-from rockflex.models import Impact
+from rockflex.models import Impact, field_rates
 from rockflex.solve.adaptive.curves import values_of_rows
-from rockflex.solve.adaptive.layout import TOLD, Integrator
-from rockflex.solve.adaptive.step import forget
+from rockflex.solve.adaptive.layout import TOLD, Flow, Integrator, Stages
+from rockflex.solve.adaptive.step import choose_branch, forget
 from rockflex.solve.adaptive.steps import step_through
 from rockflex.solve.events import CROSSED, PAUSED
 from rockflex.solve.exact.march import march, to_coordinates, to_state
@@ -43,6 +43,7 @@ ENDED, SETTLED, UNSETTLED = int(Status.ENDED), int(Status.SETTLED), int(Status.U
 
 BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: start of a stretch; whole samples; closer look at one sample
 STILL = 1e-13  # relative deviation of a row from its constant that is rounding
+CALM = 1e-8  # 1/s: of the largest value so far, the rate of one that is at rest
 BLOCK = 4096  # largest number of samples advanced at once
 
 
@@ -108,6 +109,8 @@ def begin_piece(
             if system.phases[at.phase].free:
                 motion.state[system.layout.rotation] = motion.offset[GUARD]
             return True
+    elif steps is not None and at.offset > 0 and course.settle and still(system, steps.flow, at, steps.room):
+        return True
     if ground != at.last:  # the start, or a jump of the acceleration at the end of the record
         keep(log, time, side, ground, motion.state)
         raise_row(GUARD, motion.state[system.layout.rotation], time, log)
@@ -150,6 +153,19 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
             if system.phases[p].turns != 0 and stray > STILL * place:
                 return False
         elif (rest if f == log.peaks.size - 1 else abs(rest)) + stray > log.peaks[f] and stray > STILL * abs(rest):
+            return False
+    return True
+
+
+@kernel
+def still(system: System, flow: Flow, at: Progress, room: Stages) -> bool:
+    """Return True if free vibration of an integrated phase has come to rest: its rates are tiny next to its largest."""
+    if flow.field.hysteretic:
+        choose_branch(flow, system.phases[at.phase].side, 0.0, room)
+    field_rates(flow.field, room.pulls, system.phases[at.phase].side, room.at.branch, 0.0, room.motion, room.rates[0])
+    forget(room)
+    for i in range(room.size.size):
+        if abs(room.rates[0, i]) > CALM * room.size[i]:
             return False
     return True
 

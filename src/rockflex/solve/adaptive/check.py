@@ -60,7 +60,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
             # Peaks at the ends are known; they are recorded below.
             known = max(log.peaks[f], max(size_of(first, f, log), size_of(last, f, log)))
             hidden = max(size_of(high, f, log), size_of(low, f, log)) > known
-        elif side == 0.0:
+        elif not system.phases[phase].free:
             hidden = low < low_limit or high > high_limit
         else:
             hidden = min(low, first) <= low_limit or max(high, first) >= high_limit
@@ -68,5 +68,5 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
         if hidden:
             return False
         room.rows[AT_ENDS, f] = last
-    raise_peaks(room.rows[AT_ENDS], side, span.time + step, log)
+    raise_peaks(room.rows[AT_ENDS], system.phases[phase].free, span.time + step, log)
     return True
