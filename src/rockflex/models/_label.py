@@ -162,7 +162,7 @@ class Model:
     def _check_friction(self, kept: RockingProperties) -> None:
         if self.complete and any(isinstance(each, FrictionDamper) and each.force > 0.0 for each in kept.elements):
             raise InputError(
-                f"{self.label} does not take friction dampers: while they hold the base at a large rotation, its moment "
+                f"{self.label} does not take friction dampers: the moment on a base that they hold at a large rotation "
                 f"is not linear in the motion. Use {replace(self, complete=False, closure=None).label}, or a "
                 "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
                 field="elements",

@@ -164,10 +164,10 @@ def still(system: System, flow: Flow, at: Progress, room: Stages) -> bool:
         choose_branch(flow, system.phases[at.phase].side, 0.0, room)
     field_rates(flow.field, room.pulls, system.phases[at.phase].side, room.at.branch, 0.0, room.motion, room.rates[0])
     forget(room)
+    worst = 0.0
     for i in range(room.size.size):
-        if abs(room.rates[0, i]) > CALM * room.size[i]:
-            return False
-    return True
+        worst = max(worst, abs(room.rates[0, i]) - CALM * room.size[i])
+    return worst <= 0.0
 
 
 @inlined_kernel
