@@ -18,7 +18,7 @@ from rockflex.study._subjects import Models, Motions
 from rockflex.study._tables import Columns, Row
 from rockflex.study.cloud._study import CloudPlan, Factors
 from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
-from rockflex.study.design._limits import check_limit, check_same_for_all, rotation_of
+from rockflex.study.design._limits import check_limit, check_same_for_all, state_of
 from rockflex.study.design._table import design_table
 from rockflex.study.plan._bench import Bench, bench_of, check_lifts
 from rockflex.study.plan._chunked import run_plan
@@ -121,7 +121,7 @@ class DesignStudy(StructuresSpec):
         for design in designs:
             for limit in self.limits:
                 try:
-                    rotation_of(limit, design.properties.nominal_overturning_rotation)
+                    state_of(limit, design.properties.nominal_overturning_rotation)
                 except InputError as error:
                     raise InputError(f"{design.name}: {error}") from error
         return DesignPlan(bench, designs, self.scales, self.runs_per_chunk)
