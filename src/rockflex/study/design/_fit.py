@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex
 
 import numpy as np
@@ -122,7 +123,7 @@ class Runs(NamedTuple):
             limit = self.state.threshold
             sure = isinstance(falls, UnanimousOutcome) and (falls.outcome or limit == OVERTURNED)
             sure |= isinstance(rocks, UnanimousOutcome) and not rocks.outcome
-            curve = falls.probability if limit == OVERTURNED else (lambda im: fit.exceedance(im, limit))
+            curve: Curve = falls.probability if limit == OVERTURNED else partial(fit.exceedance, limit=limit)
             return Fitted(curve, falls.probability, sure, [note for note in fit.notes if note.kind != "initiation"])
         alike = self.exceeded.all() or not self.exceeded.any()
         found: LogisticFit | UnanimousOutcome = (
@@ -137,9 +138,7 @@ class Runs(NamedTuple):
         import pandas as pd
 
         weights = resample_weights(pd.factorize(self.groups)[0], n, seed)
-        outcome, limit = (
-            (self.fallen, self.state.threshold) if is_rotation(self.state) else (self.exceeded, OVERTURNED)
-        )
+        outcome, limit = (self.fallen, self.state.threshold) if is_rotation(self.state) else (self.exceeded, OVERTURNED)
         return resampled_exceedance(self.im, self.rotation, outcome, weights, question.nodes, limit) @ question.weights
 
 
@@ -164,7 +163,12 @@ def judged(
         found = {"limit": bound, "state": runs.state.label, **_answers(runs, question, band)}
         counts = int(runs.exceeded.sum()), int(runs.fallen.sum())
     else:
-        found = {"limit": math.nan, "state": "", **_nothing(question), "note": "No run was solved: see the column error."}
+        found = {
+            "limit": math.nan,
+            "state": "",
+            **_nothing(question),
+            "note": "No run was solved: see the column error.",
+        }
         counts = 0, 0
     return found | {
         "median_base_moment": solved["max_base_moment"].median(),

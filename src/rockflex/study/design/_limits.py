@@ -54,7 +54,9 @@ def _above(column: str, given: str, limit: Any) -> LimitState:
     except ValueError:
         bound = math.nan
     if not (math.isfinite(bound) and bound >= 0.0):
-        raise InputError(f"limit: the bound of {column} must be zero or a positive number, but {shown(limit)} was given.")
+        raise InputError(
+            f"limit: the bound of {column} must be zero or a positive number, but {shown(limit)} was given."
+        )
     if column == "max_rotation":
         return beyond(_rotation(bound, math.nan, []))
 

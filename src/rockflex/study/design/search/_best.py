@@ -156,7 +156,7 @@ def _drawn(rows: "pd.DataFrame", wanted: list[Requirement], band: Band) -> Array
 
 def _met(values: Array, wanted: list[Requirement]) -> Bools:
     """Whether all targets are met, for values whose last axis is that of the requirements; NaN meets none."""
-    return (values <= np.array([each.target for each in wanted])).all(axis=-1)
+    return np.all(values <= np.array([each.target for each in wanted]), axis=-1)
 
 
 def _cheapest(price: Array, meets: Bools) -> int | None:
@@ -197,9 +197,7 @@ def _limits(
     return pd.DataFrame(rows, columns=["limit", "target", "value", "low", "high", "used", "cost_without"])
 
 
-def _interval(
-    table: "pd.DataFrame", best: int | None, choices: list[int | None], confidence: float
-) -> "pd.DataFrame":
+def _interval(table: "pd.DataFrame", best: int | None, choices: list[int | None], confidence: float) -> "pd.DataFrame":
     import pandas as pd
 
     places = [place for place in choices if place is not None]
@@ -209,7 +207,9 @@ def _interval(
         ends = [np.nan, np.nan]
         if places:
             ends = np.quantile(column[places], (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence)).tolist()
-        rows.append({"quantity": name, "best": np.nan if best is None else column[best], "low": ends[0], "high": ends[1]})
+        rows.append(
+            {"quantity": name, "best": np.nan if best is None else column[best], "low": ends[0], "high": ends[1]}
+        )
     return pd.DataFrame(rows)
 
 
@@ -224,7 +224,7 @@ def _notes(table: "pd.DataFrame", best: int | None, choices: list[int | None], v
         column = table[name].to_numpy(float)
         ends = {"smallest": column.min(), "largest": column.max()}
         at = [word for word, end in ends.items() if column[best] == end and ends["smallest"] < ends["largest"]]
-        if at and not column[best] == 0.0:
+        if at and column[best] != 0.0:
             notes.append(
                 f"The best design has the {at[0]} {NAMES[name]} of its range, {column[best]:.4g}: a design beyond it "
                 "might be cheaper."

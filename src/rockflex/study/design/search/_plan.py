@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from copy import copy
-from itertools import product
+from itertools import accumulate, pairwise, product
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -61,9 +61,7 @@ class SearchPlan(ChunkedPlan):
     def _start_round(self, number: int, points: Sequence[Point]) -> None:
         self.round, self.points = number, list(points)
         names = [f"design {self._first_unit(number) + place + 1}" for place in range(len(self.points))]
-        built = {
-            name: self.search.built(self.structure, point) for name, point in zip(names, self.points, strict=True)
-        }
+        built = {name: self.search.built(self.structure, point) for name, point in zip(names, self.points, strict=True)}
         self._bench = Bench(built, self._empty.motions, self._empty.assumptions)
 
     def _check_limits(self, point: Point, properties: RockingProperties) -> None:
@@ -90,8 +88,8 @@ class SearchPlan(ChunkedPlan):
     def rounds(self) -> list[range]:
         """Numbers of the chunks of each round."""
         counts = [self.search.n_first] + [self.search.designs_per_refinement] * self.search.refinements
-        ends = np.cumsum([0, *(-(-count // self.per_chunk) for count in counts)])
-        return [range(int(start), int(end)) for start, end in zip(ends, ends[1:], strict=False)]
+        ends = accumulate((-(-count // self.per_chunk) for count in counts), initial=0)
+        return [range(start, end) for start, end in pairwise(ends)]
 
     def units_of(self, number: int) -> range:
         """Units of a chunk, all of one round."""

@@ -20,7 +20,7 @@ Point = tuple[int, int, int]  # of the finest grid: numbers of a half width and 
 
 VARIABLES = ("half_width", "tendon_factor", "dissipator_factor")
 FACTORS = ("tendon_factors", "dissipator_factors")
-MOST_REFINEMENTS, MOST_POINTS = 8, 2_000_000
+MOST_REFINEMENTS, MOST_DESIGNS, MOST_POINTS = 8, 1000, 300_000
 
 
 @dataclass(frozen=True)
@@ -93,10 +93,16 @@ class DesignSearch:
                 "There is only one design to look at. Give two values or more of half_widths, tendon_factors or "
                 "dissipator_factors."
             )
+        if self.n_designs > MOST_DESIGNS:
+            raise InputError(
+                f"The search would try {self.n_designs} designs, but at most {MOST_DESIGNS} are possible: "
+                f"{self.n_first} of the values given, and {self.designs_per_refinement} in each of {self.refinements} "
+                "refinements. Give fewer values; refinements find the values in between."
+            )
         points = prod((len(values) - 1) * 2**self.refinements + 1 for values in self.values)
         if points > MOST_POINTS:
             raise InputError(
-                f"The finest grid would have {points} designs, but at most {MOST_POINTS} can be compared. Give fewer "
+                f"The finest grid would have {points} designs, but at most {MOST_POINTS} are possible. Give fewer "
                 f"values or fewer refinements than {self.refinements}."
             )
 
@@ -127,7 +133,8 @@ class DesignSearch:
 
     def first(self) -> list[Point]:
         """Points of the values given, dissipators innermost."""
-        return [*product(*self.grid(0))]
+        widths, tendons, dissipators = self.grid(0)
+        return [*product(widths, tendons, dissipators)]
 
     def at(self, points: Any) -> Array:
         """Values of the variables at points of the finest grid, shape (n, 3)."""

@@ -4,20 +4,25 @@ from collections.abc import Callable, Sequence
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.study.design.search._space import DesignSearch, Point
 
-CHUNK = 20_000  # points at once
+CHUNK = 5_000  # points at once
+SMOOTHINGS = (1e-6, 1e-3, 1e-2, 0.1, 1.0, 10.0)
 
 Costs = Callable[[Array], Array]
+Integer = NDArray[np.intp]
 
 
 class Surface:
-    """Thin-plate splines through the margins of the designs tried, one for each requirement.
+    """Smoothed thin-plate splines through the margins of the designs tried, one for each requirement.
 
     Coordinates are counted in steps between the values that were given, so that the surface does not depend on units.
+    The smoothing of each spline is the one with the smallest error where each design is left out in turn (Wahba 1990,
+    Spline Models for Observational Data, Chapter 4).
 
     Parameters
     ----------
@@ -33,26 +38,45 @@ class Surface:
     """
 
     def __init__(self, steps: Array, margins: Array) -> None:
-        from scipy.interpolate import RBFInterpolator
-
         known = np.isfinite(margins).all(axis=1)
-        try:
-            self._at = RBFInterpolator(steps[known], margins[known], kernel="thin_plate_spline", degree=1)
-        except (ValueError, np.linalg.LinAlgError) as error:
+        self._centres, values = steps[known], margins[known]
+        n, d = self._centres.shape
+        tail = np.column_stack((np.ones(n), self._centres))
+        if n <= d + 1 or np.linalg.matrix_rank(tail) <= d:
             raise InputError(
                 f"Only {int(known.sum())} of {known.size} designs have all probabilities, too few to interpolate "
                 "between them."
-            ) from error
+            )
+        system = np.zeros((n + d + 1, n + d + 1))
+        system[:n, n:], system[n:, :n] = tail, tail.T
+        bending = _bending(self._centres, self._centres)
+        padded = np.vstack((values, np.zeros((d + 1, values.shape[1]))))
+        least = np.full(values.shape[1], np.inf)
+        self._weights = np.zeros_like(padded)
+        for smoothing in SMOOTHINGS:
+            system[:n, :n] = bending + smoothing * np.eye(n)
+            inverse = np.linalg.pinv(system)
+            weights = inverse @ padded
+            left_out = ((weights[:n] / np.diag(inverse)[:n, None]) ** 2).sum(axis=0)
+            better = left_out < least
+            least[better], self._weights[:, better] = left_out[better], weights[:, better]
 
     def margins(self, steps: Array) -> Array:
         """Margins at other coordinates, shape (k, m)."""
-        parts = [self._at(steps[start : start + CHUNK]) for start in range(0, len(steps), CHUNK)]
-        return np.concatenate(parts)
+        return np.concatenate([self._at(steps[start : start + CHUNK]) for start in range(0, len(steps), CHUNK)])
+
+    def _at(self, steps: Array) -> Array:
+        rows = np.column_stack((_bending(steps, self._centres), np.ones(len(steps)), steps))
+        return rows @ self._weights
 
 
-def next_points(
-    search: DesignSearch, level: int, tried: Sequence[Point], margins: Array, costs: Costs
-) -> list[Point]:
+def _bending(steps: Array, centres: Array) -> Array:
+    """r² log r between two sets of coordinates."""
+    squares = ((steps[:, None, :] - centres[None, :, :]) ** 2).sum(axis=2)
+    return 0.5 * squares * np.log(np.where(squares > 0.0, squares, 1.0))
+
+
+def next_points(search: DesignSearch, level: int, tried: Sequence[Point], margins: Array, costs: Costs) -> list[Point]:
     """Points that a refinement tries, in the order of their number; `costs` are those of values of the variables.
 
     One half are the cheapest designs that are expected to meet all targets, and that are the cheapest for one value of
@@ -88,17 +112,17 @@ def next_points(
     return _listed(points[chosen])
 
 
-def _cheapest_of_each(values: Array, cost: Array) -> Array:
+def _cheapest_of_each(values: Integer, cost: Array) -> Integer:
     """Place of the least cost among the points of each value."""
     order = np.lexsort((cost, values))
     return order[np.unique(values[order], return_index=True)[1]]
 
 
-def _codes(points: Array) -> Array:
+def _codes(points: Integer) -> Integer:
     """A number for each point; no grid reaches 2^20."""
     return points[:, 0] * 2**40 + points[:, 1] * 2**20 + points[:, 2]
 
 
-def _listed(points: Array) -> list[Point]:
+def _listed(points: Integer) -> list[Point]:
     found = [(int(b), int(tendon), int(dissipator)) for b, tendon, dissipator in points]
     return sorted(found)
