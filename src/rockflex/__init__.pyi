@@ -77,6 +77,7 @@ from .papers.silva_stojadinovic_2024.population.plots import plot_population as 
 from .parallel import ClusterError as ClusterError
 from .plot import plot_clouds as plot_clouds
 from .plot import plot_design as plot_design
+from .plot import plot_design_search as plot_design_search
 from .plot import plot_energy as plot_energy
 from .plot import plot_fragility as plot_fragility
 from .plot import plot_frequency_equation as plot_frequency_equation

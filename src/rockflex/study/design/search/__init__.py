@@ -3,7 +3,7 @@
 from rockflex.study.design.search._best import BestDesign, best_design
 from rockflex.study.design.search._cost import DesignCost
 from rockflex.study.design.search._plan import SearchPlan
-from rockflex.study.design.search._requirement import Requirement, check_requirements
+from rockflex.study.design.search._requirement import Requirement, check_requirements, margins_of
 from rockflex.study.design.search._run import search_design
 from rockflex.study.design.search._space import DesignSearch, Scaling, factors_of
 from rockflex.study.design.search._trade_off import Interpolated, trade_off
@@ -19,6 +19,7 @@ __all__ = [
     "best_design",
     "check_requirements",
     "factors_of",
+    "margins_of",
     "search_design",
     "trade_off",
 ]

@@ -70,6 +70,15 @@ def search_design(
     Examples
     --------
     >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> runs.groupby("round")["structure"].nunique().tolist()
+    [9, 3]
     """
     given: Any = scales
     bench = bench_of([structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit)

@@ -116,6 +116,16 @@ def trade_off(found: BestDesign, variable: str = "half_width") -> "pd.DataFrame"
     Examples
     --------
     >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> curve = rf.trade_off(rf.best_design(runs, targets, cost))
+    >>> curve.columns.tolist()
+    ['half_width', 'tendon_factor', 'dissipator_factor', 'prestress', 'dissipator_force', 'cost', 'governs']
     """
     between = Interpolated.of(found)
     if variable not in between.given:
