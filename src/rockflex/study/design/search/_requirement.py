@@ -16,7 +16,7 @@ from rockflex.study.design._limits import check_limit, check_same_for_all
 if TYPE_CHECKING:
     import pandas as pd
 
-FAR = 4.0  # largest margin in logits or logarithms; values far from a target say little about where it is met
+FAR = 5.0  # largest margin; values far from a target say little about where it is met
 TINY = 1e-12
 
 
@@ -99,12 +99,16 @@ class Requirement:
         return Runs.of(solved, self.limit, self.measure).resampled(self.question, n, seed)
 
     def margin(self, values: Any) -> Array:
-        """Logit of a probability, or logarithm of a rate, above that of the target, within ±4: met if not positive."""
+        """How far values are above the target, within ±5: probits of probabilities, logarithms of rates.
+
+        The probit of a lognormal fragility is linear in the logarithm of its median.
+        """
+        from scipy.special import ndtri
+
         given = np.clip(np.asarray(values, dtype=float), TINY, None)
         if self.hazard is not None:
             return np.clip(np.log(given / self.target), -FAR, FAR)
-        given = np.clip(given, TINY, 1.0 - TINY)
-        return np.clip(np.log(given / (1.0 - given)) - np.log(self.target / (1.0 - self.target)), -FAR, FAR)
+        return np.clip(ndtri(np.clip(given, TINY, 1.0 - TINY)) - ndtri(self.target), -FAR, FAR)
 
 
 def check_requirements(given: Sequence[Requirement]) -> list[Requirement]:

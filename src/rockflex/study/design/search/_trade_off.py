@@ -91,8 +91,9 @@ class Interpolated:
 def trade_off(found: BestDesign, variable: str = "half_width") -> "pd.DataFrame":
     """Find the cheapest design that meets all requirements for each value of one variable.
 
-    The logits of the probabilities, or the logarithms of the rates, are interpolated between the designs of the search
-    by thin-plate splines. The result is therefore a prediction, which runs confirm only where designs were tried.
+    The probits of the probabilities, or the logarithms of the rates, are interpolated between the designs of the search
+    by smoothed thin-plate splines. The result is therefore a prediction, which runs confirm only where designs were
+    tried.
 
     Parameters
     ----------
