@@ -206,7 +206,7 @@ def invoke(*arguments):
 def test_a_search_is_run_kept_told_and_drawn(tmp_path, question, hazard):
     file, kept = tmp_path / "search.toml", tmp_path / "kept"
     file.write_text(FILE.format(question=question, hazard=hazard), "utf-8")
-    assert "at most 432 runs in 8 parts, 18 records" in invoke("design", file, "--dry-run").stdout
+    assert "at most 432 runs in 3 parts, 18 records" in invoke("design", file, "--dry-run").stdout
     done = invoke("design", file, "--out", kept)
     assert done.exit_code == 0, done.stderr
     document = json.loads(invoke("design", file, "--out", kept, "--json").stdout)

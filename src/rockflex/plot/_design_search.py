@@ -195,6 +195,8 @@ def _nearest(found: BestDesign) -> int:
 def _draw_runs(axes: Axes, x: object, y: object, found: BestDesign, meets: object = None) -> None:
     met = found.designs["meets"].to_numpy(bool) if meets is None else np.asarray(meets, dtype=bool)
     for which, face in ((~met, "none"), (met, _ink())):
+        if not which.any():  # an empty line that is not clipped spoils the layout
+            continue
         axes.plot(
             np.asarray(x)[which], np.asarray(y)[which], "o", markersize=_MARK, markerfacecolor=face,
             markeredgecolor=_ink(), markeredgewidth=0.6, alpha=0.75, label="_runs", clip_on=False,
