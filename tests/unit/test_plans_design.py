@@ -206,7 +206,7 @@ def test_a_design_that_cannot_be_built(changes, message):
             lambda: rf.run_design(
                 rf.Restrained(STRUCTURE, [rf.Tendon(1.0, 1.0, -0.5), rf.Tendon(1.0, 1.0, 0.5)]), SUITE[0], [0.4]
             ),
-            "B = 0.4 m: Tendons must pass through the base, 0.4 m to each side of its centre, but one is at",
+            "B = 0.4 m: Elements must act within half_width = 0.4 m to each side of the axis of the masses, but",
         ),
     ],
 )

@@ -1,6 +1,7 @@
 """The design of a base: the probability of each design, the least width, and its page."""
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Literal
 
 from rockflex.kinds._kind import Document, Figures, Findings, Remark, Runs, StudyKind
 
@@ -12,7 +13,7 @@ def _report(study: Any, runs: Runs, found: Findings) -> None:
     if study.search is not None:
         _report_search(study, runs, found)
         return
-    levels: list[float] = study.level if isinstance(study.level, list) else [study.level]
+    levels: list[float | None] = study.level if isinstance(study.level, list) else [study.level]
     at = ", ".join(f"{level:g}" for level in dict.fromkeys(levels) if level is not None)
     asked = "annual rate" if study.hazard else f"P at {study.measure} = {at}"
     value = "rate" if study.hazard else "probability"
@@ -81,10 +82,12 @@ def _report_search(study: Any, runs: Runs, found: Findings) -> None:
         }
         for row in best.limits.to_dict("records")
     ]
-    found.tables["Cheapest design in resamples of the recordings"] = best.interval.to_dict("records")
+    found.tables["Cheapest design in resamples of the recordings"] = [
+        {str(name): value for name, value in row.items()} for row in best.interval.to_dict("records")
+    ]
 
 
-def _row(row: dict[str, Any], labels: list[str]) -> dict[str, Any]:
+def _row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
     """What is told of a design, with the values of some requirements."""
     return {
         "design": row["structure"],
@@ -111,7 +114,8 @@ def _figures(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
 
     if "search" in spec:
         best = best_design(runs, *search_of(spec))
-        for theme, name in (("light", "design_search"), ("dark", "design_search_dark")):
+        themes: dict[str, Literal["light", "dark"]] = {"design_search": "light", "design_search_dark": "dark"}
+        for name, theme in themes.items():
             yield name, lambda theme=theme: plot.plot_design_search(best, theme=theme)
         return
     targets = [target for _, _, target, _ in questions_of(spec)]

@@ -105,11 +105,13 @@ def plot_design_search(found: BestDesign, *, theme: Literal["light", "dark"] = "
             Line2D([], [], color=look.color, linestyle=look.dashes, label=literal(label))  # pyright: ignore[reportArgumentType]
             for label, look in looks.items()
         ]
-        filled, hollow = {"markerfacecolor": _ink()}, {"markerfacecolor": "none"}
-        for name, kind in (("run, meets all targets", filled), ("run, does not", hollow)):
+        for name, face in (("run, meets all targets", _ink()), ("run, does not", "none")):
             handles.append(
-                Line2D([], [], color="none", marker="o", markersize=_MARK, markeredgecolor=_ink(), label=name, **kind)
-            )
+                Line2D(
+                    [], [], color="none", marker="o", markersize=_MARK, markeredgecolor=_ink(), markerfacecolor=face,
+                    label=name,
+                )
+            )  # fmt: skip
         figure.legend(handles=handles, loc="outside upper center", ncols=2, title=_answer(found), title_fontsize=9.0)
     return figure
 
@@ -138,16 +140,14 @@ def _draw_costs(axes: Axes, found: BestDesign, variable: str, looks: dict[str, L
         axes.plot(scale.of(curve), cost, color=look.color, linestyle=look.dashes, linewidth=1.6, label=label)
     _draw_runs(axes, scale.of(found.designs), found.designs["cost"].to_numpy(float), found)
     if found.best is not None:
-        row = found.interval.set_index("quantity")
-        x, y = row.loc[scale.column] / scale.divisor if scale.column in row.index else None, row.loc["cost"]
-        at = float(scale.of(found.designs)[found.best]), float(y["best"])
-        for ends, places in ((x, 0), (y, 1)):
-            if ends is None or not np.isfinite([ends["low"], ends["high"]]).all():
-                continue
-            ends_of = [at[1 - places]] * 2, [float(ends["low"]), float(ends["high"])]
-            line = (ends_of[1], ends_of[0]) if places == 0 else ends_of
-            axes.plot(*line, color=_ink(), linewidth=2.0, alpha=0.6, label="_band", solid_capstyle="butt")
-        _ring(axes, *at)
+        bands = {str(row["quantity"]): np.array([row["low"], row["high"]]) for row in found.interval.to_dict("records")}
+        across = bands.get(scale.column, np.full(2, np.nan)) / scale.divisor
+        x, y = (
+            float(values[found.best]) for values in (scale.of(found.designs), found.designs["cost"].to_numpy(float))
+        )
+        for ends in ((across, [y, y]), ([x, x], bands["cost"])):
+            axes.plot(*ends, color=_ink(), linewidth=2.0, alpha=0.6, label="_band", solid_capstyle="butt")
+        _ring(axes, x, y)
     axes.set(xlabel=scale.name, ylabel="cost")
 
 

@@ -81,7 +81,8 @@ def next_points(search: DesignSearch, level: int, tried: Sequence[Point], margin
 
     One half are the cheapest designs that are expected to meet all targets, and that are the cheapest for one value of
     a variable. The other half are those among them that are farthest from all designs tried, so that the trade-off is
-    known in its whole range. Where no design is expected to meet the targets, they are the closest to doing so.
+    known in its whole range. If there are too few, those that are expected to meet or miss the targets by the least
+    follow. Where no design is expected to meet the targets, they are the closest to doing so.
     """
     axes, most = search.varied, search.designs_per_refinement
     points = np.array([*product(*search.grid(level))])
@@ -109,6 +110,9 @@ def next_points(search: DesignSearch, level: int, tried: Sequence[Point], margin
         known = np.concatenate([seen, points[chosen]])
         apart = [float(np.abs(known - points[place]).max(axis=1).min()) for place in rest]
         chosen.append(rest.pop(int(np.argmax(apart))))
+    new[chosen] = False
+    nearest = np.lexsort((cost, np.abs(worst)))
+    chosen += [int(place) for place in nearest[new[nearest]][: most - len(chosen)]]
     return _listed(points[chosen])
 
 
