@@ -65,7 +65,7 @@ class BestDesign(Value):
     >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> found = rf.best_design(runs, targets, cost)
     >>> found.designs.loc[found.best, ["half_width", "tendon_factor", "dissipator_factor"]].map(float).tolist()
-    [2.5, 2.0, 1.0]
+    [2.5, 1.5, 1.0]
     """
 
     designs: "pd.DataFrame"

@@ -78,7 +78,7 @@ def search_design(
     >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
     >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> runs.groupby("round")["structure"].nunique().tolist()
-    [9, 3]
+    [9, 8]
     """
     given: Any = scales
     bench = bench_of([structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit)
