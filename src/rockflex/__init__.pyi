@@ -77,6 +77,7 @@ from .papers.silva_stojadinovic_2024.population.plots import plot_population as 
 from .parallel import ClusterError as ClusterError
 from .plot import plot_clouds as plot_clouds
 from .plot import plot_design as plot_design
+from .plot import plot_design_search as plot_design_search
 from .plot import plot_energy as plot_energy
 from .plot import plot_fragility as plot_fragility
 from .plot import plot_frequency_equation as plot_frequency_equation
@@ -138,6 +139,13 @@ from .study.design import TendonLevel as TendonLevel
 from .study.design import design_table as design_table
 from .study.design import run_design as run_design
 from .study.design import smallest_width as smallest_width
+from .study.design.search import BestDesign as BestDesign
+from .study.design.search import DesignCost as DesignCost
+from .study.design.search import DesignSearch as DesignSearch
+from .study.design.search import Requirement as Requirement
+from .study.design.search import best_design as best_design
+from .study.design.search import search_design as search_design
+from .study.design.search import trade_off as trade_off
 from .study.incremental import IncrementalStudy as IncrementalStudy
 from .study.incremental import incremental_capacities as incremental_capacities
 from .study.incremental import run_incremental as run_incremental

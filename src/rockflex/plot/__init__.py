@@ -2,6 +2,7 @@
 
 from rockflex.plot._clouds import plot_clouds
 from rockflex.plot._design import plot_design
+from rockflex.plot._design_search import plot_design_search
 from rockflex.plot._energy import plot_energy
 from rockflex.plot._fragility import plot_fragility
 from rockflex.plot._frequency_curves import plot_frequency_equation
@@ -23,6 +24,7 @@ from rockflex.plot._yielding import plot_hysteresis, plot_yielding
 __all__ = [
     "plot_clouds",
     "plot_design",
+    "plot_design_search",
     "plot_energy",
     "plot_fragility",
     "plot_frequency_equation",
