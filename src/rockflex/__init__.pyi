@@ -84,6 +84,7 @@ from .plot import plot_frequency_ratios as plot_frequency_ratios
 from .plot import plot_history as plot_history
 from .plot import plot_hysteresis as plot_hysteresis
 from .plot import plot_ida as plot_ida
+from .plot import plot_loops as plot_loops
 from .plot import plot_mode_shapes as plot_mode_shapes
 from .plot import plot_moment_rotation as plot_moment_rotation
 from .plot import plot_moment_rotation_laws as plot_moment_rotation_laws
@@ -98,6 +99,7 @@ from .plot import save_figure as save_figure
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History
+from .response import MomentRotation as MomentRotation
 from .response import Response as Response
 from .store import StudyFolder as StudyFolder
 from .structure import Beam as Beam
@@ -123,6 +125,7 @@ from .study import OverturningScales as OverturningScales
 from .study import SecondMode as SecondMode
 from .study import frequency_ratios as frequency_ratios
 from .study import modal_combination as modal_combination
+from .study import moment_rotation as moment_rotation
 from .study import overturning_scales as overturning_scales
 from .study import overturning_spectrum as overturning_spectrum
 from .study import rocking_spectrum as rocking_spectrum

@@ -1,7 +1,18 @@
 """Models of a structure on a base that may uplift."""
 
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, Element
+from rockflex.models._elements import (
+    BROKEN,
+    CLOSED,
+    LEFT,
+    RIGHT,
+    Bar,
+    Element,
+    Slider,
+    Spring,
+    arm_of,
+    elements_of,
+)
 from rockflex.models._field import EXTRA, Field, field_rates, inertia_left, pivot_at
 from rockflex.models._impact import (
     ForgottenLaw,
@@ -50,6 +61,7 @@ from rockflex.models._stored import floor_accelerations, stored_energies, stretc
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 
 __all__ = [
+    "BROKEN",
     "CHANGES",
     "CLOSED",
     "EXTRA",
@@ -71,6 +83,7 @@ __all__ = [
     "TURNS",
     "VERTICAL",
     "Arrow",
+    "Bar",
     "Border",
     "BoucWen",
     "Element",
@@ -91,11 +104,15 @@ __all__ = [
     "Restitution",
     "RockingModel",
     "SidedRestitution",
+    "Slider",
+    "Spring",
     "StateLayout",
     "VVELComplete",
     "VVELSimplified",
     "accelerations",
     "acting_side",
+    "arm_of",
+    "elements_of",
     "field_rates",
     "floor_accelerations",
     "floor_quantities",

@@ -8,6 +8,7 @@ from rockflex.plot._frequency_curves import plot_frequency_equation
 from rockflex.plot._frequency_ratios import plot_frequency_ratios
 from rockflex.plot._history import plot_history
 from rockflex.plot._ida import plot_ida
+from rockflex.plot._loops import plot_loops
 from rockflex.plot._mode_shapes import plot_mode_shapes
 from rockflex.plot._moment_rotation import plot_moment_rotation
 from rockflex.plot._moment_rotation_laws import plot_moment_rotation_laws
@@ -29,6 +30,7 @@ __all__ = [
     "plot_history",
     "plot_hysteresis",
     "plot_ida",
+    "plot_loops",
     "plot_mode_shapes",
     "plot_moment_rotation",
     "plot_moment_rotation_laws",
