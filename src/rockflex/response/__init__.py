@@ -8,7 +8,8 @@ from rockflex.response._global import GLOBAL, asked_of
 from rockflex.response._history import History
 from rockflex.response._moment_rotation import MomentRotation
 from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
-from rockflex.response._response import PEAKS, Response, respond
+from rockflex.response._respond import respond
+from rockflex.response._response import PEAKS, Response
 from rockflex.response._warnings import warnings_of
 
 __all__ = [
