@@ -66,10 +66,14 @@ class Bar:
         sign = 1.0 if self.branch == UP else -1.0
         return a * k, 0.0, a * k * self.stretched + sign * (1.0 - a) * self.yield_force
 
+    @property
+    def reach(self) -> float:
+        """Stretch from zero force to the first yield."""
+        return self.yield_force / self.stiffness
+
     def limits(self) -> tuple[float, str, float, str]:
         """Stretches δ that end an elastic or a slack branch, and what follows."""
-        k, a = self.stiffness, self.post_yield_ratio
-        reach = self.yield_force / k
+        a, reach = self.post_yield_ratio, self.reach
         empty = (1.0 - a) * self.plastic - self.stretched
         if self.branch == BROKEN:
             return -np.inf, "", np.inf, ""
@@ -80,6 +84,17 @@ class Bar:
             low, below = empty, SLACK
         high = self.plastic + reach - self.stretched
         return (low, below, high, UP) if high < self.rupture else (low, below, self.rupture, BROKEN)
+
+    def emptied(self) -> float:
+        """Stretch δ at which a bar that yields downwards and cannot push is without force."""
+        if self.branch != DOWN or not self.no_push or self.post_yield_ratio == 0.0:
+            return -np.inf
+        return (1.0 / self.post_yield_ratio - 1.0) * self.reach - self.stretched
+
+    def slacken(self, delta: float) -> None:
+        """Become slack at the stretch δ."""
+        self.settle(delta)
+        self.branch = SLACK
 
     def settle(self, delta: float) -> None:
         """Leave a yielding branch for the elastic one at the stretch δ."""
@@ -334,6 +349,9 @@ class ControlledTwin:
                 add((each, ELASTIC), lambda t, y, r=r: r * s * y[1], -1.0 if up else 1.0)
                 if up and np.isfinite(each.rupture):
                     add((each, BROKEN), lambda t, y, r=r, at=each.rupture: r * s * y[0] - at, 1.0)
+                low = each.emptied()
+                if np.isfinite(low):
+                    add((each, SLACK), lambda t, y, r=r, low=low: r * s * y[0] - low, -1.0)
                 continue
             low, below, high, above = each.limits()
             if np.isfinite(low):
@@ -409,6 +427,8 @@ class ControlledTwin:
             self.y[1] = 0.0
             self._slide(0)
             self.held = any(isinstance(other, Slider) and self.arm(other, self.side) != 0.0 for other in self.elements)
+        elif branch == SLACK:
+            each.slacken(self.arm(each, self.side) * abs(self.y[0]))
         else:
             each.branch = branch
         return now, "branch"

@@ -6,7 +6,6 @@ from matplotlib.colors import to_hex
 
 import rockflex as rf
 from drawing import drawn
-from rockflex.response import History
 
 WALL = rf.CantileverWithTipMass(
     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.5, damping_ratio=0.02
@@ -17,19 +16,6 @@ HELD = rf.Restrained(WALL, [TENDON, *FUSES])
 ARM, WEIGHT, SLOPE = 1.5, 60e3 * 9.81, 50e3 * 10.0 * 9.81
 MOTION = rf.load_suite("fema-p695-far-field")["FF-2-a"].scaled(1.5)
 PULSE = rf.ricker_pulse(5.0, 1.2)
-
-
-@pytest.fixture(autouse=True)
-def forces(monkeypatch):
-    """Forces of a history without viscous dampers are those of its path."""
-    if not hasattr(History, "element_force"):
-        for name in ("element_force", "element_elongation"):
-
-            def of_path(history, name=name):
-                curve = rf.moment_rotation(history.model.properties, history.rotation)
-                return getattr(curve, name)[curve.given]
-
-            monkeypatch.setattr(History, name, property(of_path), raising=False)
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +72,7 @@ def test_many_elements_fill_rows_and_a_free_base_has_none():
     assert [axes.get_title()[:8] for axes in figure.axes[1:]] == [
         "1 tendon", "2 fuse, ", "3 fuse, ", "4 fricti", "5 viscou", "6 tendon"
     ]  # fmt: skip
-    assert len({axes.get_position().y0 for axes in figure.axes[1:]}) == 2
+    assert len({axes.get_position().y0 for axes in figure.axes[1:]}) == 3
     free = drawn(rf.plot_loops(rf.moment_rotation(WALL, [0.02, -0.02])))
     assert len(free.axes) == 1
     assert legend(free) == ["total"]

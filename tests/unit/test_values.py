@@ -135,6 +135,11 @@ STUDIES = {
     rf.CloudStudy: lambda: rf.CloudStudy(**STUDY, scales=[1.0, 2.0]),
     rf.DesignStudy: lambda: rf.DesignStudy(**STUDY, half_widths=[1.0, 1.5], level=0.5),
     rf.IncrementalStudy: lambda: rf.IncrementalStudy(**STUDY),
+    rf.MonteCarloStudy: lambda: rf.MonteCarloStudy(
+        records=STUDY["records"],
+        variables={"b": {"uniform": [0.1, 0.3]}},
+        structure={"block": {"slenderness": "= b", "half_diagonal": 3.0}},
+    ),
     rf.PopulationStudy: lambda: rf.PopulationStudy(records=STUDY["records"], pairs=4, seed=1),
     rf.Records: lambda: rf.Records(suites=["el-centro-1940"]),
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),

@@ -77,12 +77,22 @@ def test_killed_again_and_again_it_ends(tmp_path: Path, start: Start) -> None:
     pd.testing.assert_frame_equal(StudyFolder.load(study).frame(), PLAN.whole())
 
 
-def test_a_real_study_killed_at_random_moments_ends_alike(tmp_path: Path, start: Start) -> None:
+@pytest.mark.parametrize(
+    "content",
+    [
+        'study = "population"\npairs = 120\nruns_per_chunk = 12\n',
+        'study = "monte_carlo"\ncount = 120\nruns_per_chunk = 6\nrecords_per_structure = 1\nmodels = ["rigid"]\n'
+        "variables = { b = { uniform = [0.1, 0.2] }, fuse = { uniform = [0.1, 0.5] } }\n"
+        'structure.block = { slenderness = "= b", half_diagonal = 3.0 }\n'
+        'structure.elements = [{ kind = "yielding_dissipator", stiffness = "= 100 * weight", '
+        'yield_force = "= fuse * weight" }]\n',
+    ],
+    ids=["population", "monte_carlo"],
+)
+def test_a_real_study_killed_at_random_moments_ends_alike(content: str, tmp_path: Path, start: Start) -> None:
     """Killed as often as it takes: each process goes on where the one before was stopped."""
     spec, folder, draw = tmp_path / "study.toml", tmp_path / "killed", random.Random(7)
-    spec.write_text(
-        'study = "population"\npairs = 120\nruns_per_chunk = 12\n[records]\nsuites = ["fema-p695-far-field"]\n'
-    )
+    spec.write_text(content + '[records]\nsuites = ["fema-p695-far-field"]\n')
     kills, kept = 0, 0
     while True:
         process = start(partial(rf.run_study, spec, folder, workers=1))

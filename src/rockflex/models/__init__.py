@@ -32,7 +32,7 @@ from rockflex.models._impact import (
     VVELSimplified,
     housner,
 )
-from rockflex.models._kept import accelerations, acting_side, phases_at, rates_of, values_of
+from rockflex.models._kept import accelerations, acting_side, phases_at, pulls_at, rates_of, values_of
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
@@ -65,6 +65,7 @@ from rockflex.models._phase import (
     Key,
     Phase,
 )
+from rockflex.models._pulls import SUMS, pulls_of
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
 from rockflex.models._reactions import Reactions, printed_reactions, reactions
 from rockflex.models._stored import floor_accelerations, stored_energies
@@ -88,6 +89,7 @@ __all__ = [
     "RELEASES",
     "RIGHT",
     "SIDE",
+    "SUMS",
     "SWAY",
     "SWING",
     "TIME",
@@ -148,6 +150,8 @@ __all__ = [
     "plastic_stretches",
     "posture_of",
     "printed_reactions",
+    "pulls_at",
+    "pulls_of",
     "quantities",
     "rates_of",
     "reactions",

@@ -13,6 +13,7 @@ from rockflex.models._elements import (
     CLOSED,
     LEFT,
     RIGHT,
+    Dashpot,
     Element,
     arm_of,
     border_of,
@@ -28,6 +29,7 @@ from rockflex.models._elements import (
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
 from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, RELEASES, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._pulls import pulls_of
 
 QUARTER_TURN = 0.5 * np.pi
 
@@ -62,7 +64,12 @@ class ModalModel(Value):
     @cached_property
     def layout(self) -> StateLayout:
         """Layout of the state vector."""
-        return layout_of(self.properties.n_modes, integrated=self.integrated, remembered=len(memories(self.elements)))
+        return layout_of(
+            self.properties.n_modes,
+            integrated=self.integrated,
+            viscous=any(isinstance(each, Dashpot) for each in self.elements),
+            remembered=len(memories(self.elements)),
+        )
 
     @cached_property
     def elements(self) -> tuple[Element, ...]:
@@ -224,6 +231,7 @@ class ModalModel(Value):
             side=key[0],
             arrow=arrow,
             guard=self.guard(key),
+            pulls=pulls_of(p, elements, key),
             changes=changes_of(p, elements, key) if free else (),
             turned=set_off(p, elements, key, 0),
             beside=(contact, right, left),

@@ -150,7 +150,9 @@ class Guard:
 
 
 class Change(NamedTuple):
-    """A limit of |θ|, place + recall m with the memory m of one element, at which this element changes its branch.
+    """A limit of δ/r, place + recall m with the memory m of one element, at which this element changes its branch.
+
+    δ/r, the elongation per unit distance from the pivot, is |θ|, and 2 sin(|θ|/2) in complete models.
 
     The limit is reached from below if `outer`. `memory` is the index of m, and `key` the following phase.
     """
@@ -163,7 +165,7 @@ class Change(NamedTuple):
 
 
 class Turning(NamedTuple):
-    """A memory that is set where the rotation turns back: m = arm |θ| - offset, with the index `memory`."""
+    """A memory that is set where the rotation turns back: m = arm δ/r - offset, with the index `memory`."""
 
     memory: int
     arm: float
@@ -198,12 +200,15 @@ class Phase:
         The phase that follows at zero velocity.
     beside
         The phases after a landing: in contact, about the right pivot and about the left pivot.
+    pulls : ndarray, shape (6, 1 + M)
+        Sums over the elements for phases that are not linear, and what the memories add to them; see `pulls_of`.
     """
 
     key: Key
     side: int
     arrow: Arrow | None
     guard: Guard
+    pulls: Array
     changes: tuple[Change, ...]
     turned: Key
     beside: tuple[Key, Key, Key]

@@ -139,7 +139,7 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
     """
     row = np.zeros(model.layout.columns)
     side, p = key[0], model.properties
-    if model.complete:
+    if model.complete and side != CLOSED:
         return row
     if model.is_free(key):
         row -= side * p.m_tot * p.pivot(side).arm * model.angular_acceleration(key)

@@ -10,7 +10,7 @@ from rockflex.plot._style import BLACK, GRAY, columns, literal, new_figure, styl
 from rockflex.plot._units import readable
 from rockflex.response import MomentRotation, Response
 
-_PER_ROW = 3
+_PER_ROW = 2
 
 
 def plot_loops(result: MomentRotation | Response, *, title: str | None = None) -> Figure:
@@ -56,9 +56,9 @@ def plot_loops(result: MomentRotation | Response, *, title: str | None = None) -
     rows = max(math.ceil(count / _PER_ROW), 1)
     beside = math.ceil(count / rows)
     with styled():
-        figure = new_figure(4.4 + 2.3 * beside, max(3.6, 0.7 + 2.3 * rows))
+        figure = new_figure(4.2 + 2.2 * beside, max(3.6, 0.7 + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
-        grid = figure.add_gridspec(rows, 1 + beside, width_ratios=(1.75, *[1.0] * beside))
+        grid = figure.add_gridspec(rows, 1 + beside, width_ratios=(1.7, *[1.0] * beside))
         base = figure.add_subplot(grid[:, 0])
         _draw_base(base, loops)
         for place in range(count):

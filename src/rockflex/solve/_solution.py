@@ -15,8 +15,6 @@ class Solution:
         How the run ended: at a rotation of π/2, or at rest; neither means at the end of the given time.
     end_time
         Time of the last state, s.
-    residual_rotation
-        Rotation at the end, rad: that which remains if the run has settled. NaN if the structure overturned.
     peaks, peak_times
         Largest magnitude of each row and its time (s), shape (F,); row 0 is the rotation.
     lost_support, time_of_lost_support
@@ -25,7 +23,8 @@ class Solution:
     n_uplifts, n_impacts
         Number of uplifts and of impacts.
     final_state
-        The last state: [D.., D'.., θ, θ', ..] as in `rockflex.models.StateLayout`.
+        The last state: [D.., D'.., θ, θ', ..] as in `rockflex.models.StateLayout`. If the run has settled with the base
+        open, θ is the rotation that remains.
     states
         One row per state: time, side, ground acceleration, D (N), D' (N), θ, θ'. There are states before and after
         every jump. None if only peaks were requested.
@@ -34,7 +33,6 @@ class Solution:
     overturned: bool
     settled: bool
     end_time: float
-    residual_rotation: float
     peaks: Array
     peak_times: Array
     lost_support: float

@@ -33,7 +33,7 @@ from rockflex.solve.layout import (
     Span,
     System,
 )
-from rockflex.solve.memory import load_in
+from rockflex.solve.memory import gather, load_in
 from rockflex.solve.peaks import raise_peak, raise_to
 
 
@@ -177,5 +177,8 @@ def turning_rate(system: System, steps: Integrator | None, phase: int, ground: f
             moment += system.border[phase, 0, LEVERAGE, i] * restoring
         return moment * system.base[phase, FLEXIBILITY, 0, 0]
     forget(steps.room)
-    field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0])
+    gather(system, phase, motion)
+    field_rates(
+        steps.flow.field, motion.pulls, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0]
+    )
     return steps.room.rates[0, system.layout.spin]

@@ -149,6 +149,8 @@ class Engine:
             np.zeros((room_for, HEADER + layout.size)),
         )
         log.peaks[-1] = -np.inf
+        if layout.remembered:
+            log.peaks[-2] = np.inf  # of the row of θ', whose peak nobody asks for
         left = math.inf if work_limit is None else work_limit
         motion, steps = None, None
         while True:
@@ -157,7 +159,7 @@ class Engine:
                 with preparing(self.model):
                     system = self._phases.system(dt, self.pace.fastest)
             motion = self._room(system, start, motion)
-            steps = steps or self._integrator(start, log, at)
+            steps = steps or self._integrator(motion, log, at)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
             status = self._carry(system, steps, course, at, log, motion)
@@ -207,10 +209,11 @@ class Engine:
             series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))
         )
 
-    def _integrator(self, state: Array, log: Log, at: Progress) -> Integrator | None:
+    def _integrator(self, motion: Motion, log: Log, at: Progress) -> Integrator | None:
         if self._flow is None:
             return None
-        return Integrator(self._flow, stages_of(state, self.model.layout.moving, self._n_rows, log.work, at))
+        moving, rows = self.model.layout.core + 1, self._n_rows
+        return Integrator(self._flow, stages_of(motion.state, motion.pulls, moving, rows, log.work, at))
 
     def _carry(
         self, system: System, steps: Integrator | None, course: Course, at: Progress, log: Log, motion: Motion
@@ -230,7 +233,6 @@ class Engine:
             overturned=overturned,
             settled=status == Status.SETTLED,
             end_time=float(log.times[0]) if overturned else _samples(at) * dt,
-            residual_rotation=math.nan if overturned else float(state[self.model.layout.rotation]),
             peaks=log.peaks[: self._n_peaks],
             peak_times=log.times[: self._n_peaks],
             lost_support=float(log.peaks[-1]),
@@ -273,10 +275,11 @@ def _flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) ->
     """Return the parameters of the integrated phases of a model."""
     own = VERTICAL if model.complete else LINEAR
     kinds = quantities.kinds if model.complete else np.full(len(quantities), LINEAR, dtype=np.int64)
+    turning = [LINEAR] * (model.layout.remembered > 0)  # the row of θ'
     return Flow(
         field=model.field(),
-        kinds=np.concatenate(([LINEAR], kinds, [own])).astype(np.int64),
-        levers=np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1, 2)))),
+        kinds=np.concatenate(([LINEAR], kinds, turning, [own])).astype(np.int64),
+        levers=np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1 + len(turning), 2)))),
         rest=model.properties.resting_reaction,
         scale=_scale(model),
         tolerance=tolerance,

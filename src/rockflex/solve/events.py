@@ -189,13 +189,15 @@ def cross(
         here = sample.ground + sample.slope * at.begun
         now = min(sample.time + at.begun, sample.until)
         if event in (CHANGES, TURNS) and not turns:
-            keep(log, now, side, here, motion.state)
+            if at.onset == INSIDE:  # otherwise an uplift is yet to be recorded
+                keep(log, now, side, here, motion.state)
             log.tally[EVENTS] += 1
             if event == TURNS:
                 motion.state[system.layout.spin] = 0.0
                 remember(system, p, motion)
                 enter(system, at, system.links[p, TURNED], motion)
             else:
+                remember(system, p, motion)
                 enter(system, at, int(system.links[p, CHANGED + int(owner)]), motion)
             keep(log, now, side, here, motion.state)
             at.resume = 0.0

@@ -46,7 +46,7 @@ def moment_rotation(structure: RockingStructure | RockingProperties, rotations: 
 
     References
     ----------
-    The flag shape: Christopoulos, Filiatrault & Folz 2002, doi 10.1002/eqe.155.
+    The flag shape: Christopoulos, Filiatrault & Folz 2002, doi 10.1002/eqe.152.
 
     Examples
     --------

@@ -11,8 +11,8 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
-    "min": min,
-    "max": max,
+    "min": lambda *values: min(values),
+    "max": lambda *values: max(values),
     "sqrt": math.sqrt,
     "exp": math.exp,
     "log": math.log,
