@@ -2,6 +2,7 @@
 
 import math
 import runpy
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,8 @@ import pytest
 
 import rockflex as rf
 
-GALLERY = Path(__file__).parents[2] / "examples" / "gallery"
+EXAMPLES = Path(__file__).parents[2] / "examples"
+GALLERY = EXAMPLES / "gallery"
 pytestmark = pytest.mark.slow
 
 
@@ -95,3 +97,16 @@ def test_tendons_of_the_frame_yield_alike_with_one_mode_and_with_all(frame):
     assert runs["settled"].all()
     yields_at = 0.4 * 1580e6 / 195e9 * 36.0 / 6.0
     np.testing.assert_array_equal(runs["tendon_yield"], runs["max_rotation"] >= yields_at)
+
+
+def test_random_walls_all_settle_and_open_for_a_reason():
+    given = tomllib.loads((EXAMPLES / "controlled_rocking_walls.toml").read_text("utf-8"))
+    del given["records_per_structure"]
+    runs = rf.run_study(rf.MonteCarloStudy(**given | {"count": 12}))
+    assert len(runs) == 12 * 72
+    assert runs["error"].isna().all()
+    assert runs["settled"].all()
+    left_open = runs["residual_rotation"] != 0.0
+    assert (runs.loc[left_open, "tendon_yield"] | (runs.loc[left_open, "recentring_ratio"] < 1.0)).all()
+    assert left_open.any()
+    assert (runs["tendon_yield"] == (runs["tendon_utilisation"] >= 1.0)).all()
