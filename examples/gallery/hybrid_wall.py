@@ -133,5 +133,5 @@ print(f"rotation at tendon yield: {yields_at:.4f} rad")
 # %%
 # Bars that were stretched push the closed base up, and so a pivot may leave the ground, which the models do not follow:
 # they pull it down. Read the results with this in mind.
-pulled = runs.groupby("structure", sort=False)["min_vertical_reaction"].agg(lambda reaction: (reaction < 0.0).mean())
-print(pulled.round(2))
+for name, group in runs.groupby("structure", sort=False):
+    print(f"{name}: pulled down in {(group['min_vertical_reaction'] < 0.0).mean():.0%} of the runs")
