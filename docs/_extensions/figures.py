@@ -17,6 +17,8 @@ class Order:
         "chimney",
         "restrained_pier",
         "controlled_rocking",
+        "hybrid_wall",
+        "nine_story_frame",
         "fragility_of_a_frame",
         "ida_with_resurrections",
     )

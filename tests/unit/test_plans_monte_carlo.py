@@ -272,7 +272,11 @@ def test_the_example(tmp_path):
         p = made.structure_of(number)
         # The fuses are given as a share of the strength at which the base stays open.
         assert p.recentring_ratio == pytest.approx(1.0 / (values["fuses"] * (1.0 - values["hardening"])), rel=1e-12)
-        assert p.self_centring
+        assert p.self_centring == (p.recentring_ratio > 1.0)
+        (tendon,) = p.tendons
+        strain = tendon.yield_force / (tendon.stiffness * values["height"])
+        assert strain == pytest.approx(1580.0 / 195e3, rel=1e-3)
+        assert tendon.initial_force / tendon.yield_force == pytest.approx(values["stress"])
     assert made.document() == rf.MonteCarloStudy(**tomllib.loads(EXAMPLE.read_text("utf-8"))).document()
 
 
