@@ -1,7 +1,15 @@
 """Models of a structure on a base that may uplift."""
 
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, Element
+from rockflex.models._element_states import (
+    arms,
+    element_energies,
+    element_forces,
+    elongations,
+    plastic_stretches,
+    stretch_per_arm,
+)
+from rockflex.models._elements import CLOSED, LEFT, RIGHT, Bar, Dashpot, Element, Spring
 from rockflex.models._field import EXTRA, Field, field_rates, inertia_left, pivot_at
 from rockflex.models._impact import (
     ForgottenLaw,
@@ -16,13 +24,14 @@ from rockflex.models._kept import accelerations, acting_side, phases_at, rates_o
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
-from rockflex.models._named import floor_quantities, modal_displacement, quantities, rotation_by_side
+from rockflex.models._named import floor_quantities, modal_displacement, quantities, rotation_by_side, swing_by_side
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import (
     HORIZONTAL,
     LEFT_OUT,
     LINEAR,
     SWAY,
+    SWING,
     VERTICAL,
     Posture,
     observe,
@@ -46,7 +55,7 @@ from rockflex.models._phase import (
 )
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
 from rockflex.models._reactions import Reactions, printed_reactions, reactions
-from rockflex.models._stored import floor_accelerations, stored_energies, stretch_per_arm, tendon_energy
+from rockflex.models._stored import floor_accelerations, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 
 __all__ = [
@@ -67,12 +76,15 @@ __all__ = [
     "RIGHT",
     "SIDE",
     "SWAY",
+    "SWING",
     "TIME",
     "TURNS",
     "VERTICAL",
     "Arrow",
+    "Bar",
     "Border",
     "BoucWen",
+    "Dashpot",
     "Element",
     "Exit",
     "Field",
@@ -91,11 +103,16 @@ __all__ = [
     "Restitution",
     "RockingModel",
     "SidedRestitution",
+    "Spring",
     "StateLayout",
     "VVELComplete",
     "VVELSimplified",
     "accelerations",
     "acting_side",
+    "arms",
+    "element_energies",
+    "element_forces",
+    "elongations",
     "field_rates",
     "floor_accelerations",
     "floor_quantities",
@@ -112,6 +129,7 @@ __all__ = [
     "parse_model",
     "phases_at",
     "pivot_at",
+    "plastic_stretches",
     "posture_of",
     "printed_reactions",
     "quantities",
@@ -123,7 +141,7 @@ __all__ = [
     "stored_energies",
     "stretch_per_arm",
     "strike",
-    "tendon_energy",
+    "swing_by_side",
     "turning_row",
     "values_of",
 ]

@@ -7,7 +7,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models._modal_model import ModalModel
-from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY
+from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING
 from rockflex.models._quantities import Quantities, Share, collected, joined
 
 
@@ -93,3 +93,14 @@ def modal_displacement(model: ModalModel, mode: int) -> Quantities:
 def rotation_by_side(model: ModalModel) -> Quantities:
     """Return the rotation to the right in rad (zero while rotated to the left), and likewise to the left."""
     return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])
+
+
+def swing_by_side(model: ModalModel) -> Quantities:
+    """Return δ'/r, the rate of an element's elongation per unit distance from the pivot, in rad/s, to each side.
+
+    That is θ' for small rotations; zero while rotated to the other side. It is one quantity if the sides do not differ.
+    """
+    n = model.properties.n_modes
+    if all(each.position == 0.0 for each in model.properties.elements) and model.properties.symmetric:
+        return Quantities.of(1, n, SWING, swing=1.0)
+    return Quantities.of(2, n, SWING, swing=[0.0, 1.0], right_swing=[1.0, -1.0])

@@ -14,8 +14,9 @@ from rockflex.models._field import ARM, MASS, PULL, Field, pivot_at
 LINEAR = 0  # the row itself
 SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row gives its u (Eq. 3)
 LEFT_OUT = 2  # the row and the masses left out: levers[0] is Σ m_i or Σ m_i h_i, levers[1] Σ m_i h_i or Σ m_i h_i²
-HORIZONTAL = 3  # Σ F_x (Eq. 21) including tendon forces
-VERTICAL = 4  # Σ F_z (Eq. 22 with the sign of the weight corrected) including tendon forces
+SWING = 3  # rate of the elongation of an element per unit distance from the pivot; the row gives θ'
+HORIZONTAL = 4  # Σ F_x (Eq. 21) including tendon forces
+VERTICAL = 5  # Σ F_z (Eq. 22 with the sign of the weight corrected) including tendon forces
 
 
 class Posture(NamedTuple):
@@ -70,6 +71,8 @@ def observe(kind: int, value: float, near: float, far: float, posture: Posture) 
         return posture.shift + near * posture.sine + value * posture.cosine
     if kind == LEFT_OUT:
         return value - near * posture.drive - far * posture.turn
+    if kind == SWING:
+        return value * math.sqrt(0.5 + 0.5 * posture.cosine)
     if kind == HORIZONTAL:
         return posture.horizontal
     if kind == VERTICAL:

@@ -17,12 +17,13 @@ Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by 
 
 OF_MODES = ("displacement", "restoring", "acceleration")
 OF_BASE = ("rotation", "right", "turn", "ground")
+OF_SWING = ("swing", "right_swing")
 ROTATION, RIGHT_ROTATION, TURN, GROUND = -4, -3, -2, -1  # columns of `Quantities.shares`
 
 
 @dataclass(frozen=True, eq=False)
 class Quantities:
-    """F quantities, each a weighted sum of displacements and accelerations.
+    """F quantities, each a weighted sum of displacements, accelerations and the velocity of the rotation.
 
     Attributes
     ----------
@@ -30,20 +31,27 @@ class Quantities:
         Weights of D_n (`displacement`), of the restoring acceleration of each mode (`restoring`: ω_n² D_n, or that of
         Eq. 37), of D''_n (`acceleration`), of θ (`rotation`), of θ while the base rotates about its right pivot
         (`right`), of θ'' (`turn`) and of the ground acceleration (`ground`).
+    swings : ndarray, shape (F, 2)
+        Weights of θ' (`swing`), and of θ' while the base rotates about its right pivot (`right_swing`).
     kinds : ndarray, shape (F,)
         Kind of the quantity for large rotations; see `rockflex.models.observe`.
     """
 
     shares: Array
+    swings: Array
     kinds: NDArray[np.int64]
 
     @classmethod
     def of(cls, count: int, modes: int, kind: int = LINEAR, **shares: ArrayLike) -> "Quantities":
         """Return `count` quantities of a model with the given number of modes; shares not given are zero."""
         values = np.zeros((count, 3 * modes + len(OF_BASE)))
+        swings = np.zeros((count, len(OF_SWING)))
         for name, share in shares.items():
-            values[:, _column(name, modes)] = share
-        return cls(values, np.full(count, kind, dtype=np.int64))
+            if name in OF_SWING:
+                swings[:, OF_SWING.index(name)] = share
+            else:
+                values[:, _column(name, modes)] = share
+        return cls(values, swings, np.full(count, kind, dtype=np.int64))
 
     @classmethod
     def none(cls, modes: int) -> "Quantities":
@@ -83,7 +91,8 @@ def collected(modes: int, shares: Sequence[Share]) -> Quantities:
 
 def joined(parts: Sequence[Quantities]) -> Quantities:
     """Return all quantities of the parts, in their order."""
-    return Quantities(np.concatenate([part.shares for part in parts]), np.concatenate([part.kinds for part in parts]))
+    shares, swings, kinds = zip(*((part.shares, part.swings, part.kinds) for part in parts), strict=True)
+    return Quantities(np.concatenate(shares), np.concatenate(swings), np.concatenate(kinds))
 
 
 def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
@@ -99,7 +108,10 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
         shares = shares.copy()
         for column in (ROTATION, RIGHT_ROTATION, GROUND):
             shares[bends, column] = 0.0
-    return shares @ _moving(model, key, large=large)
+    rows = shares @ _moving(model, key, large=large)
+    if key[0] != CLOSED and quantities.swings.any():
+        rows[:, model.layout.spin] += quantities.swings @ (1.0, float(key[0] == RIGHT))
+    return rows
 
 
 def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:

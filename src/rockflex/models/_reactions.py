@@ -9,6 +9,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
+from rockflex.models._element_states import element_forces
 from rockflex.models._kept import acting_side, rates_of
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER
@@ -24,20 +25,20 @@ class Reactions(NamedTuple):
 
 
 def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
-    """Return Σ m_i (a + x''_i), Eq. 21, and Σ m_i (g + z''_i), Eq. 22 with the sign corrected, plus tendon forces.
+    """Return Σ m_i (a + x''_i), Eq. 21, and Σ m_i (g + z''_i), Eq. 22 with the sign corrected, plus the elements' pull.
 
     In the simplified models, consistent with Eq. 23 for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
-    m_tot (g + s B θ''). `states` as in `History`; `rates` contains D''_n and θ'' at each state, shape (n, N + 1).
+    m_tot (g + s B θ'') plus the tensions of the elements. `states` as in `History`; `rates` contains D''_n and θ'' at
+    each state, shape (n, N + 1).
     """
     if model.complete:
         return _of_large_rotations(model, states, rates)
-    p, layout = model.properties, model.layout
+    p, side = model.properties, acting_side(states)
     turn, push = rates[:, -1], rates[:, :-1] @ p.effective_mass
-    side, rotation = acting_side(states), layout.of(states, layout.rotation)
-    vertical = np.full(side.size, p.resting_reaction)
+    vertical = p.m_tot * GRAVITY + element_forces(model, states).sum(axis=1)
     for each in (1, -1):
-        pivot, on = p.pivot(each), side == each
-        vertical[on] += each * (p.m_tot * pivot.arm * turn[on] + pivot.axial_stiffness_moment * rotation[on])
+        on = side == each
+        vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]
     return Reactions(p.m_tot * states[:, GROUND] + p.l0r * turn + push, vertical)
 
 

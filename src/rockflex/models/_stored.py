@@ -33,22 +33,6 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
     return kinetic, strain, side * weight * rotation - 0.5 * p.l0r * GRAVITY * rotation**2
 
 
-def tendon_energy(model: RockingModel, states: Array) -> Array:
-    """Return the energy of the tendons at the states of a history in J, relative to contact, shape (n,)."""
-    layout, p = model.layout, model.properties
-    rotation = layout.of(states, layout.rotation)
-    stretch = stretch_per_arm(model, np.abs(rotation))
-    sides = [p.pivot(side) for side in (1, -1)]
-    prestress = _by_side(rotation, *(each.prestress_moment for each in sides))
-    stiffness = _by_side(rotation, *(each.tendon_stiffness for each in sides))
-    return prestress * stretch + 0.5 * stiffness * stretch**2
-
-
-def stretch_per_arm(model: RockingModel, turn: Array) -> Array:
-    """Return the elongation of a tendon per unit distance from the pivot at |θ| in rad: 2 sin(|θ|/2), or |θ|."""
-    return 2.0 * np.sin(0.5 * turn) if model.complete else turn
-
-
 def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) -> Array:
     """Return the total horizontal acceleration of each floor in m/s², shape (n, N_floors).
 

@@ -5,7 +5,8 @@ from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._global import GLOBAL, asked_of
 from rockflex.response._history import History
-from rockflex.response._response import PEAKS, Response, respond
+from rockflex.response._respond import respond
+from rockflex.response._response import PEAKS, Response
 from rockflex.response._warnings import warnings_of
 
 __all__ = [

@@ -2,8 +2,8 @@
 
 The simplified equations (Eqs. 15, 23 and 25) describe a system with the energy
 ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'² + ½ Σ m* ω² D² + s m_tot g B θ - ½ L_0^r g θ²
-relative to the moving ground, plus the energy of tendons. The work of the ground is -∫ a (L_0^r θ' + Σ m* D') dt. For
-the complete equations the energy is that of Eqs. 6-8.
+relative to the moving ground, plus the energy of the elements between base and ground. The work of the ground is
+-∫ a (L_0^r θ' + Σ m* D') dt. For the complete equations the energy is that of Eqs. 6-8.
 """
 
 import math
@@ -14,7 +14,9 @@ import numpy as np
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, stored_energies, tendon_energy
+from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, accelerations, element_energies, stored_energies
+from rockflex.response._element_losses import element_losses
+from rockflex.response._quintic import quintic
 from rockflex.solve import ClosedForm
 
 REACH = 8.0  # radians of the fastest mode covered by one Gauss rule, which then has at most 20 points
@@ -25,21 +27,25 @@ MOST_PIECES = 10_000  # per interval: a minute of quadrature for a record of a t
 class EnergyLedger(Value):
     """Energies in J at every state of a history, relative to the moving ground; read-only arrays of shape (n_states,).
 
-    ``kinetic + strain + gravity + tendons + damped + yielded + lost - input`` is constant; `residual` is its numerical
-    deviation from the initial value.
+    ``kinetic + strain + gravity + element_strain + damped + yielded + elements.sum(axis=1) + lost - input`` is
+    constant; `residual` is its numerical deviation from the initial value.
 
     Parameters
     ----------
     kinetic, strain, gravity
         Kinetic energy, elastic strain energy, and potential energy of the lifted weight (zero in contact).
-    tendons
-        Energy stored in the tendons, relative to the base in contact.
+    element_strain
+        Elastic energy stored in tendons and dissipators, relative to the base in contact before anything yields. A bar
+        that hardens also stores energy at zero force, locked in by its plastic stretch.
     damped, input
         Energy dissipated by modal damping, and work of the ground, up to each state; found by quadrature of the exact
         states, or integrated with the motion.
     yielded
         Energy absorbed by the hysteretic spring of a Bouc-Wen superstructure; `strain` is then that of its elastic
         part.
+    elements
+        Energy dissipated by each element up to each state, in the order of `RockingProperties.elements`, shape
+        (n_states, E). An element that breaks dissipates what it had stored.
     lost
         Energy lost in impacts up to each state.
     impact_losses
@@ -62,9 +68,10 @@ class EnergyLedger(Value):
     kinetic: Array
     strain: Array
     gravity: Array
-    tendons: Array
+    element_strain: Array
     damped: Array
     yielded: Array
+    elements: Array
     input: Array
     lost: Array
     impact_losses: Array
@@ -72,13 +79,18 @@ class EnergyLedger(Value):
     @property
     def residual(self) -> Array:
         """Error of the energy balance at each state, in J."""
-        total = self.stored + self.damped + self.yielded + self.lost - self.input
+        total = self.stored + self.damped + self.yielded + self.elements.sum(axis=1) + self.lost - self.input
         return total - total[0]
 
     @property
     def stored(self) -> Array:
-        """Recoverable energy: kinetic, strain, gravity and tendons, in J."""
-        return self.kinetic + self.strain + self.gravity + self.tendons
+        """Stored energy: kinetic, strain, gravity and that of the elements, in J."""
+        return self.kinetic + self.strain + self.gravity + self.element_strain
+
+    @property
+    def tendons(self) -> Array:
+        """Another name of `element_strain`."""
+        return self.element_strain
 
     @property
     def closing_error(self) -> float:
@@ -101,7 +113,7 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
     losses = kinetic[impact] - kinetic[impact + 1]
     lost = np.zeros(states.shape[0])
     np.add.at(lost, impact + 1, losses)
-    damped, work = _work(model, states)
+    damped, work, swing = _work(model, states)
     yielded = np.zeros(damped.size)
     if model.integrated:
         integrated = (states[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
@@ -112,9 +124,10 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         kinetic=kinetic,
         strain=strain,
         gravity=gravity,
-        tendons=tendon_energy(model, states),
+        element_strain=element_energies(model, states).sum(axis=1),
         damped=np.concatenate(([0.0], np.cumsum(damped))),
         yielded=np.concatenate(([0.0], np.cumsum(yielded))),
+        elements=np.vstack((np.zeros(len(model.elements)), np.cumsum(element_losses(model, states, swing), axis=0))),
         input=np.concatenate(([0.0], np.cumsum(work))),
         lost=np.cumsum(lost),
         impact_losses=losses,
@@ -123,29 +136,57 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
 
 def is_impact(model: RockingModel, states: Array) -> Bools:
     """Return True for the interval between the two states of every impact, shape (n_states - 1,)."""
-    spin = model.layout.of(states, model.layout.spin)
+    spin, rotation = (model.layout.of(states, place) for place in (model.layout.spin, model.layout.rotation))
     time, side = states[:, TIME], states[:, SIDE]
-    same_time, rocking = time[1:] == time[:-1], side[:-1] != 0.0
-    return same_time & rocking & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
+    landed = (time[1:] == time[:-1]) & (side[:-1] != 0.0) & (rotation[:-1] == 0.0)
+    return landed & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
 
 
-def _work(model: RockingModel, states: Array) -> tuple[Array, Array]:
-    """Return the damped and the input energy between adjacent states, (n_states - 1,) each, by Gauss quadrature."""
-    p = model.properties
+def _work(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
+    """Return the damped and the input energy in J, and ∫ (δ'/r)² dt in rad²/s, between adjacent states.
+
+    δ'/r is the rate of an element's elongation per unit distance from the pivot. All have the shape (n_states - 1,),
+    and are found by Gauss quadrature.
+    """
+    p, layout = model.properties, model.layout
     n = p.n_modes
-    states = states[:, : HEADER + model.layout.core]
     motion = ClosedForm(model)
     span = np.diff(states[:, TIME])
     places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
     drag = 2.0 * p.zeta * p.omega * p.effective_mass
-    damped, work = np.zeros(span.size), np.zeros(span.size)
+    damped, work, swing = (np.zeros(span.size) for _ in range(3))
+    turn = _Turn(model, states)
     for place, weight in zip(places, weights, strict=True):
         inside = motion.between(states, float(place))
-        v = inside[:, n : 2 * n]
+        v, spin = inside[:, n : 2 * n], inside[:, layout.spin]
         acceleration = states[:-1, GROUND] + place * np.diff(states[:, GROUND])
         damped += weight * span * (v**2 @ drag)
-        work -= weight * span * acceleration * (p.l0r * inside[:, -1] + v @ p.effective_mass)
-    return damped, work
+        work -= weight * span * acceleration * (p.l0r * spin + v @ p.effective_mass)
+        swing += weight * span * turn.swing(inside, float(place)) ** 2
+    return damped, work, swing
+
+
+class _Turn:
+    """The rotation of the base between adjacent states: exact where the motion is solved in closed form."""
+
+    def __init__(self, model: RockingModel, states: Array) -> None:
+        self._model = model
+        self._states = states
+        self._bend = accelerations(model, states)[:, -1:] if model.integrated else None
+
+    def swing(self, inside: Array, place: float) -> Array:
+        """Return δ'/r at a place of every interval, with the states `inside` of the closed form."""
+        layout = self._model.layout
+        rotation, spin = inside[:, layout.rotation], inside[:, layout.spin]
+        if self._bend is None:
+            return spin
+        known, rate = (layout.of(self._states, each)[:, None] for each in (layout.rotation, layout.spin))
+        value, slope, _ = quintic(known, rate, self._bend, np.diff(self._states[:, TIME]), place)
+        rocking = self._states[:-1, SIDE] != 0.0
+        spin = np.where(rocking, slope[:, 0], spin)
+        if not self._model.complete:
+            return spin
+        return spin * np.cos(0.5 * np.where(rocking, value[:, 0], rotation))
 
 
 def _rule(label: str, fastest: float, longest: float) -> tuple[Array, Array]:

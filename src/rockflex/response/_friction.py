@@ -22,6 +22,7 @@ from rockflex.models import (
     reactions,
 )
 from rockflex.response._energy import is_impact
+from rockflex.response._quintic import quintic
 from rockflex.solve import ClosedForm
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
@@ -208,18 +209,17 @@ class Friction:
         rows = states[:-1].copy()
         rows[:, TIME] += place * np.diff(states[:, TIME])
         rows[:, GROUND] += place * np.diff(states[:, GROUND])
-        end = HEADER + layout.core
         if self._linear:
-            rows[:, HEADER:end] = self._linear.between(states[:, :end], place)
+            rows[:, HEADER:] = self._linear.between(states, place)
             if not self._model.integrated:
                 return rows, None
         turn, spin = HEADER + layout.rotation, HEADER + layout.spin
         where, velocity = [*range(HEADER, HEADER + n), turn], [*range(HEADER + n, HEADER + 2 * n), spin]
-        value, slope, bend = _quintic(states[:, where], states[:, velocity], rates, np.diff(states[:, TIME]), place)
+        value, slope, bend = quintic(states[:, where], states[:, velocity], rates, np.diff(states[:, TIME]), place)
         integrated = (states[:-1, SIDE] != 0.0) | (self._linear is None)
         rows[np.ix_(integrated, where)] = value[integrated]
         rows[np.ix_(integrated, velocity)] = slope[integrated]
-        rows[:, end:] = 0.0
+        rows[:, HEADER + layout.core : HEADER + layout.memory] = 0.0
         return rows, bend if self._linear is None else None
 
     def _reactions_at(self, states: Array, rates: Array) -> Reactions:
@@ -234,21 +234,3 @@ class Friction:
 def _coefficient(angle: Array) -> Array:
     upright = angle < 0.5 * math.pi
     return np.where(upright, np.tan(np.where(upright, angle, 0.0)), np.inf)
-
-
-def _quintic(value: Array, slope: Array, bend: Array, step: Array, place: float) -> tuple[Array, Array, Array]:
-    """Return value, slope and second derivative between adjacent rows, from those of the rows, (n, K) each."""
-    h = step[:, None]
-    safe = np.where(h > 0.0, h, 1.0)
-    start, end = slope[:-1] * h, slope[1:] * h
-    first, last = bend[:-1] * h**2, bend[1:] * h**2
-    rise = value[1:] - value[:-1] - start - 0.5 * first
-    tilt = end - start - first
-    curl = last - first
-    c3, c4, c5 = 10 * rise - 4 * tilt + 0.5 * curl, -15 * rise + 7 * tilt - curl, 6 * rise - 3 * tilt + 0.5 * curl
-    f = place
-    return (
-        value[:-1] + f * (start + f * (0.5 * first + f * (c3 + f * (c4 + f * c5)))),
-        (start + f * (first + f * (3 * c3 + f * (4 * c4 + f * 5 * c5)))) / safe,
-        (first + f * (6 * c3 + f * (12 * c4 + f * 20 * c5))) / safe**2,
-    )

@@ -8,13 +8,13 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._checks import finite_rows
 from rockflex._values import Value
-from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, accelerations, quantities, values_of
+from rockflex.modal import Tendon
+from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, accelerations, element_forces, elongations
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
 from rockflex.response._floors import floor_histories
 from rockflex.response._friction import IMPACT_WINDOW, Friction
-from rockflex.response._global import GLOBAL
+from rockflex.response._global import global_histories
 from rockflex.response._missing import MissingQuantityError
-from rockflex.response._tendons import tendon_forces
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -29,6 +29,7 @@ class History(Value):
         Shape (n_states, 2N + 5); each row contains time (s), side of rocking, ground acceleration (m/s²), D (m), D'
         (m/s), θ (rad) and θ' (rad/s). An event is two rows at the same time. Nonlinear models have four more columns: z
         of Eq. 38, and the damped, input and hysteretic energy (J), which are known where the motion was integrated.
+        The last columns are the memories of elements that yield or slide.
         Stored as a copy.
 
     Raises
@@ -175,7 +176,28 @@ class History(Value):
     @property
     def tendon_force(self) -> Array:
         """Force of each tendon in N, in the order of `RockingProperties.tendons`, shape (n_states, n_tendons)."""
-        return tendon_forces(self.model, self.states)
+        places = [k for k, each in enumerate(self.model.properties.elements) if isinstance(each, Tendon)]
+        return self.element_force[:, places]
+
+    @cached_property
+    def element_force(self) -> Array:
+        """Force of each element of the base in N, positive if it pulls the base down, shape (n_states, E).
+
+        The order is that of `RockingProperties.elements`.
+        """
+        values = element_forces(self.model, self.states)
+        values.setflags(write=False)
+        return values
+
+    @property
+    def element_elongation(self) -> Array:
+        """Elongation r |θ| of each element in m, in complete models 2 r sin(|θ|/2), shape (n_states, E)."""
+        return elongations(self.model, self.states)
+
+    @property
+    def element_energy(self) -> Array:
+        """Energy that each element dissipated during the run in J, shape (E,); for its history see `EnergyLedger`."""
+        return self.energy.elements[-1]
 
     @property
     def horizontal_reaction(self) -> Array:
@@ -257,9 +279,7 @@ class History(Value):
 
     @cached_property
     def _global(self) -> Array:
-        values = values_of(self.model, quantities(self.model, GLOBAL), self.states)
-        values.setflags(write=False)
-        return values
+        return global_histories(self.model, self.states)
 
     @cached_property
     def _accelerations(self) -> Array:
@@ -276,14 +296,4 @@ class History(Value):
 
     @cached_property
     def _floors(self) -> tuple[Array, Array, Array, Array]:
-        floors = self.model.properties.floors
-        if floors is None:
-            raise MissingQuantityError(
-                "The properties of the structure include no floors, so there are no story drifts, story shears, floor "
-                "accelerations or floor displacements. Simulate a Frame or a LumpedStructure, or give "
-                "RockingProperties their floors."
-            )
-        histories = floor_histories(self.model, floors, self.states)
-        for values in histories:
-            values.setflags(write=False)
-        return histories
+        return floor_histories(self.model, self.states)

@@ -1,26 +1,19 @@
 """The result of one run: peaks and their times, how the run ended and, optionally, its history."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Generic, Self, TypeVar, overload
 
-import numpy as np
-
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._files import path_of
 from rockflex._values import Value
-from rockflex.models import RockingModel, floor_accelerations
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._file import load, save
 from rockflex.response._floor_peaks import FloorPeaks
-from rockflex.response._global import GLOBAL, tracked_of_floors
 from rockflex.response._history import History
 from rockflex.response._missing import MissingQuantityError
-from rockflex.response._tendons import largest_tendon_force
 from rockflex.response._warnings import warnings_of
-from rockflex.solve import Solution
 
 Quantity = TypeVar("Quantity")
 
@@ -54,10 +47,11 @@ class Response(Value):
     history also has the quantities of the history: `time`, `side`, `ground_acceleration`, `modal_displacement`,
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
     `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
-    `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `tendon_force`,
-    `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
-    `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see `History`. A response with peaks
-    only has none of them: `hasattr` returns False, and accessing one raises an `InputError`.
+    `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `element_force`,
+    `element_elongation`, `element_energy`, `tendon_force`, `horizontal_reaction`, `vertical_reaction`,
+    `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see
+    `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
+    `InputError`.
 
     Parameters
     ----------
@@ -89,7 +83,14 @@ class Response(Value):
         Largest tendon force in N; zero without tendons.
     tendon_utilisation
         Largest ratio of force to yield force of any tendon; zero without tendons, NaN if no yield force is given.
-        Tendons stay elastic in the model, so results with a ratio above 1 are not valid.
+    tendon_yield
+        Whether any tendon reached its yield force.
+    tendon_overload
+        Whether a tendon without `post_yield_ratio`, which stays elastic in the model, carries more than its yield
+        force. The results are not valid then.
+    residual_rotation
+        θ at the end of the run in rad: zero if the base is closed, NaN if it overturned. A run that does not settle
+        (``free_vibration="settle"``) may end while the base still rocks.
     n_uplifts, n_impacts
         Numbers of uplifts and of impacts during the run. An initial rotation does not count as an uplift, so there can
         be one more impact than uplifts.
@@ -99,6 +100,18 @@ class Response(Value):
         Time of the last state in s.
     settled
         Whether the run ended at rest (``free_vibration="settle"``).
+    max_element_force
+        Largest |F| of each element of the base in N, in the order of `RockingProperties.elements`, shape (E,). A
+        friction damper counts with its F_0 once it slides.
+    max_element_elongation
+        Largest |δ| of each element in m, shape (E,): r |θ| at the distance r from the pivot, in the complete models
+        2 r sin(|θ|/2). The base goes on beyond the elongation at which an element breaks.
+    element_yielded
+        Whether each element ever yielded or slid, shape (E,); of a tendon that stays elastic in the model, whether it
+        carries more than its yield force.
+    remaining_prestress
+        Force of each tendon in N once the base is closed after the run, shape (n_tendons,): the initial force, less
+        what its plastic stretch took; zero if it is slack or broken.
     floors
         Floor peaks if the structure has floors and ``output="history"`` was requested; otherwise None.
     history
@@ -137,11 +150,18 @@ class Response(Value):
     time_of_min_vertical_reaction: float
     max_tendon_force: float
     tendon_utilisation: float
+    tendon_yield: bool
+    tendon_overload: bool
+    residual_rotation: float
     n_uplifts: int
     n_impacts: int
     nominal_overturning: bool
     end_time: float
     settled: bool
+    max_element_force: Array
+    max_element_elongation: Array
+    element_yielded: Bools
+    remaining_prestress: Array
     floors: FloorPeaks | None = None
     history: History | None = None
 
@@ -165,6 +185,9 @@ class Response(Value):
     story_shear = _OfHistory[Array]()
     floor_acceleration = _OfHistory[Array]()
     total_floor_displacement = _OfHistory[Array]()
+    element_force = _OfHistory[Array]()
+    element_elongation = _OfHistory[Array]()
+    element_energy = _OfHistory[Array]()
     tendon_force = _OfHistory[Array]()
     horizontal_reaction = _OfHistory[Array]()
     vertical_reaction = _OfHistory[Array]()
@@ -175,7 +198,7 @@ class Response(Value):
     energy = _OfHistory[EnergyLedger]()
 
     def __post_init__(self) -> None:
-        pass  # there are no arrays to make read-only, and every run of a study creates a response
+        pass  # its arrays are read-only already, and every run of a study creates a response
 
     def __repr__(self) -> str:
         return (
@@ -217,55 +240,6 @@ class Response(Value):
         return Response(**peaks, floors=floors, history=history)
 
 
-PEAKS = tuple(f.name for f in fields(Response) if f.name not in ("floors", "history"))
-KINDS: dict[str, type] = {name: Response.__annotations__[name] for name in PEAKS}
-
-
-def respond(model: RockingModel, motion: str, solution: Solution, *, floors: bool = False) -> Response:
-    """Return the response for a solution whose rows are those of `asked_of`, with or without the floors."""
-    p = model.properties
-    rotation, peaks = float(solution.peaks[0]), solution.peaks[1:]
-    right = left = rotation
-    end = count = len(GLOBAL)
-    if not p.symmetric:
-        right, left = peaks[end : end + 2].tolist()
-        end += 2
-    left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0 or rotation > 0.0
-    status = "rocking" if left_ground else "no_uplift"
-    known = {f"max_{name}": value for name, value in zip(GLOBAL, peaks[:count].tolist(), strict=True)}
-    at = solution.peak_times[1 : 1 + count].tolist()
-    times = {f"time_of_max_{name}": value for name, value in zip(GLOBAL, at, strict=True)}
-    if p.top_height is None:
-        known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
-    force, utilisation = largest_tendon_force(model, right, left)
-    return Response(
-        model=model.label,
-        motion=motion,
-        status="overturned" if solution.overturned else status,
-        max_rotation=rotation,
-        time_of_max_rotation=float(solution.peak_times[0]),
-        **known,
-        **times,
-        min_vertical_reaction=p.resting_reaction - solution.lost_support,
-        time_of_min_vertical_reaction=solution.time_of_lost_support,
-        max_tendon_force=force,
-        tendon_utilisation=utilisation,
-        n_uplifts=solution.n_uplifts,
-        n_impacts=solution.n_impacts,
-        nominal_overturning=right > p.pivot(1).nominal_overturning_rotation
-        or left > p.pivot(-1).nominal_overturning_rotation,
-        end_time=solution.end_time,
-        settled=solution.settled,
-        floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
-        history=None if solution.states is None else History(model, solution.states),
-    )
-
-
-def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
-    names = tracked_of_floors(model)
-    found = dict(zip(names, np.split(peaks, len(names)), strict=True))
-    floors = model.properties.floors
-    if "floor_acceleration" not in found and floors is not None and solution.states is not None:
-        # Not a linear functional for large rotations: take the largest value at samples and events.
-        found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.states)).max(axis=0)
-    return FloorPeaks(**found)
+_SCALARS = (str, float, int, bool)
+KINDS: dict[str, type] = {f.name: f.type for f in fields(Response) if isinstance(f.type, type) and f.type in _SCALARS}
+PEAKS = tuple(KINDS)

@@ -13,9 +13,9 @@ def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
             f"{peaks['time_of_min_vertical_reaction']:.4g} s: {model} pulls the base down there, which no ground "
             "can. The pivot would lift, and what follows is to be read with care."
         )
-    if peaks["tendon_utilisation"] > 1.0:
+    if peaks["tendon_overload"]:
         found.append(
-            f"A tendon carries {peaks['tendon_utilisation']:.4g} times its yield force. Tendons stay elastic in the "
-            "model, so the results are not valid."
+            f"A tendon carries more than its yield force, up to {peaks['tendon_utilisation']:.4g} times it. It stays "
+            "elastic in the model, so the results are not valid. Give it a post_yield_ratio."
         )
     return tuple(found)

@@ -24,6 +24,8 @@ class Solution:
         its time in s.
     n_uplifts, n_impacts
         Number of uplifts and of impacts.
+    final_state
+        The last state: [D.., D'.., θ, θ', ..] as in `rockflex.models.StateLayout`.
     states
         One row per state: time, side, ground acceleration, D (N), D' (N), θ, θ'. There are states before and after
         every jump. None if only peaks were requested.
@@ -39,4 +41,5 @@ class Solution:
     time_of_lost_support: float
     n_uplifts: int
     n_impacts: int
+    final_state: Array
     states: Array | None

@@ -177,7 +177,7 @@ class Engine:
                 log = log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
             check_interruption()
         self._complain(status, at, dt, motion.state)
-        return self._solution(status, at, dt, log, float(motion.state[layout.rotation]), history=history)
+        return self._solution(status, at, dt, log, motion.state, history=history)
 
     def _place(self, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
@@ -224,19 +224,20 @@ class Engine:
         slowest = float(p.omega.min(initial=math.inf))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
-    def _solution(self, status: int, at: Progress, dt: float, log: Log, rotation: float, *, history: bool) -> Solution:
+    def _solution(self, status: int, at: Progress, dt: float, log: Log, state: Array, *, history: bool) -> Solution:
         overturned = status == Status.OVERTURNED
         return Solution(
             overturned=overturned,
             settled=status == Status.SETTLED,
             end_time=float(log.times[0]) if overturned else _samples(at) * dt,
-            residual_rotation=math.nan if overturned else rotation,
+            residual_rotation=math.nan if overturned else float(state[self.model.layout.rotation]),
             peaks=log.peaks[: self._n_peaks],
             peak_times=log.times[: self._n_peaks],
             lost_support=float(log.peaks[-1]),
             time_of_lost_support=float(log.times[-1]),
             n_uplifts=int(log.tally[UPLIFTS]),
             n_impacts=int(log.tally[IMPACTS]),
+            final_state=state,
             states=log.history[: log.tally[KEPT]] if history else None,
         )
 

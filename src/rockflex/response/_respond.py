@@ -1,0 +1,69 @@
+"""From the solution of a run to its response."""
+
+import math
+
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex.models import RockingModel, floor_accelerations, swing_by_side
+from rockflex.response._element_peaks import Reach, element_peaks
+from rockflex.response._floor_peaks import FloorPeaks
+from rockflex.response._global import GLOBAL, is_damped, is_sided, tracked_of_floors
+from rockflex.response._history import History
+from rockflex.response._response import Response
+from rockflex.solve import Solution
+
+
+def respond(model: RockingModel, motion: str, solution: Solution, *, floors: bool = False) -> Response:
+    """Return the response for a solution whose rows are those of `asked_of`, with or without the floors."""
+    p = model.properties
+    rotation, peaks = float(solution.peaks[0]), solution.peaks[1:]
+    right = left = rotation
+    swing = (0.0, 0.0)
+    end = len(GLOBAL)
+    if is_sided(model):
+        right, left = peaks[end : end + 2].tolist()
+        end += 2
+    if is_damped(model):
+        count = len(swing_by_side(model))
+        swing = float(peaks[end]), float(peaks[end + count - 1])
+        end += count
+    left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0 or rotation > 0.0
+    status = "rocking" if left_ground else "no_uplift"
+    known = {f"max_{name}": value for name, value in zip(GLOBAL, peaks[: len(GLOBAL)].tolist(), strict=True)}
+    at = solution.peak_times[1 : 1 + len(GLOBAL)].tolist()
+    times = {f"time_of_max_{name}": value for name, value in zip(GLOBAL, at, strict=True)}
+    if p.top_height is None:
+        known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
+    of_elements = element_peaks(model, Reach((right, left), swing), solution.final_state)
+    return Response(
+        model=model.label,
+        motion=motion,
+        status="overturned" if solution.overturned else status,
+        max_rotation=rotation,
+        time_of_max_rotation=float(solution.peak_times[0]),
+        **known,
+        **times,
+        min_vertical_reaction=p.resting_reaction - solution.lost_support,
+        time_of_min_vertical_reaction=solution.time_of_lost_support,
+        **of_elements._asdict(),
+        residual_rotation=math.nan if solution.overturned else float(solution.final_state[model.layout.rotation]),
+        n_uplifts=solution.n_uplifts,
+        n_impacts=solution.n_impacts,
+        nominal_overturning=right > p.pivot(1).nominal_overturning_rotation
+        or left > p.pivot(-1).nominal_overturning_rotation,
+        end_time=solution.end_time,
+        settled=solution.settled,
+        floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
+        history=None if solution.states is None else History(model, solution.states),
+    )
+
+
+def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
+    names = tracked_of_floors(model)
+    found = dict(zip(names, np.split(peaks, len(names)), strict=True))
+    floors = model.properties.floors
+    if "floor_acceleration" not in found and floors is not None and solution.states is not None:
+        # Not a linear functional for large rotations: take the largest value at samples and events.
+        found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.states)).max(axis=0)
+    return FloorPeaks(**found)
