@@ -120,7 +120,7 @@ def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
         "shapes_known": built.modes is not None,
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,
-        "tendons": [tendon.position for tendon in p.tendons],
+        "elements": [{"kind": table.kind, "position": table.position} for table in entry.elements or []],
     }
 
 
@@ -198,4 +198,5 @@ def _place(entry: StructureEntry, name: str | None) -> str:
     """Return the path of a field of the form, or of the whole form if it has no such field."""
     if name in type(entry.table).model_fields:
         return f"structure.{entry.kind}.{name}"
-    return f"structure.{name}" if name in type(entry).model_fields else "structure"
+    own = name is not None and name.partition(".")[0] in type(entry).model_fields
+    return f"structure.{name}" if own else "structure"
