@@ -13,10 +13,12 @@ from rockflex.fragility._limit_states import (
     OVERTURNING,
     ROCKED,
     ROCKING,
+    TENDON_YIELD,
     UPLIFT,
     LimitState,
     beyond,
     limit_label,
+    residual_beyond,
     symbol_of_nominal,
 )
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
@@ -35,6 +37,7 @@ __all__ = [
     "OVERTURNING",
     "ROCKED",
     "ROCKING",
+    "TENDON_YIELD",
     "UPLIFT",
     "AnnualRate",
     "BootstrapBand",
@@ -62,6 +65,7 @@ __all__ = [
     "observed_fractions",
     "resample_weights",
     "resampled_exceedance",
+    "residual_beyond",
     "risk_targeted_median",
     "symbol_of_nominal",
 ]

@@ -1,9 +1,11 @@
-"""Limit states of a run, in terms of its largest rotation |θ| in rad."""
+"""Limit states of a run: its largest and its residual rotation in rad, and the yielding of its tendons."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
+
+from rockflex._errors import InputError
 
 OVERTURNED = 0.5 * math.pi  # rad
 ROCKED = 1e-4  # rad; a run counts as rocking if its rotation is larger
@@ -12,6 +14,8 @@ ROCKED = 1e-4  # rad; a run counts as rocking if its rotation is larger
 @dataclass(frozen=True, kw_only=True)
 class LimitState:
     """A limit that a run may exceed: its names, its rotation, and which runs exceed it.
+
+    A run that overturns exceeds every limit state.
 
     Attributes
     ----------
@@ -24,7 +28,7 @@ class LimitState:
     exceeded : callable
         Returns whether the solved runs of a table, or the run of one row, exceed the limit.
     threshold : float
-        Rotation in rad; NaN if it depends on the structure.
+        Largest rotation |θ| in rad; NaN if the limit depends on the structure or is not on this rotation.
     bound : str
         The rotation in text; empty if the label states it.
 
@@ -32,7 +36,7 @@ class LimitState:
     --------
     >>> from rockflex.fragility import LIMIT_STATES
     >>> list(LIMIT_STATES)
-    ['uplift', 'rocking', 'nominal', 'overturning']
+    ['uplift', 'rocking', 'nominal', 'tendon_yield', 'overturning']
     >>> LIMIT_STATES["overturning"].rotation
     '|θ| = π/2'
     """
@@ -81,6 +85,30 @@ def beyond(rotation: float, name: str = "rotation", label: str = "") -> LimitSta
     )
 
 
+def residual_beyond(rotation: float) -> LimitState:
+    """Return the limit state of a residual rotation in rad, of either sign.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import residual_beyond
+    >>> residual_beyond(0.005).label
+    'residual 0.005 rad'
+    >>> bool(residual_beyond(0.005).exceeded({"residual_rotation": -0.007, "status": "rocking"}))
+    True
+    """
+
+    def exceeded(runs: Any) -> Any:
+        if "residual_rotation" not in runs:
+            raise InputError(
+                "The runs have no column residual_rotation. Tables of studies have it if a structure has dissipators, "
+                "dampers or yielding tendons, and those of simulate_many always do."
+            )
+        return (abs(runs["residual_rotation"]) > rotation) | _overturned(runs)
+
+    symbol = rf"|θ_{{\mathrm{{res}}}}|>{rotation:g}\ \mathrm{{rad}}"
+    return LimitState(name="residual", label=f"residual {rotation:g} rad", symbol=symbol, exceeded=exceeded)
+
+
 UPLIFT = LimitState(
     name="uplift", label="uplift", symbol="uplift", exceeded=lambda runs: runs["status"] != "no_uplift", threshold=0.0
 )
@@ -99,7 +127,13 @@ OVERTURNING = LimitState(
     threshold=OVERTURNED,
     bound="|θ| = π/2",
 )
-LIMIT_STATES = {state.name: state for state in (UPLIFT, ROCKING, NOMINAL, OVERTURNING)}
+TENDON_YIELD = LimitState(
+    name="tendon_yield",
+    label="tendon yield",
+    symbol="tendon yield",
+    exceeded=lambda runs: (runs["tendon_utilisation"] >= 1.0) | _overturned(runs),
+)
+LIMIT_STATES = {state.name: state for state in (UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OVERTURNING)}
 
 
 def limit_label(limit: float | str) -> str:

@@ -3,20 +3,12 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from rockflex._arrays import Array
+from rockflex.modal import Tendon
 from rockflex.plot._curves import curves_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, YELLOW, literal, new_figure, styled
 from rockflex.plot._units import readable
-from rockflex.response import Response
-
-# From the bottom: what is gone never falls, so what can still return rides on it.
-_LAYERS = (
-    ("damped", "damped", GRAY),
-    ("lost", "lost in impacts", RED),
-    ("gravity", "raised weight", GREEN),
-    ("tendons", "tendons", PURPLE),
-    ("strain", "strain", SKY),
-    ("kinetic", "kinetic", ORANGE),
-)
+from rockflex.response import History, Response
 
 
 def plot_energy(response: Response) -> Figure:
@@ -24,7 +16,8 @@ def plot_energy(response: Response) -> Figure:
 
     The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
     Eqs. 15, 23 and 25). Their sum equals the input, which starts from the energy at t = 0; the title
-    gives the difference. A run that overturns is plotted until θ last passes the rotation at which the static
+    gives the difference. Tendons that lose prestress give back energy that they held before, which counts as part of
+    the energy at t = 0. A run that overturns is plotted until θ last passes the rotation at which the static
     resisting moment vanishes, beyond which the weight overturns it.
 
     Parameters
@@ -55,9 +48,10 @@ def plot_energy(response: Response) -> Figure:
     (curve,) = curves_of([response])
     history = curve.history
     ledger, drawn = history.energy, curve.before_fall
-    layers = [(label, color, np.asarray(getattr(ledger, name))[drawn]) for name, label, color in _LAYERS]
+    held = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
+    layers = [(label, color, values[drawn]) for label, color, values in _layers(curve.history, held)]
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
-    start = float(ledger.stored[0])
+    start = float(ledger.stored[0]) + held
     supply = ledger.input[drawn] + start
     factor, unit = readable(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
@@ -79,3 +73,18 @@ def plot_energy(response: Response) -> Figure:
         handles, labels = axes.get_legend_handles_labels()
         figure.legend(handles[::-1], labels[::-1], loc="outside right upper")
     return figure
+
+
+def _layers(history: History, held: float) -> list[tuple[str, str, Array]]:
+    """Return label, colour and values; from the bottom, as what is gone never falls and carries what can return."""
+    ledger, elements = history.energy, history.model.properties.elements
+    only_tendons = all(isinstance(each, Tendon) for each in elements)
+    return [
+        ("damped", GRAY, ledger.damped),
+        ("lost in impacts", RED, ledger.lost),
+        ("yield of tendons" if only_tendons else "taken by elements", YELLOW, ledger.elements.sum(axis=1)),
+        ("raised weight", GREEN, ledger.gravity),
+        ("tendons" if only_tendons else "stored in elements", PURPLE, ledger.element_strain + held),
+        ("strain", SKY, ledger.strain),
+        ("kinetic", ORANGE, ledger.kinetic),
+    ]

@@ -1,6 +1,6 @@
 """Multiple stripes: observed fractions at each level, and the lognormal curve through them."""
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,12 +8,14 @@ from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import LIMIT_STATES, LognormalFragility, beyond, fit_stripes
+from rockflex.fragility import LognormalFragility, fit_stripes
 from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
 from rockflex.plot._style import Look, columns, styled
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from rockflex.study.stripes import StripeLimit
 
 
 _POINTS = 400
@@ -21,7 +23,7 @@ _POINTS = 400
 
 def plot_stripes(
     runs: "pd.DataFrame",
-    limit: Literal["overturning", "nominal", "uplift"] | float = "overturning",
+    limit: "StripeLimit" = "overturning",
     measure: str = "level of the stripe",
     *,
     confidence: float | None = 0.9,
@@ -35,7 +37,8 @@ def plot_stripes(
     runs
         The table of a stripe study.
     limit
-        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
+        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
+        rotation in rad, or a limit state such as ``rockflex.fragility.residual_beyond(0.005)``.
     measure
         Name of the measure of the levels, such as ``"pgv"``, for the axis; it is not in the table.
     confidence
@@ -67,7 +70,7 @@ def plot_stripes(
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
     check_columns(runs, needed, "the table of a stripe study")
-    from rockflex.study.stripes import stripe_counts
+    from rockflex.study.stripes import stripe_counts, stripe_limit
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
@@ -76,7 +79,7 @@ def plot_stripes(
     names = names_in(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with styled():
-        event = (LIMIT_STATES[limit] if isinstance(limit, str) else beyond(limit)).symbol
+        event = stripe_limit(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = structure_panels(names, 3, 2.1, measure_name(measure), y)
         for axes, name in zip(panels, names, strict=True):

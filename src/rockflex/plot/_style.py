@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
 BLACK, GRAY, GREEN, RED = "#000000", "#8c8c8c", "#009e73", "#d55e00"
 BLUE, ORANGE, SKY, PURPLE = "#0072b2", "#e69f00", "#56b4e9", "#cc79a7"
+YELLOW = "#f0e442"
 SHADE = "#e9edf2"
 SMALL = 7.5
 

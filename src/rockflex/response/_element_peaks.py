@@ -42,6 +42,7 @@ def _fixed(values: ArrayLike) -> NDArray[Any]:
     return array
 
 
+ELEMENT_PEAKS = ("max_element_force", "max_element_elongation", "element_yielded", "remaining_prestress")
 EMPTY: Array = _fixed(np.zeros(0))
 NONE = ElementPeaks(EMPTY, EMPTY, _fixed(np.zeros(0, dtype=np.bool_)), EMPTY, 0.0, 0.0, False, False)
 

@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 import zipfile
 from collections.abc import Callable
 from dataclasses import asdict
@@ -13,8 +14,17 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex._files import check_regular, write_whole
 from rockflex._shown import shown
-from rockflex.modal import FloorModes, RockingProperties, Tendon
+from rockflex.modal import (
+    BaseElement,
+    FloorModes,
+    FrictionDamper,
+    RockingProperties,
+    Tendon,
+    ViscousDamper,
+    YieldingDissipator,
+)
 from rockflex.models import (
+    HEADER,
     BoucWen,
     ForgottenLaw,
     ImpactLaw,
@@ -26,12 +36,13 @@ from rockflex.models import (
     VVELComplete,
     VVELSimplified,
 )
+from rockflex.response._element_peaks import ELEMENT_PEAKS, NONE, Reach, element_peaks
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 
-FORMAT = "rockflex-response-2"
+FORMAT, OLDER = "rockflex-response-3", "rockflex-response-2"
 PROPERTIES = (
     "omega",
     "effective_mass",
@@ -53,11 +64,19 @@ LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "ForgottenLaw": ForgottenLaw,
 }
 FLOOR_MODES = ("heights", "displacement", "force")
+ELEMENTS: dict[str, Callable[..., BaseElement]] = {
+    kind.__name__: kind for kind in (Tendon, YieldingDissipator, ViscousDamper, FrictionDamper)
+}
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 
 
-def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: History | None) -> Path:
-    """Write a response to `path`, adding the suffix ``.npz`` if necessary; the file is complete or absent."""
+def save(
+    path: Path, peaks: dict[str, Any], of_elements: dict[str, Any], floors: FloorPeaks | None, history: History | None
+) -> Path:
+    """Write a response to `path`, adding the suffix ``.npz`` if necessary; the file is complete or absent.
+
+    `peaks` are its scalars by name, and `of_elements` its `ELEMENT_PEAKS`.
+    """
     if path.suffix[1:2].isalpha() and path.suffix.lower() != ".npz":  # "scale 1.5" has no suffix
         raise InputError(
             f"A response is saved as .npz, but {path.name!r} was given. Name it {path.stem + '.npz'!r}; for a "
@@ -66,7 +85,7 @@ def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: 
         )
     path = path if path.suffix.lower() == ".npz" else path.with_name(path.name + ".npz")
     scalars = {"format": FORMAT, **peaks}
-    arrays: dict[str, Any] = {}
+    arrays: dict[str, Any] = {f"elements.{name}": values.astype(float) for name, values in of_elements.items()}
     if floors is not None:
         arrays |= {f"floors.{name}": getattr(floors, name) for name in FLOOR_PEAKS}
     if history is not None:
@@ -78,7 +97,7 @@ def save(path: Path, peaks: dict[str, Any], floors: FloorPeaks | None, history: 
         if model.integrated:
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
-        scalars["tendons"] = [asdict(tendon) for tendon in model.properties.tendons]
+        scalars["elements"] = [{"kind": type(each).__name__, **asdict(each)} for each in model.properties.elements]
         arrays["states"] = history.states
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
         if model.properties.floors is not None:
@@ -99,7 +118,7 @@ def load(path: Path, kinds: dict[str, type]) -> Kept:
             content = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
         arrays = {name: np.load(io.BytesIO(part)) for name, part in content.items()}
         scalars = json.loads(str(arrays["response"]))
-        known = scalars["format"] == FORMAT
+        known = scalars["format"] in (FORMAT, OLDER)
         kept = _kept(scalars, arrays, kinds) if known else None
     except Exception as error:  # zipfile, zlib, NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"
@@ -113,17 +132,49 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
     for name, values in arrays.items():
         if name != "response" and values.dtype != np.float64:
             raise InputError(f"{name} must be of type float64, but is of type {values.dtype}.")
-    peaks = {name: _typed(scalars, name, kind) for name, kind in kinds.items()}
     floors = history = None
     if "nodes" in arrays:  # as older versions named the states
         arrays = arrays | {"states": arrays["nodes"]}
     if "states" in arrays:
         history = History(_model(scalars, arrays), arrays["states"])
+    older = scalars["format"] == OLDER
+    later = _later(scalars, history) if older else _of_elements(arrays, history)
+    peaks = later | {name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in later}
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
         if floors.story_drift.shape != arrays["floor_modes.heights"].shape:
             raise InputError(f"There are peaks of {floors.story_drift.size} floors, but a different number of heights.")
     return peaks, floors, history
+
+
+def _of_elements(arrays: dict[str, Any], history: History | None) -> dict[str, Any]:
+    """Return the peaks of the elements."""
+    found = {name: arrays[f"elements.{name}"] for name in ELEMENT_PEAKS}
+    found["element_yielded"] = found["element_yielded"] != 0.0
+    elements = () if history is None else history.model.properties.elements
+    for name, values in found.items():
+        values.setflags(write=False)
+        known = sum(isinstance(each, Tendon) for each in elements) if name == "remaining_prestress" else len(elements)
+        if values.ndim != 1 or (history is not None and values.size != known):
+            raise InputError(f"{name} must have the shape ({known},), but its shape is {values.shape}.")
+    return found
+
+
+def _later(scalars: dict[str, Any], history: History | None) -> dict[str, Any]:
+    """Return the peaks that older files lack; there were only elastic tendons, and nothing kept a base open."""
+    over = bool(scalars["tendon_utilisation"] > 1.0)
+    rocks = scalars["status"] == "overturned" or (scalars["status"] == "rocking" and not scalars["settled"])
+    found = {"tendon_yield": over, "tendon_overload": over, "residual_rotation": math.nan if rocks else 0.0}
+    of_elements = NONE
+    if history is not None:
+        rotation = history.rotation
+        if scalars["status"] != "overturned":
+            found["residual_rotation"] = float(rotation[-1])
+        sides = max(float(rotation.max()), 0.0), max(-float(rotation.min()), 0.0)
+        largest = [scalars["max_rotation"] if side == max(sides) else side for side in sides]
+        reach = Reach((largest[0], largest[1]), (0.0, 0.0))
+        of_elements = element_peaks(history.model, reach, history.states[-1, HEADER:])
+    return found | {name: getattr(of_elements, name) for name in ELEMENT_PEAKS}
 
 
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
@@ -153,10 +204,11 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     floors = None
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
-    tendons = [Tendon(**each) for each in _typed(scalars, "tendons", list)]
+    name = "tendons" if scalars["format"] == OLDER else "elements"
+    elements = [ELEMENTS[each.pop("kind", "Tendon")](**each) for each in map(dict, _typed(scalars, name, list))]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
     known["eccentricity"] = scalars.get("eccentricity", 0.0)  # files of symmetric bases may lack it
-    properties = RockingProperties(**values, floors=floors, elements=tendons, **known)
+    properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
     law = _law(parameters)

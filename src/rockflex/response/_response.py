@@ -8,6 +8,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 from rockflex._arrays import Array, Bools
 from rockflex._files import path_of
 from rockflex._values import Value
+from rockflex.response._element_peaks import ELEMENT_PEAKS
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._file import load, save
 from rockflex.response._floor_peaks import FloorPeaks
@@ -225,11 +226,15 @@ class Response(Value):
         InputError
             If the path has another suffix, such as ``.parquet``.
         """
-        return save(path_of("path", path), self.peaks(), self.floors, self.history)
+        of_elements = {name: getattr(self, name) for name in ELEMENT_PEAKS}
+        return save(path_of("path", path), self.peaks(), of_elements, self.floors, self.history)
 
     @classmethod
     def load(cls, path: str | Path) -> "Response":
         """Read a response that `save` wrote.
+
+        Files of earlier versions without a history do not tell the tendons apart: the peaks of the elements are empty.
+        Without a history of a run that did not settle they lack the residual rotation too, which is then NaN.
 
         Raises
         ------

@@ -1,7 +1,9 @@
 """What the tables of all studies hold of a run: its status and its peaks."""
 
+from collections.abc import Iterable
 from typing import Any
 
+from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import PEAKS, Response
 
 STATUSES = ("no_uplift", "rocking", "overturned")
@@ -9,6 +11,7 @@ STATUSES = ("no_uplift", "rocking", "overturned")
 RESULTS: dict[str, type] = {  # every number and flag of a Response, by its name
     name: kind for name in PEAKS if (kind := Response.__annotations__[name]) in (float, int, bool)
 }
+OF_ELEMENTS = ("tendon_yield", "tendon_overload", "residual_rotation")
 
 
 def results_of(response: Response, suffix: str = "") -> dict[str, Any]:
@@ -16,6 +19,15 @@ def results_of(response: Response, suffix: str = "") -> dict[str, Any]:
     return {name + suffix: getattr(response, name) for name in ("status", *RESULTS)}
 
 
-def result_columns(suffix: str = "") -> dict[str, type]:
-    """Return the kinds of the columns that `results_of` fills."""
-    return {name + suffix: kind for name, kind in {"status": str, **RESULTS}.items()}
+def result_columns(structures: Iterable[RockingProperties] = (), suffix: str = "") -> dict[str, type]:
+    """Return the kinds of the columns that `results_of` fills in a study of these structures.
+
+    Without elements other than elastic tendons the columns of `OF_ELEMENTS` would say nothing, and are left out.
+    """
+    told = any(map(_is_controlled, structures))
+    kinds = {"status": str, **RESULTS}
+    return {name + suffix: kind for name, kind in kinds.items() if told or name not in OF_ELEMENTS}
+
+
+def _is_controlled(properties: RockingProperties) -> bool:
+    return any(not isinstance(each, Tendon) or each.post_yield_ratio is not None for each in properties.elements)

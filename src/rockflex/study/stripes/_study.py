@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import Field
 
 from rockflex._checks import positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, beyond
+from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, beyond
 from rockflex.motion import intensity
 from rockflex.study._arguments import positive_numbers
 from rockflex.study._tables import Columns, Row
@@ -20,7 +20,9 @@ from rockflex.study.plan._spec import StructuresSpec
 if TYPE_CHECKING:
     import pandas as pd
 
-COUNTED = (OVERTURNING, NOMINAL, UPLIFT)
+COUNTED = (OVERTURNING, NOMINAL, TENDON_YIELD, UPLIFT)
+
+StripeLimit: TypeAlias = Literal["overturning", "nominal", "tendon_yield", "uplift"] | float | LimitState
 
 
 class StripeStudy(StructuresSpec):
@@ -89,9 +91,7 @@ class StripePlan(CrossPlan):
             yield row | {"level": self.levels[unit % len(self.levels)]}
 
 
-def stripe_counts(
-    runs: "pd.DataFrame", limit: Literal["overturning", "nominal", "uplift"] | float = "overturning"
-) -> "pd.DataFrame":
+def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "pd.DataFrame":
     """Count the runs of each stripe that exceed a limit, as input of `fit_stripes`.
 
     Parameters
@@ -99,7 +99,8 @@ def stripe_counts(
     runs
         The table of a `StripeStudy`.
     limit
-        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"uplift"``, or a rotation in rad.
+        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
+        rotation in rad, or a limit state such as ``rockflex.fragility.residual_beyond(0.005)``.
 
     Returns
     -------
@@ -125,15 +126,27 @@ def stripe_counts(
     0    0.2            1        1
     1    0.4            1        1
     """
-    solved = runs[runs["status"].notna()]
-    if isinstance(limit, str):
-        state = next((each for each in COUNTED if each.name == limit), None)
-    else:
-        state = beyond(positive("limit", limit, "rad"))
-    if state is None:
-        words = ", ".join(f'"{each.name}"' for each in COUNTED)
-        raise InputError(f"limit must be {words} or a rotation in rad, but {shown(limit)} was given.")
+    solved, state = runs[runs["status"].notna()], stripe_limit(limit)
     counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
         ["structure", "model", "level"], observed=True
     )
     return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()
+
+
+def stripe_limit(limit: StripeLimit) -> LimitState:
+    """Return the limit state that `stripe_counts` counts.
+
+    Raises
+    ------
+    InputError
+        If the limit is another word, or not positive.
+    """
+    if isinstance(limit, LimitState):
+        return limit
+    if not isinstance(limit, str):
+        return beyond(positive("limit", limit, "rad"))
+    state = next((each for each in COUNTED if each.name == limit), None)
+    if state is None:
+        words = ", ".join(f'"{each.name}"' for each in COUNTED)
+        raise InputError(f"limit must be {words}, a LimitState or a rotation in rad, but {shown(limit)} was given.")
+    return state

@@ -104,7 +104,7 @@ class PopulationPlan(ChunkedPlan):
         found: dict[str, Any] = {"pair": int, "n_stories": int, "behaviour": BEHAVIOURS, **kinds_of(DRAWN, float)}
         found |= record_columns(self.motions)
         found |= kinds_of("pga pgv", float) | kinds_of(STRUCTURE, float) | kinds_of(SECOND, float)
-        found |= result_columns("_mdof") | result_columns("_2dof")
+        found |= result_columns(suffix="_mdof") | result_columns(suffix="_2dof")
         return found | kinds_of(COMBINED, float) | {"error": str}
 
     def rows(self, unit: int) -> list[Row]:
