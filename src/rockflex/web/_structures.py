@@ -17,6 +17,7 @@ from rockflex.web._refusal import Refusal, refusing
 
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
+CENTRING = "moment of weight and prestress over that of the dissipators; above 1 the base closes by itself"
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +162,7 @@ def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, 
         ("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
         ("a_lift", lifting, "m/s²", "slow ground acceleration that lifts the base"),
         ("α", alpha, "rad", "rotation beyond which it does not return to the upright position"),
+        *([("λ", pivot.recentring_ratio, "", CENTRING)] if pivot.dissipator_moment > 0.0 else []),
         ("θ_nom", nominal, "rad", limit),
     ]
     return [
