@@ -61,9 +61,10 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
 
 
 def _takes_text(field: FieldInfo) -> bool:
-    """Tell whether a field holds a word or a name; one that may hold numbers takes text as the path of a file."""
+    """Tell whether a field holds a word, a name or a table; one for numbers takes text as the path of a file."""
     kinds = parts(field.annotation)
-    return kinds == [str] or any(get_origin(kind) is Literal for kind in kinds)
+    words = kinds == [str] or any(get_origin(kind) is Literal for kind in kinds)
+    return words or inner_table(field.annotation) is not None
 
 
 def _leaves(

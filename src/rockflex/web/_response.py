@@ -122,11 +122,13 @@ def _kept(history: History, pulled: Array | None) -> NDArray[np.intp]:
     `pulled` is the force of an element in N, if one is drawn.
     """
     curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear]
-    if pulled is not None:
+    points = POINTS
+    if pulled is not None:  # loops need more points than curves over time
         curves.append(pulled)
+        points *= 2
     if history.model.properties.top_height is not None:
         curves.append(history.total_top_displacement)
-    kept = envelope(curves, POINTS)
+    kept = envelope(curves, points)
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: EVENTS // 2]
     return np.unique(np.concatenate((kept, events, events + 1)))
 

@@ -17,7 +17,7 @@ export function elements({ about }, current, put) {
     const last = rows.lastElementChild;
     last.open = true;
     last.querySelector("select").focus();
-  } }, "Add");
+  } }, "Add an element");
   const element = h("fieldset", { "data-path": "structure.elements" }, h("legend", {}, "Elements at the base"),
     h("p", { class: "hint" }, "Between the base and the ground, at the given distance from the axis of the masses."),
     rows, h("div", { class: "buttons" }, add, kind), trouble());
