@@ -238,8 +238,8 @@ def test_a_tendon_beyond_its_yield_force_is_told_in_words():
     row = document(*arguments)["runs"][0]
     assert row["tendon_utilisation"] > 1.0
     assert (
-        f"Warning: EL-CENTRO-1940-NS × 3: A tendon carries {row['tendon_utilisation']:.4g} times its yield force. "
-        "Tendons stay elastic in the model, so the results are not valid."
+        "Warning: EL-CENTRO-1940-NS × 3: A tendon carries more than its yield force, up to "
+        f"{row['tendon_utilisation']:.4g} times it. It stays elastic in the model, so the results are not valid."
     ) in invoke(*arguments).stderr
 
 

@@ -1,5 +1,7 @@
 """The energy that elements store and dissipate, against closed forms and against the balance."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import simpson
@@ -109,7 +111,7 @@ def test_dampers_take_the_integral_of_their_power():
     edges = [0, *(np.flatnonzero(np.diff(run.time) == 0.0) + 1), run.time.size]
     for place in range(2):
         power = run.element_force[:, place] * speed[:, place]
-        pieces = [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b - a > 2]
+        pieces = [slice(a, b) for a, b in pairwise(edges) if b - a > 2]
         work = sum(simpson(power[piece], x=run.time[piece]) for piece in pieces)
         assert run.element_energy[place] == pytest.approx(work, rel=1e-5)
 

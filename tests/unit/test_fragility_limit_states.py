@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -12,9 +13,11 @@ from rockflex.fragility import (
     OVERTURNED,
     OVERTURNING,
     ROCKING,
+    TENDON_YIELD,
     UPLIFT,
     beyond,
     limit_label,
+    residual_beyond,
     symbol_of_nominal,
 )
 
@@ -27,13 +30,18 @@ RUNS = pd.DataFrame(
         "status": ["no_uplift", "rocking", "rocking", "rocking", "overturned"],
         "max_rotation": [0.0, 5e-5, 0.02, 0.2, OVERTURNED],
         "nominal_overturning": [False, False, False, True, True],
+        "tendon_utilisation": [0.5, 0.9, 1.0, 1.01, np.nan],
+        "residual_rotation": [0.0, 0.0, -0.004, 0.006, np.nan],
     }
 )
 
 
 @pytest.mark.parametrize(
     ("state", "first"),
-    [(UPLIFT, 1), (ROCKING, 2), (beyond(0.1), 3), (NOMINAL, 3), (OVERTURNING, 4)],
+    [
+        *[(UPLIFT, 1), (ROCKING, 2), (beyond(0.1), 3), (NOMINAL, 3), (OVERTURNING, 4)],
+        *[(TENDON_YIELD, 2), (residual_beyond(0.003), 2), (residual_beyond(0.005), 3), (residual_beyond(1.0), 4)],
+    ],
     ids=lambda each: getattr(each, "label", each),
 )
 def test_runs_that_exceed_it(state, first):
@@ -42,9 +50,23 @@ def test_runs_that_exceed_it(state, first):
     assert [bool(state.exceeded(row)) for row in RUNS.to_dict("records")] == expected
 
 
-@pytest.mark.parametrize("state", [UPLIFT, NOMINAL, OVERTURNING], ids=lambda state: state.name)
+@pytest.mark.parametrize("state", [UPLIFT, NOMINAL, TENDON_YIELD, OVERTURNING], ids=lambda state: state.name)
 def test_counts_of_stripes_are_of_it(state):
     assert rf.stripe_counts(RUNS, state.name)["n_exceeding"].tolist() == [state.exceeded(RUNS).sum()]
+    assert rf.stripe_counts(RUNS, state).equals(rf.stripe_counts(RUNS, state.name))
+
+
+def test_residual_rotations_have_stripes_and_a_figure():
+    limit = residual_beyond(0.005)
+    assert rf.stripe_counts(RUNS, limit)["n_exceeding"].tolist() == [2]
+    figure = rf.plot_stripes(RUNS, limit)
+    assert figure.axes[0].get_ylabel() == r"$P(|θ_{\mathrm{res}}|>0.005\ \mathrm{rad})$"
+    assert rf.plot_stripes(RUNS, "tendon_yield").axes[0].get_ylabel() == "P(tendon yield)"
+
+
+def test_tables_without_residual_rotations():
+    with pytest.raises(rf.InputError, match=r"^The runs have no column residual_rotation\. Tables of studies"):
+        residual_beyond(0.005).exceeded(RUNS.drop(columns="residual_rotation"))
 
 
 def test_what_overturned_passed_every_rotation_below_a_right_angle():
@@ -64,3 +86,4 @@ def test_names():
     assert [limit_label(limit) for limit in ("0.5 nominal", 0.02)] == ["0.5 nominal", "0.02 rad"]
     assert (ROCKING.label, ROCKING.threshold) == ("θ_max > 1e-4 rad", 1e-4)
     assert math.isnan(NOMINAL.threshold)
+    assert (TENDON_YIELD.label, residual_beyond(0.005).label) == ("tendon yield", "residual 0.005 rad")

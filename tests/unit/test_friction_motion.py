@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import simpson
 
 from rockflex import BoucWen, GroundMotion, LumpedStructure, Restitution, load_suite, simulate
-from rockflex.response._friction import _quintic
+from rockflex.response._quintic import quintic
 
 GRAVITY = 9.81
 EL_CENTRO = load_suite("el-centro-1940")[0]
@@ -179,5 +179,5 @@ def test_a_polynomial_of_fifth_degree_is_its_own_interpolant():
     value, slope, bend = (polynomial.deriv(k)(time)[:, None] if k else polynomial(time)[:, None] for k in range(3))
     for place in (0.0, 0.3, 0.8, 1.0):
         inner = time[:-1] + place * np.diff(time)
-        for k, found in enumerate(_quintic(value, slope, bend, np.diff(time), place)):
+        for k, found in enumerate(quintic(value, slope, bend, np.diff(time), place)):
             np.testing.assert_allclose(found[:, 0], polynomial.deriv(k)(inner) if k else polynomial(inner), rtol=1e-12)

@@ -155,7 +155,7 @@ def test_any_other_file(tmp_path):
 def test_another_format(tmp_path):
     path = tmp_path / "old.npz"
     np.savez(path, response=np.array(json.dumps({"format": "rockflex-response-0"})))
-    with pytest.raises(InputError, match=r"has the format 'rockflex-response-0', but 'rockflex-response-2' is exp"):
+    with pytest.raises(InputError, match=r"has the format 'rockflex-response-0', but 'rockflex-response-3' is exp"):
         Response.load(path)
 
 
@@ -169,7 +169,7 @@ def test_any_damage_is_named(tmp_path):
     with array.open("wb") as file:
         np.save(file, np.zeros(3))
     np.savez(list_, response=np.array("[1]"))
-    np.savez(keys, response=np.array(json.dumps({"format": "rockflex-response-2"})))
+    np.savez(keys, response=np.array(json.dumps({"format": "rockflex-response-3"})))
     for broken in (empty, array, list_, keys):
         with pytest.raises(InputError, match="is not a saved response"):
             Response.load(broken)

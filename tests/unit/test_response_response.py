@@ -38,7 +38,7 @@ QUANTITIES = (
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
     "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
     "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force", "total_top_displacement",
-    "total_floor_displacement",
+    "total_floor_displacement", "element_force", "element_elongation", "element_energy",
 )  # fmt: skip
 KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float"}
 METHODS = ("required_friction_excluding_impacts", "sliding_time")
@@ -186,6 +186,7 @@ def solution(**changes):
         "time_of_lost_support": 0.0,
         "n_uplifts": 0,
         "n_impacts": 0,
+        "final_state": np.zeros(10),
         "states": None,
     }
     return Solution(**{**given, **changes})
