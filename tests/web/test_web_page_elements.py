@@ -25,9 +25,9 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     kinds = page.evaluate("Object.keys(rockflexPage.about.elements)")
     assert kinds == ["tendon", "yielding_dissipator", "viscous_damper", "friction_damper"]
     for place, kind in enumerate(kinds):
-        page.get_by_label("Kind of the new element").select_option(kind)
+        page.get_by_label("Element to add").select_option(kind)
         page.get_by_role("button", name="Add an element").click()
-        assert page.evaluate("document.activeElement.labels[0].textContent") == "Kind"
+        assert page.evaluate("document.activeElement.labels[0].textContent") == "Element"
         visitor.fill(f"structure.elements.{place}.position", str(0.2 * place))
         shown = page.locator(f'details[data-path="structure.elements.{place}"] summary').inner_text()
         title = page.evaluate("kind => rockflexPage.about.elements[kind].title", kind)
@@ -47,7 +47,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     assert page.locator("#base").get_attribute("aria-label").count(";") == 3
     # An element of another kind keeps what both have.
     row = page.locator('details[data-path="structure.elements.1"]')
-    row.get_by_label("Kind").select_option("tendon")
+    row.get_by_label("Element", exact=True).select_option("tendon")
     assert held(visitor)[1] == {
         "kind": "tendon", "position": 0.2, "initial_force": 1e5, "stiffness": 5e7, "yield_force": 1e5,
     }  # fmt: skip

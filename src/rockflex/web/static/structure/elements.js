@@ -10,7 +10,7 @@ export function elements({ about }, current, put) {
   const titles = Object.entries(about.elements).map(([name, { title }]) => [name, title]);
   const most = about.limits.elements;
   const rows = h("div");
-  const kind = h("select", { id: "new-element", "aria-label": "Kind of the new element" },
+  const kind = h("select", { id: "new-element", "aria-label": "Element to add" },
     titles.map(([name, title]) => h("option", { value: name }, title)));
   const add = h("button", { type: "button", onclick: () => {
     change((list) => [...list, { kind: kind.value, ...ELEMENTS[kind.value] }]);
@@ -41,7 +41,7 @@ export function elements({ about }, current, put) {
   function row(each, i, open) {
     const path = `structure.elements.${i}`;
     const summary = h("summary", {}, nameOf(about, each, i));
-    const other = select(`${path}.kind`, "Kind", titles, each.kind, (name) => {
+    const other = select(`${path}.kind`, "Element", titles, each.kind, (name) => {
       change((list) => list.with(i, turned(list[i], name)));
       rows.children[i].querySelector("select").focus();
     });
