@@ -61,7 +61,7 @@ class YieldingDissipatorTable(ElementTable):
     """The arguments of `YieldingDissipator`."""
 
     makes = YieldingDissipator
-    title = "Fuse that yields"
+    title = "Yielding dissipator"
 
     kind: Annotated[Literal["yielding_dissipator"], _KIND]
     position: Annotated[float, _POSITION] = 0.0

@@ -122,7 +122,7 @@ class StructureEntry(Table):
         ------
         InputError
             If a value is out of range, or an element is outside the base. The message begins with its heading and
-            number.
+            number; the field is such as ``"elements.0.position"``, which counts from zero.
         """
         tables = {
             **{("tendons", place): table for place, table in enumerate(self.tendons, start=1)},
@@ -134,11 +134,15 @@ class StructureEntry(Table):
         alone = built if known else built.rocking(1)
         elements: list[BaseElement] = []
         for (key, place), table in tables.items():
+            row = f"{key}.{place - 1}"
             try:
                 elements.append(table.element())
-                replace(alone, elements=elements[-1:])  # checks that it is within the base
             except InputError as error:
-                raise InputError(str(error), place=f"[[{key}]] no. {place}", field=key) from error
+                raise InputError(str(error), place=f"[[{key}]] no. {place}", field=f"{row}.{error.field}") from error
+            try:
+                replace(alone, elements=elements[-1:])
+            except InputError as error:  # it is outside the base
+                raise InputError(str(error), place=f"[[{key}]] no. {place}", field=f"{row}.position") from error
         return replace(built, elements=elements) if known else Restrained(built, elements)
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
