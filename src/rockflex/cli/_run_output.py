@@ -32,6 +32,7 @@ UNITS = {
     "max_horizontal_reaction": "N",
     "min_vertical_reaction": "N",
     "max_tendon_force": "N",
+    "residual_rotation": "rad",
     "sliding_time": "s",
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",
