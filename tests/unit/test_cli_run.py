@@ -45,9 +45,9 @@ def document(*arguments):
 
 def assert_is_run(row, motion, scale, model, **more):
     response = rf.simulate(FRAME, motion.scaled(scale), model, output="peaks", **more)
-    expected = response.peaks() | {"motion": motion.name, "scale": scale, "error": None}
-    # JSON has no NaN.
-    assert {name: row[name] for name in expected} == {k: None if v != v else v for k, v in expected.items()}
+    peaks = {name: None if value != value else value for name, value in response.peaks().items()}  # JSON has no NaN
+    expected = peaks | {"motion": motion.name, "scale": scale, "error": None}
+    assert {name: row[name] for name in expected} == expected
 
 
 def test_default_models_side_by_side():
