@@ -91,7 +91,10 @@ def observe_all(
     motion: Array,
     rates: Array,
 ) -> None:
-    """Replace the `values` (n,) of a row by the quantity at many instants; `pulls`: (n, 6); `motion`, `rates`: (n, 2N + 2)."""
+    """Replace the `values` (n,) of a row by the quantity at many instants.
+
+    `pulls` has the shape (n, 6); `motion` and `rates` have 2N + 2 columns or more.
+    """
     for k in range(side.size):
         posture = posture_of(field, pulls[k], side[k], acceleration[k], motion[k], rates[k])
         values[k] = observe(kind, values[k], near, far, posture)

@@ -133,7 +133,6 @@ def _work(model: RockingModel, states: Array) -> tuple[Array, Array]:
     """Return the damped and the input energy between adjacent states, (n_states - 1,) each, by Gauss quadrature."""
     p = model.properties
     n = p.n_modes
-    states = states[:, : HEADER + model.layout.core]
     motion = ClosedForm(model)
     span = np.diff(states[:, TIME])
     places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
@@ -144,7 +143,7 @@ def _work(model: RockingModel, states: Array) -> tuple[Array, Array]:
         v = inside[:, n : 2 * n]
         acceleration = states[:-1, GROUND] + place * np.diff(states[:, GROUND])
         damped += weight * span * (v**2 @ drag)
-        work -= weight * span * acceleration * (p.l0r * inside[:, -1] + v @ p.effective_mass)
+        work -= weight * span * acceleration * (p.l0r * inside[:, model.layout.spin] + v @ p.effective_mass)
     return damped, work
 
 

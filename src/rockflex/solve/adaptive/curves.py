@@ -43,7 +43,14 @@ def is_curved(flow: Flow, f: int, side: float) -> bool:
 
 @inlined_kernel
 def tell(
-    system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array, room: Stages
+    system: System,
+    flow: Flow,
+    phase: int,
+    acceleration: float,
+    motion: Array,
+    rates: Array,
+    values: Array,
+    room: Stages,
 ) -> None:
     """Compute the values of the curved rows; the last one is the loss of support, as in `Log`."""
     n, last, side = flow.field.modes.shape[1], system.plain_rows.shape[2] - 2, system.phases[phase].side
