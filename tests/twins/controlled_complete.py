@@ -129,8 +129,9 @@ class ControlledRun(Run):
             if reach != 0.0 and bar.branch in (UP, DOWN):
                 outward = (1.0 if bar.branch == UP else -1.0) * np.sign(reach) * s
                 guards["back"] = lambda t, y, sign=outward: sign * y[1]
-                if np.isfinite(bar.emptied()):
-                    guards[place, SLACK] = lambda t, y, b=bar, end=bar.emptied(): self.model.stretch(b, y[0], s) - end
+                low = bar.emptied()
+                if np.isfinite(low):
+                    guards[place, SLACK] = lambda t, y, b=bar, end=low: self.model.stretch(b, y[0], s) - end
             elif reach != 0.0:
                 low, below, high, above = bar.limits()
                 if np.isfinite(high):
@@ -148,11 +149,8 @@ class ControlledRun(Run):
                 # A limit at which the phase begins is left behind, like the ground after an uplift.
                 size = np.ptp(states[1]) if kind == "back" else self.bars[kind[0]].reach
                 fresh = abs(values[0]) < AT_ONCE * size
-                if (
-                    fresh
-                    and values[1] <= 0.0
-                    and guard(sample.start, dense(grid[0] + 0.01 * (grid[1] - grid[0]))) <= 0.0
-                ):
+                soon = grid[0] + 0.01 * (grid[1] - grid[0])
+                if fresh and values[1] <= 0.0 and guard(soon, dense(soon)) <= 0.0:
                     found.append((grid[0], kind))
                     continue
             at = first_root(lambda t, guard=guard: float(guard(t, dense(t))), grid, values, fresh=fresh)

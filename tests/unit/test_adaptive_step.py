@@ -7,7 +7,7 @@ from scipy.integrate._ivp import dop853_coefficients as published
 
 from builders import frame_values
 from rockflex import BoucWen, Frame
-from rockflex.models import EXTRA, SUMS, Model, Quantities
+from rockflex.models import EXTRA, Model, Quantities
 from rockflex.solve import Engine
 from rockflex.solve.adaptive import tableau
 from rockflex.solve.adaptive.layout import TERMS, TRIAL, stages_of
@@ -42,7 +42,7 @@ def over(step, begun=0.0):
 
 def room_of(motion, rows=1):
     """Room for steps from a motion, of which the last three entries count energies."""
-    return stages_of(motion, np.zeros(SUMS), motion.size - EXTRA + 1, rows, ENDLESS, progress_at_start(0, stated=True))
+    return stages_of(motion, motion.size - EXTRA + 1, rows, ENDLESS, progress_at_start(0, stated=True))
 
 
 def started():

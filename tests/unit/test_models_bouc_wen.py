@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from builders import make_frame
 from rockflex import BoucWen, GroundMotion, InitialState, InputError, quiet_motion, simulate
-from rockflex.models import EXTRA, SUMS, Model, field_rates
+from rockflex.models import EXTRA, Model, field_rates
 from twins.complete_model import BoucWen as Twin
 
 FRAME = make_frame(n_stories=1, story_height=6.0, period=0.6, aspect_ratio=5.0)
@@ -57,7 +57,7 @@ def rate(spring, velocity, z):
     field = Model(1, lifts=False).of(FRAME.rocking(), bouc_wen=spring).field()
     motion, rates = np.zeros(4 + EXTRA), np.full(4 + EXTRA, np.nan)
     motion[1], motion[4] = velocity, z
-    field_rates(field, np.zeros(SUMS), 0.0, 1.0 if velocity >= 0.0 else -1.0, 0.0, motion, rates)
+    field_rates(field, 0.0, 1.0 if velocity >= 0.0 else -1.0, 0.0, motion, rates)
     return rates[4]
 
 

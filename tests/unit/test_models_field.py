@@ -6,7 +6,7 @@ import pytest
 from builders import frame_values
 from rockflex import BoucWen
 from rockflex.modal import RockingProperties
-from rockflex.models import EXTRA, SUMS, Model, field_rates, inertia_left
+from rockflex.models import EXTRA, Model, field_rates, inertia_left
 from twins import complete_model as twin
 from twins.complete import complete_frame
 
@@ -41,7 +41,7 @@ def rates_of(model, side, acceleration, motion):
     full = np.concatenate((motion, np.zeros(EXTRA - 1)))
     rates = np.full(full.size, np.nan)
     branch = 1.0 if n == 0 or motion[n] >= 0.0 else -1.0
-    field_rates(model.field(), np.zeros(SUMS), side, branch, acceleration, full, rates)
+    field_rates(model.field(), side, branch, acceleration, full, rates)
     return rates
 
 

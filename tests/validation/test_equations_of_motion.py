@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from rockflex import RockingProperties
-from rockflex.models import EXTRA, SUMS, NonlinearModel, accelerations, field_rates, reactions
+from rockflex.models import EXTRA, NonlinearModel, accelerations, field_rates, reactions
 from twins.lagrange import GRAVITY, GROUND, derived, lumped, orthogonal
 
 
@@ -17,7 +17,7 @@ def right_hand_side(properties, side, a, state):
     """(D'', θ'') of the complete model from [D, D', θ, θ'] on a side: what is under test."""
     motion = np.concatenate([state, np.zeros(EXTRA)])
     rates = np.empty_like(motion)
-    field_rates(NonlinearModel("MDOF-C", properties).field(), np.zeros(SUMS), float(side), 1.0, a, motion, rates)
+    field_rates(NonlinearModel("MDOF-C", properties).field(), float(side), 1.0, a, motion, rates)
     n = properties.n_modes
     return rates[n : 2 * n], rates[2 * n + 1]
 

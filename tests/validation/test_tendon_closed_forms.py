@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import LinearModel, NonlinearModel, Quantities, field_rates, parse_model, pulls_of
+from rockflex.models import Field, LinearModel, NonlinearModel, Quantities, field_rates, parse_model
 from rockflex.solve import Engine
 
 FRAME = make_frame()  # fmt: skip
@@ -154,10 +154,9 @@ def test_the_field_holds_the_gradient_of_the_tendons_energy():
 
 
 def rates_of(properties: rf.RockingProperties, side: int, motion: np.ndarray) -> np.ndarray:
-    model = NonlinearModel("MDOF-C", properties)
-    pulls = pulls_of(properties, model.elements, model.start(side))[:, 0]
+    coefficients: Field = NonlinearModel("MDOF-C", properties).field()
     rates = np.zeros(motion.size)
-    field_rates(model.field(), pulls, float(side), 1.0, 1.7, motion, rates)
+    field_rates(coefficients, float(side), 1.0, 1.7, motion, rates)
     return rates
 
 

@@ -2,7 +2,7 @@
 
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, Element
-from rockflex.models._field import EXTRA, Field, field_rates, inertia_left, pivot_at
+from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at
 from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
@@ -50,6 +50,7 @@ __all__ = [
     "LIFTS",
     "LINEAR",
     "OVERTURNS",
+    "PULLS",
     "RIGHT",
     "SIDE",
     "SUMS",

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
-from rockflex.models import SUMS, StateLayout
+from rockflex.models import PULLS, SUMS, StateLayout
 
 Progress = Any  # a record of `_PROGRESS`
 
@@ -162,7 +162,7 @@ class Motion(NamedTuple):
     load: Array  # (b,): constant forces on the base
     still: Array  # (S,): constant part of the forced motion
     offset: Array  # (F,): constant part of the rows
-    pulls: Array  # (6,): sums over the elements
+    pivots: Array  # (2, 8): `Field.pivots`, with the sums over the elements
 
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.
@@ -238,7 +238,7 @@ def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> 
         load=np.zeros(freedoms),
         still=np.zeros(core),
         offset=np.zeros(rows),
-        pulls=np.zeros(SUMS),
+        pivots=np.zeros((2, PULLS + SUMS)),
     )
 
 
