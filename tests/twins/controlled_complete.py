@@ -5,18 +5,21 @@ it is stretched by the chord 2 r sin(|θ|/2), and its moment follows from its vi
 the stretch is r |θ|.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from twins.complete import ATOL, ROOT, CompleteResult, Run, Sample, first_root, sizes
+from twins.complete import ATOL, ROOT, Run, Sample, first_root, sizes
 from twins.complete_model import BoucWen, CompleteModel, Structure
 from twins.controlled import DOWN, SLACK, UP, Bar, Dashpot
 from twins.impact_laws import CompleteVVEL, Law
 from twins.result import Vector
 
+PLACES, WEIGHTS = np.polynomial.legendre.leggauss(4)
+PLACES, WEIGHTS = 0.5 + 0.5 * PLACES, 0.5 * WEIGHTS
 AT_ONCE = 1e-11  # of the yield stretch: a limit this close at the start of a phase is the one just left
 
 
@@ -76,11 +79,30 @@ class ControlledModel(CompleteModel):
 
 @dataclass
 class ControlledRun(Run):
-    """A run whose elements change their branches at events: "back" where the rotation turns, or (place, branch)."""
+    """A run whose elements change their branches at events: "back" where the rotation turns, or (place, branch).
+
+    `forces` are time, horizontal and vertical reaction at the samples, `damped` the energy taken by the dampers.
+    """
+
+    n_changes: int = 0
+    damped: float = 0.0
+    forces: list[tuple[float, float, float]] = field(default_factory=list)
 
     @property
     def bars(self) -> list[Bar]:
         return [each for each in self.model.elements if isinstance(each, Bar)]
+
+    def advance(self, sample: Sample) -> None:
+        super().advance(sample)
+        forces = self.model.ground_forces(self.y, sample.excitation(sample.length), self.side)
+        self.forces.append((sample.start + sample.length, *forces))
+
+    def _peaks(self, dense, grid: Vector) -> None:
+        super()._peaks(dense, grid)
+        if self.side:
+            for low, high in pairwise(grid):
+                power = [self.model.dissipation(dense(low + (high - low) * u), self.side) for u in PLACES]
+                self.damped += (high - low) * float(WEIGHTS @ power)
 
     def _phase(self, sample: Sample, tau: float) -> tuple[float, str]:
         tau, kind = super()._phase(sample, tau)
@@ -88,10 +110,12 @@ class ControlledRun(Run):
             for each in self.bars:
                 each.rest()
         elif kind == "back":
+            self.n_changes += 1
             for each in self.bars:
                 each.settle(float(self.model.stretch(each, self.y[0], self.side)))
             self.y[1] = 0.0
         elif isinstance(kind, tuple):
+            self.n_changes += 1
             bar, branch = self.bars[kind[0]], kind[1]
             if branch == SLACK:
                 bar.slacken(float(self.model.stretch(bar, self.y[0], self.side)))
@@ -105,8 +129,9 @@ class ControlledRun(Run):
             if reach != 0.0 and bar.branch in (UP, DOWN):
                 outward = (1.0 if bar.branch == UP else -1.0) * np.sign(reach) * s
                 guards["back"] = lambda t, y, sign=outward: sign * y[1]
-                if np.isfinite(bar.emptied()):
-                    guards[place, SLACK] = lambda t, y, b=bar, end=bar.emptied(): self.model.stretch(b, y[0], s) - end
+                low = bar.emptied()
+                if np.isfinite(low):
+                    guards[place, SLACK] = lambda t, y, b=bar, end=low: self.model.stretch(b, y[0], s) - end
             elif reach != 0.0:
                 low, below, high, above = bar.limits()
                 if np.isfinite(high):
@@ -124,11 +149,8 @@ class ControlledRun(Run):
                 # A limit at which the phase begins is left behind, like the ground after an uplift.
                 size = np.ptp(states[1]) if kind == "back" else self.bars[kind[0]].reach
                 fresh = abs(values[0]) < AT_ONCE * size
-                if (
-                    fresh
-                    and values[1] <= 0.0
-                    and guard(sample.start, dense(grid[0] + 0.01 * (grid[1] - grid[0]))) <= 0.0
-                ):
+                soon = grid[0] + 0.01 * (grid[1] - grid[0])
+                if fresh and values[1] <= 0.0 and guard(soon, dense(soon)) <= 0.0:
                     found.append((grid[0], kind))
                     continue
             at = first_root(lambda t, guard=guard: float(guard(t, dense(t))), grid, values, fresh=fresh)
@@ -151,7 +173,7 @@ def simulate_controlled(
     law: Law | None = None,
     rotation: float = 0.0,
     free: float = 0.0,
-) -> CompleteResult:
+) -> ControlledRun:
     """Run one structure; ``law`` defaults to ``CompleteVVEL``. The ground comes to rest after the last sample."""
     model = ControlledModel(structure, elements, complete=complete, bouc_wen=bouc_wen)
     record = np.asarray(acceleration, float)
@@ -168,4 +190,4 @@ def simulate_controlled(
         run.advance(sample)
         if run.overturned:
             break
-    return run.result()
+    return run

@@ -22,7 +22,7 @@ from rockflex.models._elements import (
     arm_of,
     elements_of,
 )
-from rockflex.models._field import EXTRA, Field, field_rates, inertia_left, pivot_at
+from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at
 from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
@@ -86,6 +86,7 @@ __all__ = [
     "LIFTS",
     "LINEAR",
     "OVERTURNS",
+    "PULLS",
     "RELEASES",
     "RIGHT",
     "SIDE",

@@ -199,16 +199,11 @@ class Bar:
         if branch == SLACK:
             return (Stop(True, -e0, empty, ELASTIC), *breaks)
         if branch == DOWN and self.pulls_only and self.ratio > 0.0:
-            return (Stop(False, self._emptied - e0, 0.0, SLACK),)
+            return (Stop(False, empty / self.ratio * reach - e0, 0.0, SLACK),)
         return breaks if branch == UP else ()
 
     def direction(self, branch: int) -> int:
         return 1 if branch == UP else -1 if branch == DOWN else 0
-
-    @property
-    def _emptied(self) -> float:
-        """Return e at which the force vanishes while a bar that has hardened yields downwards."""
-        return (1.0 - self.ratio) / self.ratio * self.yield_force / self.stiffness if self.ratio > 0.0 else np.inf
 
     def turning(self, branch: int) -> float | None:
         sign = self.direction(branch)
@@ -240,7 +235,7 @@ class Bar:
         found[e - memory < -reach - room] = DOWN
         if self.pulls_only:
             empty = (1.0 - self.ratio) * memory
-            found[(e < empty - room) & ((found != DOWN) | (e < self._emptied))] = SLACK
+            found[(e < empty - room) & ((found != DOWN) | (self.ratio * e < (1.0 - self.ratio) * reach))] = SLACK
         found[memory == BROKEN_FOR_GOOD] = BROKEN
         return found
 

@@ -15,9 +15,11 @@ from rockflex.models._pulls import DAMPING, HOLD, MOMENT, STIFFNESS
 
 EXTRA = 4  # components in addition to those of the simplified models
 
-# Indices in `Field.modes`, and for each pivot in `Field.pivots`: its distance B from the axis of the masses, and I_θ.
+# Indices in `Field.modes`, and for each pivot in `Field.pivots`: its distance B from the axis of the masses, I_θ about
+# it, and the sums over the elements of `pulls_of`, with their memories, from the index `PULLS` on.
 OMEGA2, DRAG, HEIGHT, MASS = 0, 1, 2, 3
-ARM, INERTIA = 0, 1
+ARM, INERTIA, PULLS = 0, 1, 2
+PULLED, STIFFENED, DAMPED, HELD = PULLS + MOMENT, PULLS + STIFFNESS, PULLS + DAMPING, PULLS + HOLD
 
 
 class Field(NamedTuple):
@@ -27,7 +29,7 @@ class Field(NamedTuple):
     hysteretic: bool
     viscous: bool  # with dampers at the base
     modes: Array  # (4, N): ω², 2ζω, h* and m*
-    pivots: Array  # (2, 2), for the right and the left pivot: see the indices above
+    pivots: Array  # (2, 9), for the right and the left pivot: see the indices above; elements change their sums
     weight_arm: float  # L_0^r
     total_mass: float
     gravity: float  # g
@@ -46,6 +48,13 @@ def pivot_at(side: float) -> int:
 
 
 @kernel
+def take_pulls(pivots: Array, side: float, pulls: Array) -> None:
+    """Set the sums over the elements about the pivot of a side, in `Field.pivots`."""
+    for k in range(pulls.size):
+        pivots[pivot_at(side), PULLS + k] = pulls[k]
+
+
+@kernel
 def inertia_left(field: Field, side: float, motion: Array) -> float:
     """Return the factor of θ'' after eliminating D'': I_θ - Σ m* h*², in complete models plus the terms of D."""
     n = field.modes.shape[1]
@@ -59,13 +68,10 @@ def inertia_left(field: Field, side: float, motion: Array) -> float:
 
 
 @kernel
-def field_rates(
-    field: Field, pulls: Array, side: float, branch: float, acceleration: float, motion: Array, rates: Array
-) -> None:
+def field_rates(field: Field, side: float, branch: float, acceleration: float, motion: Array, rates: Array) -> None:
     """Compute the rates of the motion on one side (0: in contact) for a ground acceleration.
 
-    `pulls` are the sums over the elements of the present phase, with their memories: `pulls_of`. `branch` is the sign
-    of D'_1 used in the hysteresis law, which is therefore smooth up to the reversal.
+    `branch` is the sign of D'_1 used in the hysteresis law, which is therefore smooth up to the reversal.
     """
     n = field.modes.shape[1]
     theta, spin = motion[2 * n], motion[2 * n + 1]
@@ -77,7 +83,7 @@ def field_rates(
     rates[2 * n + 2] = 0.0
     rates[2 * n + 5] = 0.0
     damped = drive = moment = displaced = carried = 0.0
-    lever = 1.0  # of an element: (δ'/r)/|θ|'
+    lever = 1.0  # of an element: δ'/(r |θ|')
     for i in range(n):
         d, v = motion[i], motion[n + i]
         drag = field.modes[DRAG, i] * v
@@ -108,14 +114,15 @@ def field_rates(
             moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
             # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
             lever = math.sqrt(0.5 + 0.5 * cosine)
-            moment += side * pulls[MOMENT] * lever + pulls[STIFFNESS] * sine
+            moment += side * field.pivots[pivot, PULLED] * lever + field.pivots[pivot, STIFFENED] * sine
         else:
             arm = field.weight_arm
             moment += field.gravity * (weight - field.weight_arm * theta)
-            moment += side * pulls[MOMENT] + pulls[STIFFNESS] * theta
-        moment += pulls[DAMPING] * lever * lever * spin
+            moment += side * field.pivots[pivot, PULLED] + field.pivots[pivot, STIFFENED] * theta
+        if field.viscous:
+            moment += field.pivots[pivot, DAMPED] * lever * lever * spin
         moment += acceleration * arm
-        angular = -moment / inertia_left(field, side, motion) if pulls[HOLD] == 0.0 else 0.0
+        angular = -moment / inertia_left(field, side, motion) if field.pivots[pivot, HELD] == 0.0 else 0.0
         drive = arm * spin
         for i in range(n):
             rates[n + i] -= field.modes[HEIGHT, i] * angular

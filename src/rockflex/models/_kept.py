@@ -5,7 +5,7 @@ import numpy as np
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import python_kernel
 from rockflex.models._elements import LEFT, RIGHT, memories
-from rockflex.models._field import Field, field_rates
+from rockflex.models._field import Field, field_rates, take_pulls
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
 from rockflex.models._nonlinear import NonlinearModel
@@ -108,4 +108,5 @@ def _rates_at(field: Field, pulls: Array, side: Array, acceleration: Array, moti
     n = field.modes.shape[1]
     for k in range(side.size):
         branch = 1.0 if n == 0 or motion[k, n] >= 0.0 else -1.0
-        field_rates(field, pulls[k], side[k], branch, acceleration[k], motion[k], rates[k])
+        take_pulls(field.pivots, side[k], pulls[k])
+        field_rates(field, side[k], branch, acceleration[k], motion[k], rates[k])

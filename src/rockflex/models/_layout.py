@@ -26,8 +26,8 @@ class StateLayout(NamedTuple):
     damped, put_in, yielded
         Damped energy, work of the ground and energy absorbed by the hysteretic spring since the start of the run.
     swept
-        ∫ (δ'/r)² dt over the rocking since the start of the run, in rad²/s: with cos² (θ/2) θ'² or, for small
-        rotations, θ'². Times c r² it is the energy that a viscous damper dissipates.
+        ∫ (δ'/r)² dt over the rocking since the start of the run, in rad²/s: that of cos² (θ/2) θ'² or, for small
+        rotations, of θ'². Times c r² it is the energy that a viscous damper dissipates.
     memory, remembered
         Index of the first memory of an element, and the number of memories; constant during a phase.
     moving

@@ -13,6 +13,7 @@ from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._linear import LinearModel
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
+from rockflex.models._pulls import pulls_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ class NonlinearModel(ModalModel):
         return self.phase_of(key, self.arrow(key) if linear else None)
 
     def field(self) -> Field:
-        """Return the coefficients of the vector field."""
+        """Return the coefficients of the vector field, with all elements on their first branches."""
         p = self.properties
         b = self.bouc_wen or BoucWen(1.0)
         pivots = [p.pivot(side) for side in (RIGHT, LEFT)]
@@ -70,7 +71,9 @@ class NonlinearModel(ModalModel):
             hysteretic=self.bouc_wen is not None,
             viscous=self.layout.swept >= 0,
             modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega, p.effective_height, p.effective_mass)),
-            pivots=np.array([(each.arm, each.i_theta) for each in pivots]),
+            pivots=np.array(
+                [(each.arm, each.i_theta, *pulls_of(p, self.elements, self.start(each.side))[:, 0]) for each in pivots]
+            ),
             weight_arm=p.l0r,
             total_mass=p.m_tot,
             gravity=GRAVITY,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel, python_kernel
-from rockflex.models._field import ARM, MASS, Field, pivot_at
+from rockflex.models._field import ARM, MASS, PULLS, Field, pivot_at, take_pulls
 from rockflex.models._pulls import DRAG, FORCE, PULL
 
 LINEAR = 0  # the row itself
@@ -33,8 +33,8 @@ class Posture(NamedTuple):
 
 
 @kernel
-def posture_of(field: Field, pulls: Array, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
-    """Return the posture of a motion while rocking; `pulls` as in `field_rates`; `rates` contains D'' and θ''."""
+def posture_of(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
+    """Return the posture of a motion while rocking; `rates` contains D'' and θ''."""
     n = field.modes.shape[1]
     spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
     sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
@@ -50,7 +50,8 @@ def posture_of(field: Field, pulls: Array, side: float, acceleration: float, mot
         push += field.modes[MASS, i] * rates[n + i]
     along, beside = across * cosine - field.weight_arm * sine, across * sine + field.weight_arm * cosine
     # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
-    pull = pulls[FORCE] + 2.0 * pulls[PULL] * abs(half) + pulls[DRAG] * upright * side * spin
+    pull = field.pivots[pivot, PULLS + FORCE] + 2.0 * field.pivots[pivot, PULLS + PULL] * abs(half)
+    pull += field.pivots[pivot, PULLS + DRAG] * upright * side * spin
     square, coriolis = spin * spin, 2.0 * spin * speed
     return Posture(
         sine=sine,
@@ -94,7 +95,11 @@ def observe_all(
     motion: Array,
     rates: Array,
 ) -> None:
-    """Replace the `values` (n,) of a row by the quantity at many instants; `motion` and `rates`: (n, 2N + 2)."""
+    """Replace the `values` (n,) of a row by the quantity at many instants.
+
+    `pulls` has the shape (n, 7); `motion` and `rates` have 2N + 2 columns or more.
+    """
     for k in range(side.size):
-        posture = posture_of(field, pulls[k], side[k], acceleration[k], motion[k], rates[k])
+        take_pulls(field.pivots, side[k], pulls[k])
+        posture = posture_of(field, side[k], acceleration[k], motion[k], rates[k])
         values[k] = observe(kind, values[k], near, far, posture)

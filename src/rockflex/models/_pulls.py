@@ -1,7 +1,7 @@
 """The pull of all elements together about a pivot, in one phase.
 
-An element at the distance r from the pivot is stretched by δ = 2 r sin(|θ|/2), and its tension F = k δ + c δ' + f +
-g m, with its memory m, adds the moment -s F r cos(θ/2); for small rotations δ = r |θ| and -s F r.
+An element at the distance r from the pivot is stretched by δ = 2 r sin(|θ|/2). Its tension F = k δ + c δ' + f + g m,
+with its memory m, adds the moment -s F r cos(θ/2). For small rotations these are δ = r |θ| and -s F r.
 """
 
 import math

@@ -178,7 +178,5 @@ def turning_rate(system: System, steps: Integrator | None, phase: int, ground: f
         return moment * system.base[phase, FLEXIBILITY, 0, 0]
     forget(steps.room)
     gather(system, phase, motion)
-    field_rates(
-        steps.flow.field, motion.pulls, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0]
-    )
+    field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0])
     return steps.room.rates[0, system.layout.spin]

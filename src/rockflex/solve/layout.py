@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
-from rockflex.models import SUMS, StateLayout
+from rockflex.models import PULLS, SUMS, StateLayout
 
 Progress = Any  # a record of `_PROGRESS`
 
@@ -103,7 +103,7 @@ class System(NamedTuple):
     border: Array  # (P, b, 2, N): c and m* c of `rockflex.models.Arrow`
     base: Array  # (P, 3, b, b): flexibility, damping and stiffness of the base
     push: Array  # (P, 2, b): constant forces on the base, and the factor of the ground acceleration
-    pulls: Array  # (P, 6, 1 + M): sums over the elements, and what the memories add: see `rockflex.models.pulls_of`
+    pulls: Array  # (P, 7, 1 + M): sums over the elements, and what the memories add: see `rockflex.models.pulls_of`
     # For the motion
     plain_rows: Array  # (P, F, C): the rows over the state, a and 1
     basis: Array  # (P, 2, S, S), S = 2 N + 2 b: from coordinates to states and back, both transposed
@@ -165,7 +165,7 @@ class Motion(NamedTuple):
     load: Array  # (b,): constant forces on the base
     still: Array  # (S,): constant part of the forced motion
     offset: Array  # (F,): constant part of the rows
-    pulls: Array  # (6,): sums over the elements
+    pivots: Array  # (2, 8): `Field.pivots`, with the sums over the elements
 
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.
@@ -241,7 +241,7 @@ def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> 
         load=np.zeros(freedoms),
         still=np.zeros(core),
         offset=np.zeros(rows),
-        pulls=np.zeros(SUMS),
+        pivots=np.zeros((2, PULLS + SUMS)),
     )
 
 

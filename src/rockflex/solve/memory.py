@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockflex._kernel import kernel
+from rockflex.models import PULLS, pivot_at
 from rockflex.solve.layout import (
     ARM,
     CONSTANT,
@@ -51,11 +52,13 @@ def recollect(system: System, phase: int, motion: Motion) -> None:
 
 @kernel
 def gather(system: System, phase: int, motion: Motion) -> None:
-    """Set the sums over the elements in a phase that is integrated."""
-    for k in range(motion.pulls.size):
-        motion.pulls[k] = system.pulls[phase, k, 0]
+    """Set the sums over the elements of a phase, for its vector field."""
+    pivot = pivot_at(system.phases[phase].side)
+    for k in range(system.pulls.shape[1]):
+        total = system.pulls[phase, k, 0]
         for m in range(system.layout.remembered):
-            motion.pulls[k] += system.pulls[phase, k, 1 + m] * motion.state[system.layout.memory + m]
+            total += system.pulls[phase, k, 1 + m] * motion.state[system.layout.memory + m]
+        motion.pivots[pivot, PULLS + k] = total
 
 
 @kernel

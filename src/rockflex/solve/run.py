@@ -162,7 +162,7 @@ def still(system: System, flow: Flow, at: Progress, room: Stages) -> bool:
     """Return True if free vibration of an integrated phase has come to rest: its rates are tiny next to its largest."""
     if flow.field.hysteretic:
         choose_branch(flow, system.phases[at.phase].side, 0.0, room)
-    field_rates(flow.field, room.pulls, system.phases[at.phase].side, room.at.branch, 0.0, room.motion, room.rates[0])
+    field_rates(flow.field, system.phases[at.phase].side, room.at.branch, 0.0, room.motion, room.rates[0])
     forget(room)
     worst = 0.0
     for i in range(room.size.size):
