@@ -1,6 +1,6 @@
 """
-A hybrid wall: controlled rocking
-=================================
+Controlled rocking: flag and loops
+==================================
 
 A wall on a base that can rock, held down by an unbonded tendon, with a fuse of mild steel to each side of it. First the
 base is pushed slowly to and fro, then an earthquake shakes it.
