@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import controlled
 import nonlinear
 import numpy as np
 import opensees
@@ -21,7 +22,7 @@ from timing import frame, least, milliseconds
 
 import rockflex as rf
 from rockflex.models import parse_model
-from rockflex.study._simulate import make_engine
+from rockflex.study import Case
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
@@ -47,6 +48,7 @@ def main() -> None:
         table.add_row(label, *(column[label] for column in columns))
     console.print(table)
     console.print(nonlinear.table(motion))
+    console.print(controlled.table(rf.load_suite("fema-p695-far-field")))
     console.print(studies.table())
     console.print(opensees.table())
     console.print(web_latency.table())
@@ -57,7 +59,7 @@ def main() -> None:
 def measure(n: int, motion: rf.GroundMotion) -> dict[str, str]:
     structure = frame(n)
     steps = motion.acceleration.size - 1
-    engine = make_engine(parse_model("MDOF-S").of(structure.rocking()), "peaks")
+    engine = Case(parse_model("MDOF-S").of(structure.rocking()), 0.0).engine
     kernel = least(lambda: engine.run(motion.acceleration, motion.dt), 100)
     call = least(lambda: rf.simulate(structure, motion, "MDOF-S", output="peaks"), 50)
     fresh = least(lambda: rf.simulate(frame(n), motion, "MDOF-S", output="peaks"), 50)

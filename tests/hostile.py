@@ -70,7 +70,7 @@ BASE = {"base_mass": 1e4, "half_width": 1.0, "damping_ratio": 0.02}
 PROPERTIES = {
     "omega": [10.0, 30.0], "effective_mass": [1e4, 1e3], "effective_height": [3.0, -0.5], "top_ordinate": [1.3, -0.3],
     "i_theta": 2e5, "l0r": 4e4, "m_tot": 2e4, "half_width": 1.0, "zeta": 0.02, "translational_inertia": 1e5,
-    "floors": None, "tendons": (), "eccentricity": 0.1,
+    "floors": None, "elements": (), "eccentricity": 0.1,
 }  # fmt: skip
 TOWER = {
     "height": 100.0, "base_radius": 5.0, "top_radius": 3.0, "wall": 0.5, "density": 2400.0, "elastic_modulus": 25e9,
@@ -124,8 +124,19 @@ def structures() -> Calls:
         "FishBone": (rf.FishBone, BONE | BASE),
         "rigid_block": (rf.rigid_block, {"slenderness": 0.2, "half_diagonal": 2.0, "mass": 1.0}),
         "cosine_shapes": (rf.cosine_shapes, {"height": 10.0, "n_shapes": 2}),
-        "Tendon": (rf.Tendon, {"initial_force": 1e5, "stiffness": 1e6, "position": 0.0, "yield_force": 2e5}),
-        "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "tendons": rf.Tendon(1e5, 1e6)}),
+        "Tendon": (
+            rf.Tendon,
+            {"initial_force": 1e5, "stiffness": 1e6, "position": 0.0, "yield_force": 2e5, "post_yield_ratio": 0.02,
+             "rupture_elongation": 0.3},
+        ),
+        "YieldingDissipator": (
+            rf.YieldingDissipator,
+            {"stiffness": 1e7, "yield_force": 1e5, "post_yield_ratio": 0.02, "position": 0.2, "tension_only": False,
+             "rupture_elongation": 0.2},
+        ),
+        "ViscousDamper": (rf.ViscousDamper, {"coefficient": 1e5, "position": 0.2}),
+        "FrictionDamper": (rf.FrictionDamper, {"force": 1e5, "position": 0.2}),
+        "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "elements": rf.Tendon(1e5, 1e6)}),
         "Eccentric": (rf.Eccentric, {"structure": rf.Frame(**FRAME), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),
         "pivot": (p.pivot, {"side": -1}),

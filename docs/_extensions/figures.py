@@ -16,6 +16,9 @@ class Order:
         "uplift_and_modes",
         "chimney",
         "restrained_pier",
+        "controlled_rocking",
+        "hybrid_wall",
+        "nine_story_frame",
         "fragility_of_a_frame",
         "ida_with_resurrections",
     )

@@ -77,6 +77,7 @@ from .papers.silva_stojadinovic_2024.population.plots import plot_population as 
 from .parallel import ClusterError as ClusterError
 from .plot import plot_clouds as plot_clouds
 from .plot import plot_design as plot_design
+from .plot import plot_design_search as plot_design_search
 from .plot import plot_energy as plot_energy
 from .plot import plot_fragility as plot_fragility
 from .plot import plot_frequency_equation as plot_frequency_equation
@@ -84,6 +85,7 @@ from .plot import plot_frequency_ratios as plot_frequency_ratios
 from .plot import plot_history as plot_history
 from .plot import plot_hysteresis as plot_hysteresis
 from .plot import plot_ida as plot_ida
+from .plot import plot_loops as plot_loops
 from .plot import plot_mode_shapes as plot_mode_shapes
 from .plot import plot_moment_rotation as plot_moment_rotation
 from .plot import plot_moment_rotation_laws as plot_moment_rotation_laws
@@ -98,6 +100,7 @@ from .plot import save_figure as save_figure
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History
+from .response import MomentRotation as MomentRotation
 from .response import Response as Response
 from .store import StudyFolder as StudyFolder
 from .structure import Beam as Beam
@@ -123,6 +126,7 @@ from .study import OverturningScales as OverturningScales
 from .study import SecondMode as SecondMode
 from .study import frequency_ratios as frequency_ratios
 from .study import modal_combination as modal_combination
+from .study import moment_rotation as moment_rotation
 from .study import overturning_scales as overturning_scales
 from .study import overturning_spectrum as overturning_spectrum
 from .study import rocking_spectrum as rocking_spectrum
@@ -135,9 +139,17 @@ from .study.design import TendonLevel as TendonLevel
 from .study.design import design_table as design_table
 from .study.design import run_design as run_design
 from .study.design import smallest_width as smallest_width
+from .study.design.search import BestDesign as BestDesign
+from .study.design.search import DesignCost as DesignCost
+from .study.design.search import DesignSearch as DesignSearch
+from .study.design.search import Requirement as Requirement
+from .study.design.search import best_design as best_design
+from .study.design.search import search_design as search_design
+from .study.design.search import trade_off as trade_off
 from .study.incremental import IncrementalStudy as IncrementalStudy
 from .study.incremental import incremental_capacities as incremental_capacities
 from .study.incremental import run_incremental as run_incremental
+from .study.monte_carlo import MonteCarloStudy as MonteCarloStudy
 from .study.plan import Records as Records
 from .study.stripes import StripeStudy as StripeStudy
 from .study.stripes import stripe_counts as stripe_counts

@@ -64,7 +64,7 @@ class CompleteResult:
 
 
 @dataclass
-class _Run:
+class Run:
     model: CompleteModel
     law: Law
     lifts: bool
@@ -104,6 +104,21 @@ class _Run:
             elif kind == "overturned":
                 self.y[0], self.best[0], self.overturned = 0.5 * np.pi * self.side, 0.5 * np.pi, True
                 return
+
+    def result(self) -> CompleteResult:
+        times, before, after = zip(*self.impacts, strict=True) if self.impacts else ((), (), ())
+        clock, states, sides = zip(*self.nodes, strict=True)
+        return CompleteResult(
+            *(float(b) for b in self.best),
+            uplift_times=np.array(self.uplifts),
+            impact_times=np.array(times),
+            impact_states=np.array(before).reshape(-1, self.model.size),
+            after_impact_states=np.array(after).reshape(-1, self.model.size),
+            overturned=self.overturned,
+            times=np.array(clock),
+            states=np.array(states),
+            sides=np.array(sides),
+        )
 
     def _lift(self, side: int, time: float) -> None:
         self.side = side
@@ -159,7 +174,7 @@ class _Run:
             def value(t, guard=guard):
                 return float(guard(t, dense(t)))
 
-            at = _first_root(value, grid, guard(grid, states), fresh=fresh)
+            at = first_root(value, grid, guard(grid, states), fresh=fresh)
             if at is not None:
                 found.append((at, kind))
         if self.model.bouc_wen is not None:  # Eq. 38 has a kink where D' changes sign
@@ -187,7 +202,7 @@ class _Run:
                 self.best[q] = max(self.best[q], abs(float(self.model.responses(dense(top))[q])))
 
 
-def _first_root(value, grid: Vector, values: Vector, *, fresh: bool) -> float | None:
+def first_root(value, grid: Vector, values: Vector, *, fresh: bool) -> float | None:
     """First fall of a guard to zero; ``fresh`` if it starts at zero and rises, as a rotation does.
 
     A fall and rise between two grid points is found where the lowest point is within its neighbours' reach.
@@ -258,7 +273,7 @@ def simulate_complete(
     y[0], y[1] = rotation, rotation_velocity
     y[2 : 2 + n] = 0.0 if modal_displacement is None else modal_displacement
     y[2 + n : 2 + 2 * n] = 0.0 if modal_velocity is None else modal_velocity
-    run = _Run(model, law or CompleteVVEL(), lifts, _sizes(model, record) * ATOL, y, int(np.sign(rotation or y[1])))
+    run = Run(model, law or CompleteVVEL(), lifts, sizes(model, record) * ATOL, y, int(np.sign(rotation or y[1])))
 
     run.note(0.0)
     parts = int(np.ceil(free / dt - 1e-9))
@@ -268,22 +283,10 @@ def simulate_complete(
         run.advance(Sample(*sample))
         if run.overturned:
             break
-    times, before, after = zip(*run.impacts, strict=True) if run.impacts else ((), (), ())
-    clock, states, sides = zip(*run.nodes, strict=True)
-    return CompleteResult(
-        *(float(b) for b in run.best),
-        uplift_times=np.array(run.uplifts),
-        impact_times=np.array(times),
-        impact_states=np.array(before).reshape(-1, model.size),
-        after_impact_states=np.array(after).reshape(-1, model.size),
-        overturned=run.overturned,
-        times=np.array(clock),
-        states=np.array(states),
-        sides=np.array(sides),
-    )
+    return run.result()
 
 
-def _sizes(model: CompleteModel, record: Vector) -> Vector:
+def sizes(model: CompleteModel, record: Vector) -> Vector:
     """A size for each component: θ as where the resisting moment ends, D_n as a/ω_n², z as 1."""
     p = model.structure
     slenderness = p.m_tot * p.half_width / p.l0r

@@ -22,6 +22,12 @@ STUDIES = {
     "incremental": ('models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n' + RECORDS + FRAME, ["capacities"]),
     "stripes": ('levels = [0.5, 1.0, 2.0]\nmeasure = "pgv"\n' + RECORDS + FRAME, ["stripes"]),
     "population": ("pairs = 12\n" + RECORDS, ["agreement", "modal_combination", "population"]),
+    "monte_carlo": (
+        "count = 12\nvariables.b = { uniform = [0.1, 0.2] }\nscales = [0.5, 1.5]\nmodels = ['rigid']\n"
+        + RECORDS
+        + "structure = { block = { slenderness = '= b', half_diagonal = 3.0 } }\n",
+        ["fragility", "rotation", "top_displacement", "total_top_displacement"],
+    ),
 }
 
 
@@ -81,8 +87,8 @@ def test_figures_replace_nothing_unless_told_to(tmp_path):
         (("--format", "jpg"), "--format must be one of png, svg, pdf, but 'jpg' was given."),
         (
             ("--measure", "pga"),
-            f"--measure is for cloud and incremental studies, but the study in {folder} is of kind stripes. "
-            "Leave it out.",
+            f"--measure is for cloud, incremental and monte_carlo studies, but the study in {folder} is of kind "
+            "stripes. Leave it out.",
         ),
     ):
         refused = invoke(folder, *arguments)

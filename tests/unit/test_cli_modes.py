@@ -302,3 +302,95 @@ def test_bad_input(arguments, said):
     assert result.exit_code == 2
     assert result.stdout == ""
     assert said in result.stderr
+
+
+FUSES = """
+[[elements]]
+kind = "tendon"
+initial_force = 2e5
+stiffness = 3e6
+
+[[elements]]
+kind = "yielding_dissipator"
+position = {x}
+stiffness = 5e7
+yield_force = {strength}
+post_yield_ratio = 0.1
+tension_only = {only}
+
+[[elements]]
+kind = "friction_damper"
+force = 1e5
+
+[[elements]]
+kind = "viscous_damper"
+coefficient = 4e5
+"""
+
+
+LEAST = ["Least", "moment", "that", "lifts", "it", "after", "yielding,", "M_r", "-", "M_d"]
+
+
+def walled(tmp_path, strength="3e5", only="false", x="0.0", eccentric=False):
+    path = tmp_path / "fused.toml"
+    content = ECCENTRIC if eccentric else ECCENTRIC.replace("eccentricity = -0.15\n", "")
+    path.write_text(content + FUSES.format(strength=strength, only=only, x=x), "utf-8")
+    return path
+
+
+def test_elements_are_printed_with_what_closes_the_base(tmp_path):
+    path = walled(tmp_path)
+    rows = [line.split() for line in invoke(path).stdout.splitlines()]
+    p = rf.read_structure(path).rocking()
+    # By hand: M_r = (W + P) B, M_d = (0.9 F_y + F_0) B.
+    resisting, locked = (160e3 * 9.81 + 2e5) * p.half_width, (0.9 * 3e5 + 1e5) * p.half_width
+    assert ["Moment", "of", "the", "dissipators,", "M_d", f"{locked / 1e3:.1f}", "kN", "m"] in rows
+    assert ["Re-centring", "ratio,", "M_r/M_d", f"{resisting / locked:.3f}"] in rows
+    assert [
+        *LEAST,
+        f"{(resisting - locked) / 1e3:.0f}",
+        "kN",
+        "m",
+    ] in rows
+    assert ["Self-centring", "yes"] in rows
+    assert ["1", "tendon", "0", "3000", "-", "200.0", "-", "-"] in rows
+    assert ["2", "yielding", "dissipator", "0", "50000", "-", "-", "300.0", "0.1000"] in rows
+    assert ["3", "friction", "damper", "0", "-", "-", "-", "100.0", "-"] in rows
+    assert ["4", "viscous", "damper", "0", "-", "400.0", "-", "-", "-"] in rows
+    assert "breaks at" not in invoke(path).stdout
+    assert max(map(len, invoke(path).stdout.splitlines())) <= 80
+
+
+def test_a_base_that_its_dissipators_hold_open(tmp_path):
+    rows = [line.split() for line in invoke(walled(tmp_path, strength="3e6")).stdout.splitlines()]
+    assert ["Self-centring", "no:", "it", "may", "stay", "open"] in rows
+    assert [*LEAST, "0", "kN", "m"] in rows
+    found = json.loads(invoke(walled(tmp_path, strength="3e6"), "--json").stdout)["rocking"]
+    assert found["self_centring"] is False
+    assert found["recentring_ratio"] == pytest.approx((160e3 * 9.81 + 2e5) / (0.9 * 3e6 + 1e5))
+    # It cannot push it open.
+    assert "tension only" in invoke(walled(tmp_path, strength="3e6", only="true")).stdout
+    found = json.loads(invoke(walled(tmp_path, strength="3e6", only="true"), "--json").stdout)["rocking"]
+    assert found["self_centring"] is True
+
+
+def test_elements_in_the_document(tmp_path):
+    found = json.loads(invoke(walled(tmp_path), "--json").stdout)
+    elements = found["rocking"]["elements"]
+    assert [each["kind"] for each in elements] == ["tendon", "yielding_dissipator", "friction_damper", "viscous_damper"]
+    assert elements[1]["yield_force"] == 3e5
+    assert {name for each in elements for name in each} - {"kind", "post_yield_ratio", "tension_only"} <= found[
+        "units"
+    ].keys()
+    assert [each["kind"] for each in found["structure"]["elements"]] == [each["kind"] for each in elements]
+    free = json.loads(invoke(STRUCTURE, "--json").stdout)["rocking"]
+    assert not free.keys() & {"elements", "self_centring", "recentring_ratio"}
+
+
+def test_each_edge_has_its_dissipators(tmp_path):
+    path = walled(tmp_path, x="0.4", eccentric=True)
+    rows = [line.split() for line in invoke(path).stdout.splitlines()]
+    p = rf.read_structure(path).rocking()
+    locked = [f"{p.pivot(side).dissipator_moment / 1e3:.1f}" for side in (1, -1)]
+    assert ["Moment", "of", "the", "dissipators,", "M_d", *locked, "kN", "m"] in rows
+    assert ["Self-centring", "yes", "yes"] in rows

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from builders import make_frame
 from rockflex.cli import _run_output, _simulations, app
-from rockflex.cli._console import Styled, grid
+from rockflex.cli._console import Styled, grid, number
 from rockflex.response import PEAKS
 from rockflex.study import Case
 
@@ -45,9 +45,9 @@ def document(*arguments):
 
 def assert_is_run(row, motion, scale, model, **more):
     response = rf.simulate(FRAME, motion.scaled(scale), model, output="peaks", **more)
-    peaks = {name: None if value != value else value for name, value in response.peaks().items()}  # JSON has no NaN
-    expected = peaks | {"motion": motion.name, "scale": scale, "error": None}
-    assert {name: row[name] for name in expected} == expected
+    expected = response.peaks() | {"motion": motion.name, "scale": scale, "error": None}
+    # JSON has no NaN.
+    assert {name: row[name] for name in expected} == {k: None if v != v else v for k, v in expected.items()}
 
 
 def test_default_models_side_by_side():
@@ -417,3 +417,83 @@ def test_ctrl_c_ends_without_a_trace(tmp_path, monkeypatch):
     assert done.exit_code == 130
     assert done.stderr == "Stopped; nothing was written.\n"
     assert list(tmp_path.iterdir()) == []
+
+
+FUSED = """
+[wall_frame]
+height = 20.0
+mass = 400e3
+stiffness_parameter = 0.0
+base_mass = 40e3
+period = 0.5
+aspect_ratio = 6.0
+damping_ratio = 0.02
+n_modes = 2
+
+[[elements]]
+kind = "tendon"
+initial_force = 1e6
+stiffness = 2e7
+
+[[elements]]
+kind = "yielding_dissipator"
+position = 0.5
+stiffness = 2e8
+yield_force = 4e5
+"""
+
+
+@pytest.fixture
+def fused(tmp_path):
+    path = tmp_path / "fused.toml"
+    path.write_text(FUSED, "utf-8")
+    return path
+
+
+def test_elements_are_told_with_their_forces_and_energies(fused, tmp_path):
+    arguments = (fused, "fema-p695-far-field/FF-2-a", "--scale", 2, "--model", "MDOF-S")
+    response = rf.simulate(rf.read_structure(fused), FF["FF-2-a"].scaled(2.0))
+    forces, energies = response.max_element_force, response.element_energy
+    row = document(*arguments)["runs"][0]
+    assert [row["max_element_force_1"], row["max_element_force_2"]] == forces.tolist()
+    assert row["max_element_elongation_2"] == response.max_element_elongation[1]
+    assert row["residual_rotation"] == response.residual_rotation
+    assert "element_energy_1" not in row
+    printed = invoke(*arguments, "--out", tmp_path / "out").stdout
+    rows = [line.split() for line in printed.splitlines()]
+    assert ["2", "yielding", "dissipator", "0.5000", "200000", "-", "400.0", "0"] in rows
+    assert ["FF-2-a", "2", "MDOF-S", *(number(each / 1e3) for each in forces)] in rows
+    assert ["FF-2-a", "2", "MDOF-S", *(number(each / 1e3) for each in energies)] in rows
+    assert "F, E: largest force of each element, and the energy that it takes (with --out);" in printed
+    with (tmp_path / "out" / "results.csv").open(newline="") as table:
+        (kept,) = csv.DictReader(table)
+    assert float(kept["element_energy_2"]) == energies[1] > 0.0
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text("utf-8"))
+    assert [each["kind"] for each in summary["structure"]["elements"]] == ["tendon", "yielding_dissipator"]
+    named = {name.removesuffix("*") for name in summary["units"]}
+    for name, value in summary["runs"][0].items():
+        if isinstance(value, float) and name not in ("scale", "tendon_utilisation"):
+            assert any(name.startswith(known) for known in named), name
+
+
+def test_a_base_that_does_not_close_is_told(fused):
+    fused.write_text(FUSED.replace("yield_force = 4e5", "yield_force = 9e6"), "utf-8")
+    arguments = (fused, "fema-p695-far-field/FF-2-a", "--scale", 4, "--model", "2DOF-S", "--free-vibration", 20)
+    residual = document(*arguments)["runs"][0]["residual_rotation"]
+    printed = invoke(*arguments).stdout
+    assert ("θ_end" in printed.split("u_top: relative")[0]) == (residual != 0.0)
+    free = invoke(STRUCTURE, "el-centro-1940", "--model", "MDOF-S").stdout
+    assert not any(word in free for word in ("θ_end", "F_1", "Between base"))
+
+
+def test_a_run_that_fails_has_no_forces(fused, monkeypatch):
+    def fail(case, motion, scale=1.0):
+        if case.model.label == "2DOF-S":
+            raise rf.SolverError("no way")
+        return KEPT(case, motion, scale)
+
+    KEPT = Case.run
+    monkeypatch.setattr(Case, "run", fail)
+    result = invoke(fused, "el-centro-1940", "--model", "2DOF-S,MDOF-S", "--scale", 2)
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert ["EL-CENTRO-1940-NS", "2", "2DOF-S", "-", "-"] in rows

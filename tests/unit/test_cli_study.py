@@ -1,4 +1,4 @@
-"""``rockflex cloud``, ``ida``, ``stripes`` and ``population``: what is printed, kept and refused."""
+"""``rockflex cloud``, ``ida``, ``stripes``, ``population`` and ``monte-carlo``: what is printed, kept and refused."""
 
 import json
 
@@ -26,14 +26,17 @@ HEADS = {
     "incremental": 'models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n',
     "stripes": 'models = ["2DOF-S"]\nmeasure = "pgv"\nlevels = [0.05, 0.2, 0.4, 2.0]\n',
     "population": "pairs = 30\nseed = 5\n",
+    "monte_carlo": 'count = 8\nname = "Blocks"\nmodels = ["rigid"]\nvariables.b = { uniform = [0.1, 0.2] }\n'
+    'structure = { block = { slenderness = "= b", half_diagonal = 3.0 } }\n',
 }
-COMMANDS = {"cloud": "cloud", "incremental": "ida", "stripes": "stripes", "population": "population"}
+COMMANDS = {kind: kind for kind in HEADS} | {"incremental": "ida", "monte_carlo": "monte-carlo"}
+DRAWN = ("population", "monte_carlo")  # their structures
 
 
 @pytest.fixture
 def study(tmp_path):
     def write(kind, head=None):
-        structures = "" if kind == "population" else f'[[structures]]\nname = "S"\n{FRAME}'
+        structures = "" if kind in DRAWN else f'[[structures]]\nname = "S"\n{FRAME}'
         file = tmp_path / f"{kind}.toml"
         file.write_text(f'study = "{kind}"\n{HEADS[kind] if head is None else head}{RECORDS}{structures}')
         return file
@@ -52,6 +55,7 @@ def invoke(*arguments, columns=220):
         ("incremental", ["Capacities to |θ| = π/2, lognormal", "PGA", "resurrections"]),
         ("stripes", ["Runs beyond the limit at each level of pgv", "overturning", "/6", "24 rows in"]),
         ("population", ["Pairs by outcome", "MDOF-S against 2DOF-S (Section 3.3)", "SRSS", "30 rows in"]),
+        ("monte_carlo", ["Values of 8 random structures", "recentring_ratio", "Outcomes, and P(", "48 rows in"]),
     ],
 )
 def test_every_kind_is_run_kept_and_told(study, tmp_path, kind, words):

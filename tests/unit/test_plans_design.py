@@ -11,7 +11,7 @@ import rockflex as rf
 from design_case import CONTENT, FRAME, HEIGHT, LEVELS, PROPERTIES, STRUCTURE, SUITE, WIDTHS
 from rockflex.study.design import DesignStudy
 from rockflex.study.design._levels import designs_of, half_widths_of
-from rockflex.study.design._limits import rotation_of
+from rockflex.study.design._limits import state_of
 from rockflex.study.plan import ChunkedPlan
 
 
@@ -145,7 +145,8 @@ def test_the_example_is_a_study():
         (
             {"limits": ["half"]},
             "limits: limit must be a rotation from 0.0001 rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
-            '"nominal" or "0.5 nominal" in the same range, or "overturning", but \'half\' was given.',
+            '"nominal" or "0.5 nominal" in the same range, a limit state (uplift, rocking, nominal, overturning), or a '
+            "result with its bound, such as \"max_base_moment > 5e6\", but 'half' was given.",
         ),
         ({"measure": "relative_pgv"}, "measure: measure must not depend on the base, as a level of relative_pgv does."),
         ({"measure": "pgw"}, "measure: measure must be one of pga, pgv,"),
@@ -205,7 +206,7 @@ def test_a_design_that_cannot_be_built(changes, message):
             lambda: rf.run_design(
                 rf.Restrained(STRUCTURE, [rf.Tendon(1.0, 1.0, -0.5), rf.Tendon(1.0, 1.0, 0.5)]), SUITE[0], [0.4]
             ),
-            "B = 0.4 m: Tendons must pass through the base, 0.4 m to each side of its centre, but one is at",
+            "B = 0.4 m: Elements must act within half_width = 0.4 m to each side of the axis of the masses, but",
         ),
     ],
 )
@@ -221,10 +222,10 @@ def test_half_widths_rise():
 
 
 def test_limits():
-    assert rotation_of(0.02, 0.1) == 0.02
-    assert rotation_of("nominal", 0.1) == 0.1
-    assert rotation_of("0.5 nominal", 0.1) == 0.05
-    assert rotation_of("overturning", 0.1) == math.pi / 2
+    assert state_of(0.02, 0.1).threshold == 0.02
+    assert state_of("nominal", 0.1).threshold == 0.1
+    assert state_of("0.5 nominal", 0.1).threshold == 0.05
+    assert state_of("overturning", 0.1).threshold == math.pi / 2
     for limit in (0.0, 1e-5, 1.6, math.nan, True, "x nominal", "0.5 0.5 nominal", "", "0.0005 nominal", None):
         with pytest.raises(rf.InputError, match=r"limit must be a rotation from 0\.0001 rad"):
-            rotation_of(limit, 0.1)
+            state_of(limit, 0.1)

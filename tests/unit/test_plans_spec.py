@@ -59,7 +59,12 @@ def failing(read, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "kind", "runs"),
-    [("cloud", CloudStudy, 2592), ("population", PopulationStudy, 2000), ("incremental", IncrementalStudy, 2420)],
+    [
+        ("cloud", CloudStudy, 2592),
+        ("population", PopulationStudy, 2000),
+        ("incremental", IncrementalStudy, 2420),
+        ("controlled_rocking_walls", rf.MonteCarloStudy, 4000),
+    ],
 )
 def test_examples_load(name, kind, runs):
     study = load_study(EXAMPLES / f"{name}.toml")
@@ -112,7 +117,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
     [
         (
             RECORDS + STRUCTURE,
-            'study must be one of "cloud", "incremental", "stripes", "population", "design", but it is',
+            'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo", "design", but it is',
         ),
         (CLOUD.replace('"cloud"', '"clod"'), "study must be one of "),
         (CLOUD.replace('"cloud"', "7"), "study must be one of "),
@@ -205,4 +210,33 @@ def test_an_eccentric_structure_of_a_study(tmp_path):
     assert [each.position for each in p.tendons] == [0.3]
     assert study.document()["structures"][0]["eccentricity"] == 0.1
     # A study without it has the document, and so the folder, that it always had.
-    assert "eccentricity" not in plain.document()["structures"][0]
+    assert plain.document()["structures"][0].keys() == {"name", "frame", "tendons"}
+
+
+def test_elements_of_a_study(tmp_path):
+    fuse = '[[structures.elements]]\nkind = "yielding_dissipator"\nstiffness = 1e7\nyield_force = 2e5\n'
+    (tmp_path / "fuse.toml").write_text(CLOUD + fuse, "utf-8")
+    study = load_study(tmp_path / "fuse.toml")
+    (p,) = study.bench().structures
+    assert p.elements == (rf.YieldingDissipator(1e7, 2e5),)
+    (element,) = study.document()["structures"][0]["elements"]
+    assert element == {
+        "kind": "yielding_dissipator",
+        "position": 0.0,
+        "stiffness": 1e7,
+        "yield_force": 2e5,
+        "post_yield_ratio": 0.0,
+        "tension_only": False,
+    }
+    again = CloudStudy(**study.document() | {"structures": [entry.model_dump() for entry in study.structures]})
+    assert again.document() == study.document()
+    runs = run_plan(study.plan())
+    alone = rf.simulate(p, study.bench().motions[0], output="peaks")
+    assert (runs["status"].item(), runs["max_rotation"].item()) == (alone.status, alone.max_rotation)
+    (tmp_path / "wrong.toml").write_text(CLOUD + fuse.replace("2e5", "-2e5"), "utf-8")
+    with pytest.raises(rf.InputError) as caught:
+        load_study(tmp_path / "wrong.toml").plan()
+    assert str(caught.value) == (
+        "[[structures]] no. 1, 'one': [[elements]] no. 1: yield_force must be a positive, finite number in N, but "
+        "-200000.0 was given."
+    )

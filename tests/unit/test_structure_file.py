@@ -1,15 +1,18 @@
 """Structures of every kind from TOML files."""
 
 import math
+import tomllib
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
 import pytest
+import tomli_w
 from pydantic import ValidationError
 
 import rockflex as rf
 from builders import PROPERTIES, frame_values
-from rockflex.structure.file import KINDS, StructureEntry, Table, checked, key_of
+from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, Table, checked, key_of
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
@@ -52,7 +55,7 @@ def modes_of_two_masses():
 
 def assert_same(one, other):
     one, other = (each if isinstance(each, rf.RockingProperties) else each.rocking() for each in (one, other))
-    for name in (*KINDS["properties"].model_fields, "tendons"):
+    for name in (*KINDS["properties"].model_fields, "elements"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
 
 
@@ -246,23 +249,176 @@ def test_a_wrong_eccentricity(failing):
 def test_wrong_tendons(failing):
     frame = text("frame", FRAME)
     one = "[[tendons]]\nposition = 0.3\ninitial_force = 5e5\nstiffness = 2e7\n"
-    assert failing(frame + one.replace("0.3", "-1.3")).startswith(
-        ", [[tendons]]: Tendons must pass through the base, 0.842617 m to each side of its centre, but one is at "
-        "-1.3 m."
+    assert failing(frame + TENDONS + one.replace("0.3", "-1.3")) == (
+        ", [[tendons]] no. 4: Elements must act within half_width = 0.842617 m to each side of the axis of the masses, "
+        "but a Tendon is at -1.3 m."
     )
     assert failing(frame + one.replace("2e7", "-1")) == (
-        ", [[tendons]]: stiffness must be a zero or positive, finite number in N/m, but -1.0 was given."
+        ", [[tendons]] no. 1: stiffness must be a zero or positive, finite number in N/m, but -1.0 was given."
     )
     assert failing(frame + TENDONS + one.replace("2e7", '"high"').replace("initial_force = 5e5", "force = 5e5")) == (
         ": [[tendons]] no. 4, initial_force is missing: the force while the base stands on the ground, a number in N. "
         "[[tendons]] no. 4, stiffness must be EA/L over the unbonded length, a number in N/m, but 'high' was given. "
-        "[[tendons]] no. 4, force is not known; there are position, initial_force, stiffness, yield_force. "
-        "Did you mean yield_force?"
+        "[[tendons]] no. 4, force is not known; there are position, initial_force, stiffness, yield_force, "
+        "post_yield_ratio, rupture_elongation. Did you mean yield_force?"
     )
     assert failing(frame + "[tendons]\nstiffness = 3\n") == (
         ": tendons must be a list of tables, each under a heading [[tendons]], but {'stiffness': 3} was given."
     )
     assert failing("tendons = [3]\n" + frame) == ": [[tendons]] no. 1 must be a table, but 3 was given."
+
+
+ARGUMENTS = {
+    "tendon": {
+        "position": -0.3,
+        "initial_force": 5e5,
+        "stiffness": 2e7,
+        "yield_force": 9e5,
+        "post_yield_ratio": 0.02,
+        "rupture_elongation": 0.2,
+    },
+    "yielding_dissipator": {
+        "position": 0.6,
+        "stiffness": 1e8,
+        "yield_force": 2e5,
+        "post_yield_ratio": 0.01,
+        "tension_only": True,
+        "rupture_elongation": 0.1,
+    },
+    "viscous_damper": {"position": -0.6, "coefficient": 3e5},
+    "friction_damper": {"position": 0.1, "force": 1e5},
+}
+CLASSES = {
+    "tendon": rf.Tendon,
+    "yielding_dissipator": rf.YieldingDissipator,
+    "viscous_damper": rf.ViscousDamper,
+    "friction_damper": rf.FrictionDamper,
+}
+
+
+def element(kind, **changes):
+    values = {name: value for name, value in (ARGUMENTS[kind] | changes).items() if value is not None}
+    return "[[elements]]\n" + "".join(f"{key} = {toml(value)}\n" for key, value in {"kind": kind, **values}.items())
+
+
+def test_keys_of_elements_are_the_arguments_of_their_classes(write):
+    assert {kind: table.makes for kind, table in ELEMENTS.items()} == CLASSES
+    for kind, table in ELEMENTS.items():
+        assert {"kind", *signature(CLASSES[kind]).parameters} == set(table.model_fields)
+        for name, parameter in signature(CLASSES[kind]).parameters.items():
+            field = table.model_fields[name]
+            assert parameter.default is parameter.empty if field.is_required() else parameter.default == field.default
+    built = rf.read_structure(write(text("frame", FRAME) + "".join(map(element, ELEMENTS))))
+    expected = [make(**ARGUMENTS[kind]) for kind, make in CLASSES.items()]
+    assert built == rf.Restrained(rf.Frame(**FRAME), expected)
+    by_hand = rf.read_structure(write(text("properties", PROPERTIES) + "".join(map(element, ELEMENTS))))
+    assert by_hand == rf.RockingProperties(**PROPERTIES, elements=expected)
+
+
+def test_tendons_come_before_elements_and_on_eccentric_bases(write):
+    content = "eccentricity = 0.2\n" + text("frame", FRAME) + element("friction_damper", position=1.0) + TENDONS
+    built = rf.read_structure(write(content))
+    assert built.structure == rf.Eccentric(rf.Frame(**FRAME), 0.2)
+    assert [type(each) for each in built.elements] == [rf.Tendon] * 3 + [rf.FrictionDamper]
+
+
+@pytest.mark.parametrize(
+    ("kind", "changes", "said"),
+    [
+        ("tendon", {"initial_force": -1}, "initial_force must be a zero or positive, finite number in N, but -1.0 was"),
+        ("tendon", {"stiffness": math.inf}, "stiffness must be a zero or positive, finite number in N/m, but inf was"),
+        (
+            "tendon",
+            {"yield_force": 4e5},
+            "initial_force must not exceed yield_force, 400000 N, but 500000 N was given. A tendon that has yielded is "
+            "not elastic; check the units too.",
+        ),
+        ("tendon", {"yield_force": 0}, "yield_force must be a positive, finite number in N, but 0.0 was given."),
+        (
+            "tendon",
+            {"yield_force": None},
+            "post_yield_ratio needs the yield_force in N of a tendon with stiffness, but yield_force = None and "
+            "stiffness = 2e+07 N/m were given.",
+        ),
+        (
+            "tendon",
+            {"post_yield_ratio": None},
+            "rupture_elongation is for a tendon that yields. Give yield_force and post_yield_ratio as well.",
+        ),
+        (
+            "tendon",
+            {"rupture_elongation": 0.01},
+            "rupture_elongation must be beyond the elongation at yield, 0.02 m, but 0.01 m was given. Check the units:",
+        ),
+        ("yielding_dissipator", {"stiffness": 0}, "stiffness must be a positive, finite number in N/m, but 0.0 was"),
+        ("yielding_dissipator", {"yield_force": -2}, "yield_force must be a positive, finite number in N, but -2.0"),
+        (
+            "yielding_dissipator",
+            {"post_yield_ratio": 1},
+            "post_yield_ratio must be from 0 to below 1, but 1.0 was given. It is the stiffness after yielding over "
+            "the elastic stiffness: 2 % is 0.02.",
+        ),
+        (
+            "yielding_dissipator",
+            {"rupture_elongation": 0.001},
+            "rupture_elongation must be beyond the elongation at yield, 0.002 m, but 0.001 m was given.",
+        ),
+        (
+            "yielding_dissipator",
+            {"position": 0.9},
+            "Elements must act within half_width = 0.842617 m to each side of the axis of the masses, but a "
+            "YieldingDissipator is at 0.9 m.",
+        ),
+        ("viscous_damper", {"coefficient": -1}, "coefficient must be a zero or positive, finite number in N s/m, but"),
+        ("friction_damper", {"force": -1}, "force must be a zero or positive, finite number in N, but -1.0 was given."),
+        ("friction_damper", {"position": math.nan}, "position must be a finite number in m, but nan was given."),
+    ],
+)
+def test_values_of_elements_out_of_range_name_the_element(failing, kind, changes, said):
+    content = text("frame", FRAME) + TENDONS + element("viscous_damper") + element(kind, **changes)
+    assert failing(content).startswith(f", [[elements]] no. 2: {said}")
+
+
+def test_wrong_keys_of_elements(failing):
+    frame, damper = text("frame", FRAME), element("friction_damper")
+    kinds = '"tendon", "yielding_dissipator", "viscous_damper" or "friction_damper"'
+    assert failing(frame + damper + damper.replace("friction_", "")) == (
+        f": [[elements]] no. 2, kind must be {kinds}, but 'damper' was given."
+    )
+    assert failing(frame + damper.replace("kind = 'friction_damper'", "")) == (
+        f": [[elements]] no. 1, kind is missing: {kinds}."
+    )
+    assert failing(frame + damper.replace("'friction_damper'", "[1]")) == (
+        f": [[elements]] no. 1, kind must be {kinds}, but [1] was given."
+    )
+    assert failing(frame + damper + element("yielding_dissipator", tension_only=None, stiffness="stiff", fy=1.0)) == (
+        ": [[elements]] no. 2, stiffness must be the elastic stiffness, a number in N/m, but 'stiff' was given. "
+        "[[elements]] no. 2, fy is not known; there are kind, position, stiffness, yield_force, post_yield_ratio, "
+        "tension_only, rupture_elongation."
+    )
+    assert failing(frame + element("viscous_damper", coefficient=None)) == (
+        ": [[elements]] no. 1, coefficient is missing: the force over the velocity, a number in N s/m."
+    )
+    assert failing(frame + element("yielding_dissipator", tension_only=1)) == (
+        ": [[elements]] no. 1, tension_only must be true or false: whether the fuse cannot push, but 1 was given."
+    )
+    assert failing(frame + "[elements]\nforce = 3\n") == (
+        ": elements must be a list of tables, each under a heading [[elements]], but {'force': 3} was given."
+    )
+    assert failing("elements = [3]\n" + frame) == ": [[elements]] no. 1 must be a table, but 3 was given."
+
+
+def test_an_entry_is_written_and_read_again(write):
+    content = text("frame", FRAME) + TENDONS + "".join(map(element, ELEMENTS))
+    entry = checked(StructureEntry, tomllib.loads(content))
+    again = tomli_w.dumps(entry.model_dump(exclude_none=True))
+    assert checked(StructureEntry, tomllib.loads(again)) == entry
+    assert rf.read_structure(write(again)) == entry.build()
+    described = entry.describe()
+    assert described["elements"] == [{"kind": kind, **values} for kind, values in ARGUMENTS.items()]
+    assert [each["position"] for each in described["tendons"]] == [-0.5, 0.0, 0.5]
+    # An entry without elements has the document, and so the folder of its study, that it always had.
+    assert "elements" not in checked(StructureEntry, {"frame": FRAME}).model_dump(exclude_none=True)
 
 
 def test_one_structure_a_file(failing):

@@ -69,17 +69,31 @@ def law_of_two() -> rf.AnnualRate:
     return rf.annual_rate(rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]), rf.LognormalFragility(0.5, 0.4))
 
 
+def best() -> rf.BestDesign:
+    search, targets, cost = (
+        rf.DesignSearch([0.5, 1.0], refinements=0),
+        [rf.Requirement(0.02, 0.2, 0.5)],
+        rf.DesignCost(1.0),
+    )
+    pulses = {name: motion() for name in "ab"}
+    runs = rf.search_design(frame(), pulses, search, targets, cost, scales=[0.2, 0.4, 1.0])
+    return rf.best_design(runs, targets, cost, n_resamples=20)
+
+
 VALUES = {
     rf.Adequacy: lambda: rf.adequacy(frame().rocking()),
     rf.AdequacyTolerance: lambda: rf.AdequacyTolerance(base_moment=math.inf),
     rf.AnnualRate: law_of_two,
     rf.Beam: beam,
+    rf.BestDesign: best,
     rf.BootstrapBand: lambda: rf.bootstrap_band(rf.fit_cloud, RUNS[0], RUNS[0] ** 2 * (1.0 + RUNS[1]), at=[0.5], n=20),
     rf.BoucWen: lambda: rf.BoucWen(0.05),
     rf.CantileverWithTipMass: lambda: rf.CantileverWithTipMass(10.0, 1e4, 1e9, 1e3, 1.0, 0.02, 500.0),
     rf.CloudFit: lambda: rf.fit_cloud([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
     rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, None, 0),
     rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
+    rf.DesignCost: lambda: rf.DesignCost(1.0, 2e-6),
+    rf.DesignSearch: lambda: rf.DesignSearch([1.0, 2.0], [0.0, 1.0]),
     rf.Eccentric: lambda: rf.Eccentric(frame(), 0.1),
     rf.EnergyLedger: lambda: response().energy,
     rf.FishBone: lambda: rf.FishBone([3.0, 3.5], 1e3, 1e7, [1e6, math.inf], base_mass=0.0, half_width=0.5,
@@ -87,6 +101,7 @@ VALUES = {
     rf.FloorModes: lambda: frame().rocking().floors,
     rf.FloorPeaks: lambda: response().floors,
     rf.Frame: frame,
+    rf.FrictionDamper: lambda: rf.FrictionDamper(1e5, 0.2),
     rf.GroundMotion: motion,
     rf.HazardCurve: lambda: rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]),
     rf.History: lambda: response().history,
@@ -107,6 +122,7 @@ VALUES = {
     rf.PopulationStatistics: statistics,
     rf.Progress: lambda: rf.Progress(3, 2, 1, 64),
     rf.RecordInfo: lambda: rf.RecordInfo(event="none"),
+    rf.Requirement: lambda: rf.Requirement(0.02, 0.1, hazard=rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4])),
     rf.Response: response,
     rf.Restitution: lambda: rf.Restitution(0.5),
     rf.Restrained: lambda: rf.Restrained(frame(), tendons()),
@@ -121,7 +137,9 @@ VALUES = {
     rf.UpliftedModes: lambda: rf.uplifted_modes(frame().rocking()),
     rf.VVELComplete: rf.VVELComplete,
     rf.VVELSimplified: rf.VVELSimplified,
+    rf.ViscousDamper: lambda: rf.ViscousDamper(1e5, -0.2),
     rf.WallFrame: lambda: rf.WallFrame(30.0, 3e5, 2.0, 1.0, 1e4, 8.0, 0.02),
+    rf.YieldingDissipator: lambda: rf.YieldingDissipator(1e7, 1e5, 0.02, rupture_elongation=0.1),
     # not in `rockflex` itself, but in what it returns
     ForgottenLaw: lambda: ForgottenLaw("Mine()", "this", "that"),
     LinearModel: lambda: LinearModel("MDOF-S", frame().rocking()),
@@ -132,12 +150,17 @@ STUDIES = {
     rf.CloudStudy: lambda: rf.CloudStudy(**STUDY, scales=[1.0, 2.0]),
     rf.DesignStudy: lambda: rf.DesignStudy(**STUDY, half_widths=[1.0, 1.5], level=0.5),
     rf.IncrementalStudy: lambda: rf.IncrementalStudy(**STUDY),
+    rf.MonteCarloStudy: lambda: rf.MonteCarloStudy(
+        records=STUDY["records"],
+        variables={"b": {"uniform": [0.1, 0.3]}},
+        structure={"block": {"slenderness": "= b", "half_diagonal": 3.0}},
+    ),
     rf.PopulationStudy: lambda: rf.PopulationStudy(records=STUDY["records"], pairs=4, seed=1),
     rf.Records: lambda: rf.Records(suites=["el-centro-1940"]),
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
 }
 NO_VALUES = {rf.StudyFolder}  # a place on the disk, held open by a process
-UNHASHABLE = {rf.PopulationStatistics}  # it holds tables
+UNHASHABLE = {rf.BestDesign, rf.PopulationStatistics}  # they hold tables
 
 cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])
 

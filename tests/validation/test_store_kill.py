@@ -20,6 +20,8 @@ from toy_study import ToyPlan, run_study
 pytestmark = pytest.mark.slow
 PLAN = ToyPlan(n_chunks=20, delay=0.04)
 Start = Callable[..., BaseProcess]
+RECORDS = '[records]\nsuites = ["fema-p695-far-field"]\n'
+WALLS = Path(__file__).parents[2] / "examples" / "controlled_rocking_walls.toml"
 
 
 @pytest.fixture
@@ -77,12 +79,25 @@ def test_killed_again_and_again_it_ends(tmp_path: Path, start: Start) -> None:
     pd.testing.assert_frame_equal(StudyFolder.load(study).frame(), PLAN.whole())
 
 
-def test_a_real_study_killed_at_random_moments_ends_alike(tmp_path: Path, start: Start) -> None:
+@pytest.mark.parametrize(
+    "content",
+    [
+        'study = "population"\npairs = 120\nruns_per_chunk = 12\n' + RECORDS,
+        'study = "monte_carlo"\ncount = 120\nruns_per_chunk = 6\nrecords_per_structure = 1\nmodels = ["rigid"]\n'
+        "variables = { b = { uniform = [0.1, 0.2] }, fuse = { uniform = [0.1, 0.5] } }\n"
+        'structure.block = { slenderness = "= b", half_diagonal = 3.0 }\n'
+        'structure.elements = [{ kind = "yielding_dissipator", stiffness = "= 100 * weight", '
+        'yield_force = "= fuse * weight" }]\n' + RECORDS,
+        WALLS.read_text("utf-8")
+        .replace("count = 1000", "count = 8")
+        .replace("records_per_structure = 4", "runs_per_chunk = 72"),
+    ],
+    ids=["population", "monte_carlo", "walls"],
+)
+def test_a_real_study_killed_at_random_moments_ends_alike(content: str, tmp_path: Path, start: Start) -> None:
     """Killed as often as it takes: each process goes on where the one before was stopped."""
     spec, folder, draw = tmp_path / "study.toml", tmp_path / "killed", random.Random(7)
-    spec.write_text(
-        'study = "population"\npairs = 120\nruns_per_chunk = 12\n[records]\nsuites = ["fema-p695-far-field"]\n'
-    )
+    spec.write_text(content, "utf-8")
     kills, kept = 0, 0
     while True:
         process = start(partial(rf.run_study, spec, folder, workers=1))

@@ -120,7 +120,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(visitor, tab) -> None:
     page = visitor.page
     visitor.tab(tab)
     if tab == "structure":
-        page.get_by_role("button", name="Add a tendon").click()
+        page.get_by_role("button", name="Add an element").click()
     if tab == "response":
         visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
         page.get_by_label("The superstructure yields").check()
@@ -212,7 +212,7 @@ def test_texts_and_lines_can_be_told_from_their_ground(visit, scheme) -> None:
     visitor = visit(color_scheme=scheme)
     names = ["bg", "panel", "shade", "text", "muted", "error", "accent", "control", "focus", "structure"]
     models = ["c0", "c1", "c2", "c3", "fixed", "fixed2"]
-    energies = ["kinetic", "strain", "gravity", "tendons", "damped", "yielded", "lost"]
+    energies = ["kinetic", "strain", "gravity", "tendons", "damped", "yielded", "lost", "fuse", "damper", "friction"]
     value = visitor.page.evaluate(
         "names => Object.fromEntries(names.map((n) =>"
         " [n, getComputedStyle(document.documentElement).getPropertyValue(`--${n}`).trim()]))",

@@ -41,22 +41,6 @@ def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
         assert page.locator(".error:visible").all_inner_texts() == []
 
 
-def test_tendons_are_added_and_removed(visitor) -> None:
-    page = visitor.page
-    page.get_by_label("Start from").select_option("7")
-    page.wait_for_function("() => document.querySelector('.results h2').textContent === 'Bridge pier'")
-    before = visitor.value("dd[data-value] >> nth=2")
-    page.get_by_role("button", name="Add a tendon").click()
-    page.wait_for_function("b => Number(document.querySelectorAll('dd[data-value]')[2].dataset.value) > b", arg=before)
-    visitor.fill("structure.tendons.0.position", "99")
-    assert "Tendons must pass through the base" in visitor.error("structure.tendons")
-    visitor.fill("structure.tendons.0.position", "0")
-    page.get_by_role("button", name="Remove").click()
-    page.wait_for_function(
-        "b => Number(document.querySelectorAll('dd[data-value]')[2].dataset.value) === b", arg=before
-    )
-
-
 def test_an_eccentric_base_has_two_edges(visitor) -> None:
     page = visitor.page
     visitor.fill("structure.eccentricity", "0.25")

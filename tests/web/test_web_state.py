@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import rockflex as rf
 from rockflex._json import plain
 from rockflex._schema import Key
-from rockflex.structure.file import KINDS, Table
+from rockflex.structure.file import ELEMENTS, KINDS, Table
 from rockflex.web._forms import _fields, forms
 from rockflex.web._packing import envelope
 from rockflex.web._presets import PRESETS
@@ -85,7 +85,7 @@ def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
         ({"structure": FRAME, "record": {"upload": "../x"}}, "record.upload", "it must be the checksum of a file"),
         ({"structure": FRAME, "cloud": {"scales": [1.0] * 21}}, "cloud.scales", "one to twenty scale factors"),
         ({"structure": FRAME, "design": {"widths": 1000}}, "design.widths", "how many widths, from 3 to 20, but 1000"),
-        ({"structure": FRAME | {"tendons": [{"stiffness": 1.0}]}}, "structure.tendons.0.initial_force", "is missing"),
+        ({"structure": FRAME | {"tendons": [{"stiffness": 1.0}]}}, "structure.elements.0.initial_force", "is missing"),
         ([], "", "The link does not hold a state of the page."),
         ("<script>", "", "The link does not hold a state of the page."),
     ],
@@ -144,7 +144,7 @@ def test_errors_of_building_stand_beside_the_field_that_they_name() -> None:
     held = PRESETS[8]["structure"] | {"tendons": [{"position": 1.6, "initial_force": 1.0, "stiffness": 1.0}]}
     with pytest.raises(Refusal) as caught:
         structure_view(parse_state({"structure": held}).structure)
-    assert "structure.tendons" in caught.value.errors
+    assert "structure.elements.0.position" in caught.value.errors
     with pytest.raises(Refusal) as caught:
         structure_view(parse_state({"structure": FRAME | {"eccentricity": -1.1}}).structure)
     assert caught.value.errors["structure.eccentricity"].startswith("eccentricity must be smaller than half_width, 1.0")
@@ -236,8 +236,10 @@ def test_an_old_link_still_opens() -> None:
     content = json.loads(base64.urlsafe_b64decode(LINK + "=" * (-len(LINK) % 4)))
     state = parse_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
+    (tendon,) = content["structure"]["tendons"]
+    content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
     assert plain(state.model_dump(exclude_none=True)) == content
-    assert state.structure.tendons[0].yield_force == 2e6
+    assert build(state.structure).properties.elements == (rf.Tendon(8e5, 1e7, -0.6, 2e6),)
     assert state.structure.eccentricity == 0.1
     assert state.law() == rf.Restitution(0.8)
     assert state.hysteresis() == rf.BoucWen(0.05, exponent=4.0)
@@ -258,6 +260,11 @@ def test_the_forms_have_every_field_of_every_kind() -> None:
         fields = {each["name"]: each for each in found["kinds"][kind]["fields"]}
         assert set(fields) == set(table.model_fields)
         assert all(each["help"] and each["label"] for each in fields.values())
+    assert set(found["elements"]) == set(ELEMENTS)
+    for kind, table in ELEMENTS.items():
+        fields = found["elements"][kind]["fields"]
+        assert [each["name"] for each in fields] == [name for name in table.model_fields if name != "kind"]
+        assert found["elements"][kind]["title"] == table.title
     bodies = next(each for each in found["kinds"]["beam"]["fields"] if each["name"] == "lumped_masses")
     assert (bodies["type"], [each["name"] for each in bodies["fields"]]) == ("table", ["heights", "masses", "rotary"])
     assert [each["name"] for each in found["bouc_wen"]] == list(inspect.signature(rf.BoucWen).parameters)

@@ -19,7 +19,7 @@ rockflex figures results
 rockflex figures results --measure sa_t1 --format pdf --out manuscript"""
 
 FORMATS = ("png", "svg", "pdf")
-MEASURED = [kind.name for kind in KINDS.values() if kind.measured]
+*OTHERS, LAST = (kind.name for kind in KINDS.values() if kind.measured)
 
 
 def figures(
@@ -32,7 +32,8 @@ def figures(
     measure: Annotated[
         str | None,
         typer.Option(
-            metavar="NAME", help=f"Intensity measure of {' or '.join(MEASURED)} studies, such as sa_t1. Default: pgv."
+            metavar="NAME",
+            help=f"Intensity measure of {', '.join(OTHERS)} or {LAST} studies, such as sa_t1. Default: pgv.",
         ),
     ] = None,
     form: Annotated[str, typer.Option("--format", metavar="|".join(FORMATS), help="Format of the files.")] = "png",
@@ -51,8 +52,8 @@ def figures(
     kind = kind_named(study.spec.get("study"))
     if measure is not None and not kind.measured:
         raise InputError(
-            f"--measure is for {' and '.join(MEASURED)} studies, but the study in {folder} is of kind {kind.name}. "
-            "Leave it out."
+            f"--measure is for {', '.join(OTHERS)} and {LAST} studies, but the study in {folder} is of kind "
+            f"{kind.name}. Leave it out."
         )
     missing = len(study.missing())
     table = study.frame(partial=True)

@@ -46,8 +46,10 @@ UNITS = {
     "weight_moment": "N m",
     "prestress_moment": "N m",
     "axial_stiffness_moment": "N/rad",
+    "dissipator_moment": "N m",
     "rocking_stiffness": "N m/rad",
 }
+LISTED = ("self_centring", "elements", "pivots")
 SIDES = {1: "right", -1: "left"}
 
 
@@ -70,6 +72,7 @@ def modes(
 ) -> None:
     """Print the modes of a structure on a fixed base, and its rocking parameters."""
     from rockflex._checks import whole_number
+    from rockflex.cli._elements import UNITS as ELEMENT_UNITS
     from rockflex.cli._modes_tables import print_modes
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
@@ -90,8 +93,8 @@ def modes(
         "structure": loaded.describe(),
         "modes": rows,
         "uplifted": lifted,
-        "rocking": {name: value for name, value in rocking.items() if isinstance(value, float) or name == "pivots"},
-        "units": UNITS,
+        "rocking": {name: value for name, value in rocking.items() if isinstance(value, float) or name in LISTED},
+        "units": UNITS | ELEMENT_UNITS,
     }
     need = _adequacy(loaded) if adequacy else None
     if need is not None:

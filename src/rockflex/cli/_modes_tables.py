@@ -3,10 +3,13 @@
 from typing import TYPE_CHECKING, Any
 
 from rockflex.cli._console import grid, moment_unit, number, output, show
+from rockflex.cli._elements import elements_table
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rockflex.cli._structures import LoadedStructure
-    from rockflex.modal import RockingProperties
+    from rockflex.modal import Pivot, RockingProperties
 
 Rows = list[dict[str, Any]]
 
@@ -44,6 +47,9 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
     if not p.symmetric:
         console.print()
         show(console, grid(("About the edge", "right", "left", ""), _each(p)))
+    if p.elements:
+        console.print("\nBetween base and ground, x to the right of the masses", markup=False)
+        show(console, elements_table(p.elements))
 
 
 def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
@@ -54,6 +60,7 @@ def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
     return [
         *([stiffness] if p.tendons else []),
         (f"Resisting moment, M_r = {weight} B", number(p.resisting_moment / size), unit),
+        *((name, values[0], unit) for name, values, unit in _closing(p, size, unit)),
         (f"Nominal limit, 0.7 atan({_slope(p, 'B')})", number(p.nominal_overturning_rotation), "rad"),
     ]
 
@@ -73,7 +80,28 @@ def _each(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
         row("Moment of inertia, I_θ", tuple(each.i_theta for each in sides), "kg m²"),
         *([row("Stiffness of the tendons", stiffness, f"{unit}/rad")] if p.tendons else []),
         row("Resisting moment, M_r", tuple(each.resisting_moment / size for each in sides), unit),
+        *((name, *values, unit) for name, values, unit in _closing(p, size, unit)),
         row(f"Nominal limit, 0.7 atan({_slope(p, 'b')})", nominal, "rad"),
+    ]
+
+
+def _closing(p: "RockingProperties", size: float, unit: str) -> list[tuple[str, tuple[str, str], str]]:
+    """What the dissipators change about each pivot: the name, the values to the right and to the left, their unit."""
+    right, left = p.pivot(1), p.pivot(-1)
+    if not right.dissipator_moment and not left.dissipator_moment:
+        return []
+
+    def both(of: "Callable[[Pivot], str]") -> tuple[str, str]:
+        return of(right), of(left)
+
+    def least(pivot: "Pivot") -> str:
+        return number(max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size)
+
+    return [
+        ("Moment of the dissipators, M_d", both(lambda pivot: number(pivot.dissipator_moment / size)), unit),
+        ("Re-centring ratio, M_r/M_d", both(lambda pivot: number(pivot.recentring_ratio)), ""),
+        ("Least moment that lifts it after yielding, M_r - M_d", both(least), unit),
+        ("Self-centring", both(lambda pivot: "yes" if pivot.self_centring else "no: it may stay open"), ""),
     ]
 
 

@@ -1,10 +1,11 @@
 """The printed tables of ``rockflex run``."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
+from rockflex.cli._elements import elements_table
 from rockflex.cli._simulations import SLIDING, Batch, Run
 from rockflex.fragility import NOMINAL
 from rockflex.response import IMPACT_WINDOW
@@ -23,6 +24,10 @@ FRICTION = (
     "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
     "the base slides where it passes {mu:g}"
 )
+OF_ELEMENTS = (
+    "F, E: largest force of each element, and the energy that it takes (with --out);\n"
+    "θ_end: rotation at the end of the run, where it is not closed"
+)
 STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no_uplift": "green"}
 Columns = list[tuple[str, list[str]]]
 
@@ -33,13 +38,17 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
     for line in (title, *batch.assumptions.remarks()):
         console.print(line, markup=False, soft_wrap=True)
     peaks, ground = _peaks(runs), _ground(runs)
-    tables = [(peaks + ground, 1)]
+    tables, elements = [(peaks + ground, 1)], batch.properties.elements
     if not fits(console, _flat(batch, runs, *tables[0])):
         tables = [(peaks, 1), (ground, 0)]
     if times:
         tables.append((_times(runs), 0))
     if batch.friction is not None:
         tables.append((_sliding(runs), 0))
+    if elements:
+        console.print("\nBetween base and ground", markup=False)
+        show(console, elements_table(elements))
+        tables += [(columns, 0) for columns in _elements(runs, len(elements))]
     for columns, n_words in tables:
         flat = _flat(batch, runs, columns, n_words)
         if fits(console, flat):
@@ -55,6 +64,8 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
     if any(run.peaks["nominal_overturning"] for run in runs):
         console.print(PASSED, markup=False, soft_wrap=True)
     console.print(LEGEND, markup=False, soft_wrap=True)
+    if elements:
+        console.print(OF_ELEMENTS, markup=False, soft_wrap=True)
     if batch.friction is not None:
         console.print(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction), markup=False, soft_wrap=True)
     each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
@@ -100,6 +111,8 @@ def _peaks(runs: Sequence[Run]) -> Columns:
     if any(run.peaks["max_tendon_force"] for run in runs):
         columns.append(("T [kN]", _column(runs, "max_tendon_force", 1e3)))
         columns.append(("T/F_y", _column(runs, "tendon_utilisation")))
+    if any(run.elements and run.peaks["residual_rotation"] for run in runs):
+        columns.append(("θ_end [rad]", _column(runs, "residual_rotation")))
     if any(run.run_time is not None for run in runs):
         columns.append(("time [ms]", [number(None if run.run_time is None else 1e3 * run.run_time, 3) for run in runs]))
     return columns
@@ -134,6 +147,16 @@ def _sliding(runs: Sequence[Run]) -> Columns:
     ]
     required = [[number(run.friction[name]) for run in runs] for name in SLIDING[:2]]
     return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
+
+
+def _elements(runs: Sequence[Run], count: int) -> Iterator[Columns]:
+    """The peaks of each element, by its number."""
+    for name, heading in (("max_element_force", "F_{} [kN]"), ("element_energy", "E_{} [kJ]")):
+        if any(name in run.elements for run in runs):
+            yield [
+                (heading.format(k + 1), [number(run.elements[name][k] / 1e3 if run.elements else None) for run in runs])
+                for k in range(count)
+            ]
 
 
 def _place(batch: Batch, run: Run) -> list[str]:

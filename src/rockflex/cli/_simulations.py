@@ -75,13 +75,19 @@ class Run:
     response: Response | None = None
     friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
     """Required friction and the time at which sliding would start, by name; empty unless requested."""
+    elements: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
+    """Peaks of each element between base and ground, and its energy of a run with a history, by name."""
     refused: bool = False
     """Whether it was not started, because it would exceed the work limit."""
 
     def row(self) -> dict[str, Any]:
-        """Return everything but the run time and the history, in the columns of `simulate_many`."""
+        """Return everything but the run time and the history, in the columns of `simulate_many`.
+
+        Those of an element have its number, from 1, at the end of their names.
+        """
         head = {"motion": self.motion, "scale": self.scale, "model": self.model}
-        return {**head, "status": self.status, "error": self.error, **self.peaks, **self.friction}
+        elements = {f"{name}_{k}": each for name, values in self.elements.items() for k, each in enumerate(values, 1)}
+        return {**head, "status": self.status, "error": self.error, **self.peaks, **self.friction, **elements}
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -90,6 +96,7 @@ class Run:
 
 
 COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))
+OF_ELEMENTS = ("max_element_force", "max_element_elongation")
 SLIDING = ("required_friction", "required_friction_excluding_impacts", "sliding_time")
 
 
@@ -149,7 +156,16 @@ def _run(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, timed:
     elapsed = perf_counter() - start if timed else None
     peaks = {name: getattr(response, name) for name in COLUMNS}
     kept = response if batch.history else None
-    return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, _friction(batch, response))
+    friction, elements = _friction(batch, response), _elements(batch, response)
+    return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction, elements)
+
+
+def _elements(batch: Batch, response: Response) -> dict[str, list[float]]:
+    """Return the peaks of the elements, and the energy that each dissipated if the history is known."""
+    if not batch.properties.elements:
+        return {}
+    names = OF_ELEMENTS if response.history is None else (*OF_ELEMENTS, "element_energy")
+    return {name: getattr(response, name).tolist() for name in names}
 
 
 def _friction(batch: Batch, response: Response) -> dict[str, float | None]:

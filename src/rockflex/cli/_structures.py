@@ -8,6 +8,7 @@ from typing import Any
 
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags, FrameKeys
+from rockflex.cli._elements import describe_elements
 from rockflex.cli._flags import flags_of, naming
 from rockflex.modal import RockingProperties
 from rockflex.structure import Eccentric, Frame, Restrained
@@ -18,7 +19,7 @@ FLAGS = flags_of(FrameFlags)
 
 
 class StructureFile(Assumed, StructureEntry):
-    """A structure file: one structure, optionally a name and tendons, and the assumptions of ``rockflex run``."""
+    """A structure file: one structure, optionally a name and elements, and the assumptions of ``rockflex run``."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,10 @@ def describe_properties(properties: RockingProperties) -> dict[str, Any]:
     """Return every parameter of a rocking structure by name, for a document; `pivots` where the two differ."""
     names = (*KINDS["properties"].model_fields, "resisting_moment", "nominal_overturning_rotation")
     tendons = ("tendons", "prestress", "tendon_stiffness") if properties.tendons else ()
-    described = {name: getattr(properties, name) for name in (*names, *tendons)}
+    held = ("self_centring", "recentring_ratio") if properties.elements else ()
+    described = {name: getattr(properties, name) for name in (*names, *tendons, *held)}
+    if properties.elements:
+        described["elements"] = describe_elements(properties.elements)
     if properties.symmetric:
         return described
     pivots = [asdict(each) | {"resisting_moment": each.resisting_moment} for each in properties.pivots]

@@ -8,7 +8,8 @@ if TYPE_CHECKING:
     from rockflex.fragility import CloudFit
 
 
-def _report(_: Any, runs: Runs, found: Findings) -> None:
+def report(_: Any, runs: Runs, found: Findings) -> None:
+    """Count the outcomes, and fit the regressions."""
     from rockflex._cases import cases
     from rockflex.fragility import OVERTURNING, ROCKED, ROCKING, LogisticFit, fit_each_cloud
     from rockflex.motion import MEASURES
@@ -49,7 +50,8 @@ def _line(fit: "CloudFit | None") -> dict[str, Any]:
     return {"c1": fit and fit.c1, "c2": fit and fit.c2, "spread": fit and fit.dispersion, "R²": fit and fit.r2}
 
 
-def _figures(_: Document, runs: Runs, measure: str, remark: Remark) -> Figures:
+def figures(_: Document, runs: Runs, measure: str, remark: Remark) -> Figures:
+    """Yield the fragility curves and the clouds."""
     from rockflex import plot
     from rockflex.fragility import fit_each_cloud
 
@@ -73,8 +75,8 @@ CLOUD = StudyKind(
     command="cloud",
     summary="Run every structure under every record at every scale, and fit regressions and fragility curves.",
     described_by="rockflex.study.cloud.CloudStudy",
-    report=_report,
-    figures=_figures,
+    report=report,
+    figures=figures,
     measured=True,
     page="_cloud",
 )

@@ -12,9 +12,9 @@ from rockflex.study.plan import Spec
 def load_study(path: str | Path) -> Spec:
     """Read a study from a TOML file.
 
-    Its key `study` is "cloud", "incremental", "stripes", "population" or "design"; the other keys are the fields of
-    `CloudStudy`, `IncrementalStudy`, `StripeStudy`, `PopulationStudy` or `DesignStudy`. Relative paths start from the
-    folder of the file.
+    Its key `study` is "cloud", "incremental", "stripes", "population", "monte_carlo" or "design"; the other keys are
+    the fields of `CloudStudy`, `IncrementalStudy`, `StripeStudy`, `PopulationStudy`, `MonteCarloStudy` or
+    `DesignStudy`. Relative paths start from the folder of the file.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def load_study(path: str | Path) -> Spec:
 
     Returns
     -------
-    CloudStudy, IncrementalStudy, StripeStudy, PopulationStudy or DesignStudy
+    CloudStudy, IncrementalStudy, StripeStudy, PopulationStudy, MonteCarloStudy or DesignStudy
         The study; `.plan()` prepares its runs.
 
     Raises

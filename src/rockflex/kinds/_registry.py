@@ -4,7 +4,7 @@ from difflib import get_close_matches
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.kinds import _cloud, _design, _incremental, _population, _stripes
+from rockflex.kinds import _cloud, _design, _incremental, _monte_carlo, _population, _stripes
 from rockflex.kinds._kind import StudyKind
 
 KINDS: dict[str, StudyKind] = {
@@ -14,6 +14,7 @@ KINDS: dict[str, StudyKind] = {
         _incremental.INCREMENTAL,
         _stripes.STRIPES,
         _population.POPULATION,
+        _monte_carlo.MONTE_CARLO,
         _design.DESIGN,
     )
 }

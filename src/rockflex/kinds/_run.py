@@ -110,13 +110,25 @@ def run_study(
     plan.check_work()
     if folder is None:
         tables: dict[int, pa.Table] = {}
-        _compute(plan, range(plan.n_chunks), tables.__setitem__, workers, dask, progress)
-        return to_frame(*(tables[number] for number in range(plan.n_chunks)))
+
+        def so_far() -> "pd.DataFrame":
+            return to_frame(*(tables[number] for number in sorted(tables)))
+
+        _compute(plan, range(plan.n_chunks), tables.__setitem__, so_far, workers, dask, progress)
+        return so_far()
     checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
         folder, spec.document(), plan.n_chunks, versions_of(LIBRARIES), checksums, any_version=any_version
     ) as kept:
-        _compute(plan, kept.missing(), kept.write, workers, dask, progress)
+        _compute(
+            plan,
+            kept.missing(),
+            kept.write,
+            lambda: to_frame(kept.table(partial=True)),
+            workers,
+            dask,
+            progress,
+        )
         return to_frame(kept.table())
 
 
@@ -124,20 +136,28 @@ def _compute(
     plan: "ChunkedPlan",
     numbers: "range | list[int]",
     keep: "Callable[[int, pa.Table], object]",
+    so_far: "Callable[[], pd.DataFrame]",
     workers: SupportsIndex | None,
     dask: str | None,
     progress: Callable[[Progress], None] | None,
 ) -> None:
-    """Compute these chunks and store each one when it is complete."""
-    kept, runs = plan.n_chunks - len(numbers), 0
+    """Compute these chunks, round by round, and store each one when it is complete."""
+    done = kept = plan.n_chunks - len(numbers)
+    runs = 0
     tell = progress or (lambda _: None)
-    tell(Progress(plan.n_chunks, kept, kept, runs))
-    # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-    with closing(_here(plan, numbers, workers) if dask is None else map_dask(plan, numbers, dask)) as coming:
-        for done, (number, table) in enumerate(coming, start=kept + 1):
-            keep(number, table)
-            runs += table.num_rows
-            tell(Progress(plan.n_chunks, done, kept, runs))
+    tell(Progress(plan.n_chunks, done, kept, runs))
+    for place, each in enumerate(plan.rounds):
+        missing = [number for number in numbers if number in each]
+        if done == plan.n_chunks:
+            break
+        if place:
+            plan = plan.informed(so_far())
+        # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
+        with closing(_here(plan, missing, workers) if dask is None else map_dask(plan, missing, dask)) as coming:
+            for number, table in coming:
+                keep(number, table)
+                done, runs = done + 1, runs + table.num_rows
+                tell(Progress(plan.n_chunks, done, kept, runs))
 
 
 def _here(
@@ -171,7 +191,7 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     plan = study.plan()
     plan.check_work()
     threads = core_count() if workers is None else whole_number("workers", workers, 1)
-    sample = sorted({round(place * (plan.n_units - 1) / max(SAMPLE - 1, 1)) for place in range(SAMPLE)})
+    sample = sorted({round(place * (plan.n_ready - 1) / max(SAMPLE - 1, 1)) for place in range(SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # compile, and fill the caches that the study fills once
         list(plan.rows(unit))
     start, tried = perf_counter(), 0

@@ -38,6 +38,14 @@ class YieldingDissipator:
     ------
     InputError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> fused = rf.Restrained(frame, rf.YieldingDissipator(stiffness=2e7, yield_force=200e3))
+    >>> fused.rocking().self_centring, round(fused.rocking().recentring_ratio, 2)
+    (True, 5.89)
     """
 
     stiffness: float
@@ -73,6 +81,15 @@ class ViscousDamper:
     ------
     InputError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> damped = rf.Restrained(frame, rf.ViscousDamper(coefficient=500e3))
+    >>> [round(rf.simulate(each, pulse, free_vibration=2.0).max_rotation, 4) for each in (frame, damped)]
+    [0.056, 0.0529]
     """
 
     coefficient: float
@@ -100,6 +117,14 @@ class FrictionDamper:
     ------
     InputError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> damped = rf.Restrained(frame, rf.FrictionDamper(force=200e3))
+    >>> damped.rocking().self_centring, round(damped.rocking().recentring_ratio, 2)
+    (True, 5.89)
     """
 
     force: float
@@ -133,6 +158,17 @@ def element_set(given: Any) -> tuple[BaseElement, ...]:
                 field="elements",
             )
     return items
+
+
+def locked_force(element: BaseElement) -> float:
+    """Return the largest force in N with which an element can keep a base from closing.
+
+    A fuse that has yielded returns to δ = 0 with z = - F_y, so its force there is -(1 - α) F_y. One that cannot push, a
+    tendon or a viscous damper locks nothing in.
+    """
+    if isinstance(element, YieldingDissipator) and not element.tension_only:
+        return (1.0 - element.post_yield_ratio) * element.yield_force
+    return element.force if isinstance(element, FrictionDamper) else 0.0
 
 
 def mirrored(elements: Sequence[BaseElement]) -> bool:

@@ -8,6 +8,7 @@ from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.modal._devices import BaseElement, locked_force
 from rockflex.modal._tendons import Tendon
 
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
@@ -38,6 +39,9 @@ class Pivot:
         Sum of k r² over the tendons, in N m/rad.
     axial_stiffness_moment : float
         Sum of k r over the tendons, in N/rad: increase of their total force with the rotation.
+    dissipator_moment : float
+        Largest moment in N m with which dissipators can keep the base from closing: Σ (1 - α) F_y |r| over the fuses
+        that can push, plus Σ F_0 |r| over the friction dampers.
     rocking_stiffness : float
         Slope of the static moment-rotation curve in N m/rad: `tendon_stiffness` - L_0^r g.
     nominal_overturning_rotation : float
@@ -59,6 +63,7 @@ class Pivot:
     prestress_moment: float
     tendon_stiffness: float
     axial_stiffness_moment: float
+    dissipator_moment: float
     rocking_stiffness: float
     nominal_overturning_rotation: float
 
@@ -71,6 +76,28 @@ class Pivot:
     def balance_rotation(self) -> float:
         """Rotation |θ| in rad at which the static moment vanishes; infinite if tendons prevent that."""
         return -self.resisting_moment / self.rocking_stiffness if self.rocking_stiffness < 0.0 else math.inf
+
+    @property
+    def self_centring(self) -> bool:
+        """Whether weight and prestress close the base against its dissipators.
+
+        This is `resisting_moment` > `dissipator_moment`, a condition at |θ| → 0 with the initial prestress: a tendon
+        that yields loses some of it. If
+        `rocking_stiffness` is negative, the base returns by itself from
+        |θ| < (`resisting_moment` - `dissipator_moment`)/|`rocking_stiffness`|.
+        """
+        return self.dissipator_moment < self.resisting_moment
+
+    @property
+    def recentring_ratio(self) -> float:
+        """λ = `resisting_moment`/`dissipator_moment`, infinite without dissipators; self-centring above 1.
+
+        The ratio of Palermo, Pampanin & Marriott (2007, doi 10.1061/(ASCE)0733-9445(2007)133:11(1648)), with the
+        dissipators' moment that can be locked in. The flag-shaped loop of fuses without hardening has the parameter
+        β = 2/(1 + λ) of Christopoulos, Filiatrault & Folz (2002).
+        """
+        locked = self.dissipator_moment
+        return self.resisting_moment / locked if locked > 0.0 else math.inf
 
 
 def checked_side(side: int) -> int:
@@ -91,7 +118,7 @@ def checked_side(side: int) -> int:
 
 def pivot_of(
     side: int,
-    tendons: Sequence[Tendon],
+    elements: Sequence[BaseElement],
     *,
     alike: bool,
     half_width: float,
@@ -105,7 +132,9 @@ def pivot_of(
     """Return one pivot of a structure from its `RockingProperties` and a height that defines the slenderness."""
     arm = half_width - side * eccentricity
     # Both pivots of a symmetric base must give identical numbers, to the last digit and in any order of the tendons.
-    distances = [arm - (1 if alike else side) * each.position for each in tendons]
+    towards = 1 if alike else side
+    tendons = [each for each in elements if isinstance(each, Tendon)]
+    distances = [arm - towards * each.position for each in tendons]
     if alike:
         prestress = sum((each.initial_force for each in tendons), 0.0) * arm
         pull = sum((each.stiffness for each in tendons), 0.0) * arm
@@ -121,6 +150,7 @@ def pivot_of(
         prestress_moment=prestress,
         tendon_stiffness=stiffness,
         axial_stiffness_moment=pull,
+        dissipator_moment=sum((locked_force(each) * abs(arm - towards * each.position) for each in elements), 0.0),
         rocking_stiffness=stiffness - l0r * GRAVITY,
         nominal_overturning_rotation=_OVERTURNING_SHARE * math.atan2(arm, height),
     )

@@ -10,20 +10,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import damping_ratios, finite_vector, instance, positive, whole_number
+from rockflex._checks import damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal._devices import BaseElement, element_set, mirrored
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_of
 from rockflex.modal._rocking_checks import (
     SLACK,
-    check_modes,
     checked_base_mass,
     checked_eccentricity,
+    checked_floors,
     checked_inertia,
+    checked_modes,
+    checked_scalars,
     checked_top_height,
     elements_within,
 )
@@ -124,25 +125,10 @@ class RockingProperties(Value):
         base_mass: float | None = None,
         eccentricity: float = 0.0,
     ) -> None:
-        modes = {
-            "omega": finite_vector("omega", omega, "rad/s"),
-            "effective_mass": finite_vector("effective_mass", effective_mass, "kg"),
-            "effective_height": finite_vector("effective_height", effective_height, "m"),
-            "top_ordinate": finite_vector("top_ordinate", top_ordinate, "m/m"),
-        }
-        scalars = {
-            "i_theta": positive("i_theta", i_theta, "kg m²"),
-            "l0r": positive("l0r", l0r, "kg m"),
-            "m_tot": positive("m_tot", m_tot, "kg"),
-            "half_width": positive("half_width", half_width, "m"),
-        }
-        check_modes(modes)
+        modes = checked_modes(omega, effective_mass, effective_height, top_ordinate)
+        scalars = checked_scalars(i_theta, l0r, m_tot, half_width)
         n_modes = modes["omega"].size
         inertia = checked_inertia(modes, scalars, translational_inertia)
-        if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
-            raise InputError(
-                f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.", field="floors"
-            )
         damping = damping_ratios("zeta", zeta, n_modes)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
         held = elements_within(element_set(elements), scalars["half_width"], e)
@@ -151,7 +137,7 @@ class RockingProperties(Value):
             **scalars,
             zeta=damping,
             translational_inertia=inertia,
-            floors=floors,
+            floors=checked_floors(floors, n_modes),
             elements=held,
             top_height=checked_top_height(floors, top_height),
             base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
@@ -193,7 +179,7 @@ class RockingProperties(Value):
     def _by_side(self) -> dict[int, Pivot]:
         values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
         height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
-        return {side: pivot_of(side, self.tendons, alike=self.symmetric, height=height, **values) for side in (1, -1)}
+        return {side: pivot_of(side, self.elements, alike=self.symmetric, height=height, **values) for side in (1, -1)}
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:
@@ -252,6 +238,16 @@ class RockingProperties(Value):
     def rocking_stiffness(self) -> float:
         """Slope of the static moment-rotation curve while rocking, in N m/rad: `tendon_stiffness` - L_0^r g."""
         return self.tendon_stiffness - self.l0r * GRAVITY
+
+    @property
+    def self_centring(self) -> bool:
+        """Whether the base closes against its dissipators about both pivots; see `Pivot.self_centring`."""
+        return all(pivot.self_centring for pivot in self.pivots)
+
+    @property
+    def recentring_ratio(self) -> float:
+        """λ of weight and prestress over dissipators, the smaller of both pivots; see `Pivot.recentring_ratio`."""
+        return min(pivot.recentring_ratio for pivot in self.pivots)
 
     @property
     def nominal_overturning_rotation(self) -> float:

@@ -1,9 +1,10 @@
 """Checks that the parameters of a rocking structure are physically possible."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import all_positive, finite, positive
+from rockflex._checks import all_positive, finite, finite_vector, instance, positive
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex.modal._devices import BaseElement
@@ -14,7 +15,15 @@ SLACK = 1e-9  # relative tolerance for rounding of sums that are equal if all mo
 PRINTED = 1e-5  # of I_θ: tolerance for values printed to six digits
 
 
-def check_modes(modes: dict[str, Array]) -> None:
+def checked_modes(
+    omega: ArrayLike, effective_mass: ArrayLike, effective_height: ArrayLike, top_ordinate: ArrayLike
+) -> dict[str, Array]:
+    modes = {
+        "omega": finite_vector("omega", omega, "rad/s"),
+        "effective_mass": finite_vector("effective_mass", effective_mass, "kg"),
+        "effective_height": finite_vector("effective_height", effective_height, "m"),
+        "top_ordinate": finite_vector("top_ordinate", top_ordinate, "m/m"),
+    }
     omega, effective_mass = modes["omega"], modes["effective_mass"]
     for name, values in modes.items():
         if values.size != omega.size:
@@ -32,6 +41,24 @@ def check_modes(modes: dict[str, Array]) -> None:
             f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency.",
             field="omega",
         )
+    return modes
+
+
+def checked_scalars(i_theta: float, l0r: float, m_tot: float, half_width: float) -> dict[str, float]:
+    return {
+        "i_theta": positive("i_theta", i_theta, "kg m²"),
+        "l0r": positive("l0r", l0r, "kg m"),
+        "m_tot": positive("m_tot", m_tot, "kg"),
+        "half_width": positive("half_width", half_width, "m"),
+    }
+
+
+def checked_floors(floors: FloorModes | None, n_modes: int) -> FloorModes | None:
+    if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
+        raise InputError(
+            f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.", field="floors"
+        )
+    return floors
 
 
 @computable("The inertia of the structure on this eccentric base")

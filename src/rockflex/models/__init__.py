@@ -9,7 +9,19 @@ from rockflex.models._element_states import (
     plastic_stretches,
     stretch_per_arm,
 )
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, Bar, Dashpot, Element, Spring
+from rockflex.models._elements import (
+    BROKEN,
+    CLOSED,
+    LEFT,
+    RIGHT,
+    Bar,
+    Dashpot,
+    Element,
+    Slider,
+    Spring,
+    arm_of,
+    elements_of,
+)
 from rockflex.models._field import EXTRA, Field, field_rates, inertia_left, pivot_at
 from rockflex.models._impact import (
     ForgottenLaw,
@@ -20,7 +32,7 @@ from rockflex.models._impact import (
     VVELSimplified,
     housner,
 )
-from rockflex.models._kept import accelerations, acting_side, phases_at, rates_of, values_of
+from rockflex.models._kept import accelerations, acting_side, phases_at, pulls_at, rates_of, values_of
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
@@ -38,13 +50,29 @@ from rockflex.models._observe import (
     observe_all,
     posture_of,
 )
-from rockflex.models._phase import CHANGES, FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._phase import (
+    CHANGES,
+    FREEDOMS,
+    LANDS,
+    LIFTS,
+    OVERTURNS,
+    RELEASES,
+    TURNS,
+    Arrow,
+    Border,
+    Exit,
+    Guard,
+    Key,
+    Phase,
+)
+from rockflex.models._pulls import SUMS, pulls_of
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
 from rockflex.models._reactions import Reactions, printed_reactions, reactions
 from rockflex.models._stored import floor_accelerations, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 
 __all__ = [
+    "BROKEN",
     "CHANGES",
     "CLOSED",
     "EXTRA",
@@ -58,11 +86,14 @@ __all__ = [
     "LIFTS",
     "LINEAR",
     "OVERTURNS",
+    "RELEASES",
     "RIGHT",
     "SIDE",
+    "SUMS",
     "SWAY",
     "SWING",
     "TIME",
+    "TURNS",
     "VERTICAL",
     "Arrow",
     "Bar",
@@ -87,15 +118,18 @@ __all__ = [
     "Restitution",
     "RockingModel",
     "SidedRestitution",
+    "Slider",
     "Spring",
     "StateLayout",
     "VVELComplete",
     "VVELSimplified",
     "accelerations",
     "acting_side",
+    "arm_of",
     "arms",
     "element_energies",
     "element_forces",
+    "elements_of",
     "elongations",
     "field_rates",
     "floor_accelerations",
@@ -116,6 +150,8 @@ __all__ = [
     "plastic_stretches",
     "posture_of",
     "printed_reactions",
+    "pulls_at",
+    "pulls_of",
     "quantities",
     "rates_of",
     "reactions",

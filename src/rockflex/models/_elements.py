@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, ViscousDamper, YieldingDissipator
 from rockflex.models._phase import Border, Change, Key, Turning
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
-ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar
+ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
+HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
 BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
 BROKEN_FOR_GOOD = 1e30  # the memory of an element that has broken, m
 
@@ -62,8 +62,28 @@ class Element(Protocol):
         """Return the elongations that end a branch."""
         ...
 
+    def direction(self, branch: int) -> int:
+        """Return the sign of δ' on a branch that ends where δ' vanishes; 0 on others."""
+        ...
+
     def turning(self, branch: int) -> float | None:
         """Return δ - m where the elongation turns back on a branch that yields, which ends it; None on others."""
+        ...
+
+    def stopped(self, branch: int) -> int:
+        """Return the branch after the elongation has stopped."""
+        ...
+
+    def moving(self, branch: int, direction: int) -> int:
+        """Return the branch after the elongation has begun to change, with the sign of δ'; 0 if it does not."""
+        ...
+
+    def mark(self, branch: int) -> float | None:
+        """Return the memory that tells a branch; None if its memory is free."""
+        ...
+
+    def memory_at(self, elongation: float) -> float:
+        """Return the memory after an element as built has been brought to an elongation δ in m."""
         ...
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
@@ -71,67 +91,70 @@ class Element(Protocol):
         ...
 
 
+class OneBranch:
+    """What is common to elements with one branch and without memory."""
+
+    @property
+    def remembers(self) -> bool:
+        return False
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return (ELASTIC,)
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        del branch
+        return ()
+
+    def direction(self, branch: int) -> int:
+        del branch
+        return 0
+
+    def turning(self, branch: int) -> float | None:
+        del branch
+
+    def stopped(self, branch: int) -> int:
+        return branch
+
+    def moving(self, branch: int, direction: int) -> int:
+        del direction
+        return branch
+
+    def mark(self, branch: int) -> float | None:
+        del branch
+
+    def memory_at(self, elongation: float) -> float:
+        del elongation
+        return 0.0
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        del memory
+        return np.zeros(elongation.size, dtype=np.int64)
+
+
 @dataclass(frozen=True)
-class Spring:
+class Spring(OneBranch):
     """A tendon that stays elastic: F = F_0 + k δ."""
 
     stiffness: float
     initial_force: float
     position: float
 
-    @property
-    def remembers(self) -> bool:
-        return False
-
-    @property
-    def branches(self) -> tuple[int, ...]:
-        return (ELASTIC,)
-
     def pull(self, branch: int) -> Pull:
         del branch
         return Pull(self.stiffness, 0.0, self.initial_force)
 
-    def stops(self, branch: int) -> tuple[Stop, ...]:
-        del branch
-        return ()
-
-    def turning(self, branch: int) -> float | None:
-        del branch
-
-    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
-        del memory
-        return np.zeros(elongation.size, dtype=np.int64)
-
 
 @dataclass(frozen=True)
-class Dashpot:
+class Dashpot(OneBranch):
     """A viscous damper: F = c δ'."""
 
     coefficient: float
     position: float
 
-    @property
-    def remembers(self) -> bool:
-        return False
-
-    @property
-    def branches(self) -> tuple[int, ...]:
-        return (ELASTIC,)
-
     def pull(self, branch: int) -> Pull:
         del branch
         return Pull(damping=self.coefficient)
-
-    def stops(self, branch: int) -> tuple[Stop, ...]:
-        del branch
-        return ()
-
-    def turning(self, branch: int) -> float | None:
-        del branch
-
-    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
-        del memory
-        return np.zeros(elongation.size, dtype=np.int64)
 
 
 @dataclass(frozen=True)
@@ -175,13 +198,39 @@ class Bar:
             return (Stop(True, reach - e0, 1.0, UP), Stop(False, -reach - e0, 1.0, DOWN), *slackens, *breaks)
         if branch == SLACK:
             return (Stop(True, -e0, empty, ELASTIC), *breaks)
+        if branch == DOWN and self.pulls_only and self.ratio > 0.0:
+            return (Stop(False, self._emptied - e0, 0.0, SLACK),)
         return breaks if branch == UP else ()
 
+    def direction(self, branch: int) -> int:
+        return 1 if branch == UP else -1 if branch == DOWN else 0
+
+    @property
+    def _emptied(self) -> float:
+        """Return e at which the force vanishes while a bar that has hardened yields downwards."""
+        return (1.0 - self.ratio) / self.ratio * self.yield_force / self.stiffness if self.ratio > 0.0 else np.inf
+
     def turning(self, branch: int) -> float | None:
-        if branch not in (UP, DOWN):
-            return None
-        sign = 1.0 if branch == UP else -1.0
-        return sign * self.yield_force / self.stiffness - self.stretched
+        sign = self.direction(branch)
+        return None if sign == 0 else sign * self.yield_force / self.stiffness - self.stretched
+
+    def stopped(self, branch: int) -> int:
+        return ELASTIC if branch in (UP, DOWN) else branch
+
+    def moving(self, branch: int, direction: int) -> int:
+        del direction
+        return branch
+
+    def mark(self, branch: int) -> float | None:
+        return BROKEN_FOR_GOOD if branch == BROKEN else None
+
+    def memory_at(self, elongation: float) -> float:
+        if elongation >= self.rupture:
+            return BROKEN_FOR_GOOD
+        stretch, reach = elongation + self.stretched, self.yield_force / self.stiffness
+        if self.pulls_only:
+            return max(stretch - reach, 0.0)
+        return stretch - min(max(stretch, -reach), reach)
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
         reach, e = self.yield_force / self.stiffness, elongation + self.stretched
@@ -191,8 +240,58 @@ class Bar:
         found[e - memory < -reach - room] = DOWN
         if self.pulls_only:
             empty = (1.0 - self.ratio) * memory
-            found[(e < empty - room) & (empty > memory - reach)] = SLACK
+            found[(e < empty - room) & ((found != DOWN) | (e < self._emptied))] = SLACK
         found[memory == BROKEN_FOR_GOOD] = BROKEN
+        return found
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A friction damper: F = ± F_0 while it slides, less while it sticks. Its memory is its direction, 1, 0 or -1."""
+
+    force: float
+    position: float
+
+    @property
+    def remembers(self) -> bool:
+        return True
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return (HELD, OUTWARD, INWARD)
+
+    def pull(self, branch: int) -> Pull:
+        return Pull(force=self.direction(branch) * self.force)
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        del branch
+        return ()
+
+    def direction(self, branch: int) -> int:
+        return 1 if branch == OUTWARD else -1 if branch == INWARD else 0
+
+    def turning(self, branch: int) -> float | None:
+        del branch
+
+    def stopped(self, branch: int) -> int:
+        del branch
+        return HELD
+
+    def moving(self, branch: int, direction: int) -> int:
+        del branch
+        return OUTWARD if direction > 0 else INWARD if direction < 0 else HELD
+
+    def mark(self, branch: int) -> float | None:
+        return float(self.direction(branch))
+
+    def memory_at(self, elongation: float) -> float:
+        del elongation
+        return 0.0
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        found = np.full(elongation.size, HELD, dtype=np.int64)
+        found[memory > 0.0] = OUTWARD
+        found[memory < 0.0] = INWARD
         return found
 
 
@@ -213,14 +312,27 @@ def arm_of(properties: RockingProperties, element: Element, side: int) -> float:
     return properties.pivot(side).arm - side * element.position
 
 
-def landed(branch: int) -> int:
-    """Return the branch of an element after its elongation has stopped."""
-    return ELASTIC if branch in (UP, DOWN) else branch
+def first_key(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> Key:
+    """Return the branches at the start of a run in contact, or as the base begins to rotate about a pivot."""
+    return set_off(properties, elements, (side, *(each.branches[0] for each in elements)), side)
 
 
-def first_key(elements: tuple[Element, ...], side: int) -> Key:
-    """Return the branches at the start of a run with the base on a side."""
-    return (side, *(each.branches[0] for each in elements))
+def set_off(properties: RockingProperties, elements: tuple[Element, ...], key: Key, turn: int) -> Key:
+    """Return the branches as the base begins to rotate, with the sign `turn` of θ'; 0 as it stops."""
+    side, found = key[0], list[int]()
+    for each, branch in zip(elements, key[1:], strict=True):
+        reach = side * turn * arm_of(properties, each, side) if side != CLOSED else 0.0
+        stopped = each.stopped(branch)
+        found.append(each.moving(stopped, int(np.sign(reach))) if turn else stopped)
+    return (side, *found)
+
+
+def is_held(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> bool:
+    """Return whether friction dampers hold the base at a rotation."""
+    return key[0] != CLOSED and any(
+        isinstance(each, Slider) and branch == HELD and arm_of(properties, each, key[0]) != 0.0
+        for each, branch in zip(elements, key[1:], strict=True)
+    )
 
 
 def memories(elements: tuple[Element, ...]) -> dict[int, int]:
@@ -263,15 +375,22 @@ def changes_of(properties: RockingProperties, elements: tuple[Element, ...], key
 def turnings_of(
     properties: RockingProperties, elements: tuple[Element, ...], key: Key
 ) -> tuple[int, tuple[Turning, ...]]:
-    """Return the sign of |θ|' while elements yield (0: none does), and how their memories follow when it vanishes."""
+    """Return the sign of |θ|' on branches that end where it vanishes (0: there are none), and what memories become."""
     sign, found = 0, list[Turning]()
     known = memories(elements)
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
         offset, r = each.turning(branch), arm_of(properties, each, key[0])
         if offset is not None:
             found.append(Turning(known[place], r, offset))
-            sign = (1 if branch == UP else -1) * (1 if r > 0.0 else -1)
+        sign = each.direction(branch) * int(np.sign(r)) or sign
     return sign, tuple(found)
+
+
+def marks_of(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float], ...]:
+    """Return the memories that have a value of their own on the branches, by index."""
+    known = memories(elements)
+    marks = ((known[place], each.mark(key[1 + place])) for place, each in enumerate(elements) if place in known)
+    return tuple((index, mark) for index, mark in marks if mark is not None)
 
 
 def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
@@ -283,7 +402,8 @@ def _element_of(given: BaseElement) -> Element:
     if isinstance(given, ViscousDamper):
         return Dashpot(given.coefficient, given.position)
     if isinstance(given, FrictionDamper):
-        raise InputError("Friction dampers cannot be simulated yet.")
+        # Without force there is nothing to stick or slide.
+        return Slider(given.force, given.position) if given.force > 0.0 else Dashpot(0.0, given.position)
     rupture = np.inf if given.rupture_elongation is None else given.rupture_elongation
     if isinstance(given, YieldingDissipator):
         return Bar(

@@ -2,7 +2,8 @@
 
 The motion is ``[D_1..D_N, D'_1..D'_N, θ, θ', z, E_damped, E_input, E_hysteretic]``. The last three are the damped
 energy, the work of the ground and the energy absorbed by the hysteretic spring; integrating them with the motion gives
-them the same accuracy.
+them the same accuracy. With viscous dampers ∫ (δ'/r)² dt follows, which times c r² is the energy that one dissipates.
+Memories of elements come last; they are constant.
 """
 
 import math
@@ -10,13 +11,13 @@ from typing import NamedTuple
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
+from rockflex.models._pulls import DAMPING, HOLD, MOMENT, STIFFNESS
 
 EXTRA = 4  # components in addition to those of the simplified models
 
-# Indices in `Field.modes`, and for each pivot in `Field.pivots`: its distance B from the axis of the masses, I_θ about
-# it, and the sums over the tendons Σ F_0 r, Σ k r² and Σ k r, where r is the distance of a tendon from the pivot.
+# Indices in `Field.modes`, and for each pivot in `Field.pivots`: its distance B from the axis of the masses, and I_θ.
 OMEGA2, DRAG, HEIGHT, MASS = 0, 1, 2, 3
-ARM, INERTIA, PRESTRESS, STIFFNESS, PULL = 0, 1, 2, 3, 4
+ARM, INERTIA = 0, 1
 
 
 class Field(NamedTuple):
@@ -24,11 +25,11 @@ class Field(NamedTuple):
 
     complete: bool  # Eqs. 13 and 14; otherwise Eq. 23
     hysteretic: bool
+    viscous: bool  # with dampers at the base
     modes: Array  # (4, N): ω², 2ζω, h* and m*
-    pivots: Array  # (2, 5), for the right and the left pivot: see the indices above
+    pivots: Array  # (2, 2), for the right and the left pivot: see the indices above
     weight_arm: float  # L_0^r
     total_mass: float
-    prestress: float  # Σ F_0
     gravity: float  # g
     yield_displacement: float
     post_yield_ratio: float
@@ -58,10 +59,13 @@ def inertia_left(field: Field, side: float, motion: Array) -> float:
 
 
 @kernel
-def field_rates(field: Field, side: float, branch: float, acceleration: float, motion: Array, rates: Array) -> None:
+def field_rates(
+    field: Field, pulls: Array, side: float, branch: float, acceleration: float, motion: Array, rates: Array
+) -> None:
     """Compute the rates of the motion on one side (0: in contact) for a ground acceleration.
 
-    `branch` is the sign of D'_1 used in the hysteresis law, which is therefore smooth up to the reversal.
+    `pulls` are the sums over the elements of the present phase, with their memories: `pulls_of`. `branch` is the sign
+    of D'_1 used in the hysteresis law, which is therefore smooth up to the reversal.
     """
     n = field.modes.shape[1]
     theta, spin = motion[2 * n], motion[2 * n + 1]
@@ -73,6 +77,7 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
     rates[2 * n + 2] = 0.0
     rates[2 * n + 5] = 0.0
     damped = drive = moment = displaced = carried = 0.0
+    lever = 1.0  # of an element: (δ'/r)/|θ|'
     for i in range(n):
         d, v = motion[i], motion[n + i]
         drag = field.modes[DRAG, i] * v
@@ -101,17 +106,16 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
         if field.complete:
             arm = weight * sine + field.weight_arm * cosine - displaced * sine
             moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
-            # A tendon is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2), where r = B - s x.
-            moment += (
-                side * field.pivots[pivot, PRESTRESS] * math.sqrt(0.5 + 0.5 * cosine)
-                + field.pivots[pivot, STIFFNESS] * sine
-            )
+            # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
+            lever = math.sqrt(0.5 + 0.5 * cosine)
+            moment += side * pulls[MOMENT] * lever + pulls[STIFFNESS] * sine
         else:
             arm = field.weight_arm
             moment += field.gravity * (weight - field.weight_arm * theta)
-            moment += side * field.pivots[pivot, PRESTRESS] + field.pivots[pivot, STIFFNESS] * theta
+            moment += side * pulls[MOMENT] + pulls[STIFFNESS] * theta
+        moment += pulls[DAMPING] * lever * lever * spin
         moment += acceleration * arm
-        angular = -moment / inertia_left(field, side, motion)
+        angular = -moment / inertia_left(field, side, motion) if pulls[HOLD] == 0.0 else 0.0
         drive = arm * spin
         for i in range(n):
             rates[n + i] -= field.modes[HEIGHT, i] * angular
@@ -119,6 +123,8 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
     rates[2 * n + 1] = angular
     rates[2 * n + 3] = damped
     rates[2 * n + 4] = -acceleration * (drive + cosine * carried)
+    if field.viscous:
+        rates[2 * n + 6] = (lever * spin) ** 2 if side != 0.0 else 0.0
 
 
 @kernel

@@ -4,13 +4,14 @@ import numpy as np
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import python_kernel
-from rockflex.models._elements import LEFT, RIGHT, arm_of, memories
+from rockflex.models._elements import LEFT, RIGHT, memories
 from rockflex.models._field import Field, field_rates
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import LINEAR, observe_all
 from rockflex.models._phase import Key
+from rockflex.models._pulls import SUMS, pulls_of
 from rockflex.models._quantities import Quantities, rows_of
 
 
@@ -34,7 +35,7 @@ def accelerations(model: RockingModel, states: Array) -> Array:
     if isinstance(model, NonlinearModel):
         rates = np.zeros((states.shape[0], layout.size))
         motion = np.ascontiguousarray(states[:, HEADER:])
-        _rates_at(model.field(), side, states[:, GROUND].copy(), motion, rates)
+        _rates_at(model.field(), pulls_at(model, states), side, states[:, GROUND].copy(), motion, rates)
         return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
     found = np.zeros((states.shape[0], n + 1))
     for chosen, key, vector in by_phase(model, states, side):
@@ -59,9 +60,10 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
     if curved.size and rocking.any() and isinstance(model, NonlinearModel) and model.complete:
         rates = rates_of(model, states, accelerations(model, states))[rocking]
         known = side[rocking], states[rocking, GROUND], np.ascontiguousarray(states[rocking, HEADER:]), rates
+        pulls = pulls_at(model, states)[rocking]
         for f in curved:
             found, (near, far) = values[rocking, f], quantities.levers[f].tolist()
-            observe_all(model.field(), int(quantities.kinds[f]), found, near, far, *known)
+            observe_all(model.field(), pulls, int(quantities.kinds[f]), found, near, far, *known)
             values[rocking, f] = found
     return values
 
@@ -80,17 +82,30 @@ def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) 
     branches[:, 0] = side
     known = memories(model.elements)
     for place, each in enumerate(model.elements):
-        arms = [arm_of(model.properties, each, which) for which in (RIGHT, LEFT)]
-        elongation = np.abs(rotation) * np.where(side < 0.0, arms[1], arms[0])
+        right, left = (model.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
+        elongation = np.where(side < 0.0, left, right)
         index = model.layout.memory + known[place] if place in known else 0
-        branches[:, 1 + place] = each.branch_at(elongation, model.layout.of(states, index))
+        found = each.branch_at(elongation, model.layout.of(states, index))
+        at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
+        branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
     found, which = np.unique(branches, axis=0, return_inverse=True)
     return [(which.ravel() == k, tuple(int(branch) for branch in key)) for k, key in enumerate(found)]
 
 
+def pulls_at(model: RockingModel, states: Array) -> Array:
+    """Return the sums over the elements at every state, with their memories, shape (n, 6): see `pulls_of`."""
+    layout, side = model.layout, acting_side(states)
+    found = np.zeros((side.size, SUMS))
+    memory = states[:, HEADER + layout.memory : HEADER + layout.memory + layout.remembered]
+    for chosen, key in phases_at(model, side, layout.of(states, layout.rotation), states):
+        pulls = pulls_of(model.properties, model.elements, key)
+        found[chosen] = pulls[:, 0] + memory[chosen] @ pulls[:, 1:].T
+    return found
+
+
 @python_kernel
-def _rates_at(field: Field, side: Array, acceleration: Array, motion: Array, rates: Array) -> None:
+def _rates_at(field: Field, pulls: Array, side: Array, acceleration: Array, motion: Array, rates: Array) -> None:
     n = field.modes.shape[1]
     for k in range(side.size):
         branch = 1.0 if n == 0 or motion[k, n] >= 0.0 else -1.0
-        field_rates(field, side[k], branch, acceleration[k], motion[k], rates[k])
+        field_rates(field, pulls[k], side[k], branch, acceleration[k], motion[k], rates[k])

@@ -9,7 +9,7 @@ import numpy as np
 from rockflex._checks import one_of, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import RockingProperties
+from rockflex.modal import FrictionDamper, RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
 from rockflex.models._linear import LinearModel
@@ -144,6 +144,7 @@ class Model:
             )
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         self._check_missing_mass(kept)
+        self._check_friction(kept)
         label = self._check_yielding(kept, bouc_wen)
         law = impact if impact is not None else self._law(kept)
         linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
@@ -156,6 +157,15 @@ class Model:
             raise InputError(
                 f"{self.label} needs the mass above the base, but these properties give only the total mass. Give "
                 "RockingProperties the base_mass, in kg."
+            )
+
+    def _check_friction(self, kept: RockingProperties) -> None:
+        if self.complete and any(isinstance(each, FrictionDamper) and each.force > 0.0 for each in kept.elements):
+            raise InputError(
+                f"{self.label} does not take friction dampers: the moment on a base that they hold at a large rotation "
+                f"is not linear in the motion. Use {replace(self, complete=False, closure=None).label}, or a "
+                "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
+                field="elements",
             )
 
     def _check_yielding(self, kept: RockingProperties, bouc_wen: BoucWen | None) -> str:

@@ -10,6 +10,8 @@ TIME, SIDE, GROUND, HEADER = 0, 1, 2, 3  # columns that precede the state vector
 class StateLayout(NamedTuple):
     """Indices in the state vector [D_1..D_N, D'_1..D'_N, θ, θ'], for integrated models [.., z, E_d, E_i, E_h].
 
+    ∫ (δ'/r)² dt follows if an integrated model has viscous dampers, and then the memories of all elements.
+
     A *row* is a linear functional of the first `moving` entries, the ground acceleration and the constant 1.
     An index that the model does not have is -1.
 
@@ -23,6 +25,9 @@ class StateLayout(NamedTuple):
         z of Eq. 38.
     damped, put_in, yielded
         Damped energy, work of the ground and energy absorbed by the hysteretic spring since the start of the run.
+    swept
+        ∫ (δ'/r)² dt over the rocking since the start of the run, in rad²/s: with cos² (θ/2) θ'² or, for small
+        rotations, θ'². Times c r² it is the energy that a viscous damper dissipates.
     memory, remembered
         Index of the first memory of an element, and the number of memories; constant during a phase.
     moving
@@ -38,6 +43,7 @@ class StateLayout(NamedTuple):
     damped: int
     put_in: int
     yielded: int
+    swept: int
     memory: int
     remembered: int
     moving: int
@@ -66,14 +72,16 @@ class StateLayout(NamedTuple):
         return states[:, HEADER + place]
 
 
-def layout_of(modes: int, *, integrated: bool, remembered: int = 0) -> StateLayout:
+def layout_of(modes: int, *, integrated: bool, viscous: bool = False, remembered: int = 0) -> StateLayout:
     """Return the layout of a model; integrated models also integrate their energies. The memories come last."""
     core = 2 * modes + 2
     if not integrated:
         size = core + remembered
-        return StateLayout(modes, core - 2, core - 1, -1, -1, -1, -1, core, remembered, size, size)
-    size = core + 4 + remembered
+        return StateLayout(modes, core - 2, core - 1, -1, -1, -1, -1, -1, core, remembered, size, size)
+    memory = core + 4 + viscous
+    size = memory + remembered
     moving = size if remembered else core + 1
+    swept = core + 4 if viscous else -1
     return StateLayout(
-        modes, core - 2, core - 1, core, core + 1, core + 2, core + 3, core + 4, remembered, moving, size
+        modes, core - 2, core - 1, core, core + 1, core + 2, core + 3, swept, memory, remembered, moving, size
     )

@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
+from rockflex.models._balance import meets, stiffnesses_of
+from rockflex.models._elements import LEFT, RIGHT
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
@@ -37,10 +39,15 @@ class LinearModel(ModalModel):
 
     @property
     def neutral(self) -> bool:
-        """Whether tendons balance the weight so closely that the steady rotation of the rocking base is ill-defined."""
+        """Whether elements balance the weight so closely that the steady rotation of the rocking base is ill-defined.
+
+        This is checked for all combinations of their branches.
+        """
         p = self.properties
-        least = min(abs(p.pivot(side).rocking_stiffness) for side in (1, -1))
-        return self.lifts and least < NEUTRAL * p.l0r * GRAVITY
+        weight = p.l0r * GRAVITY
+        return self.lifts and any(
+            meets(stiffnesses_of(p, self.elements, side), weight, NEUTRAL * weight) for side in (RIGHT, LEFT)
+        )
 
     @property
     def linear(self) -> "LinearModel":

@@ -13,18 +13,23 @@ from rockflex.models._elements import (
     CLOSED,
     LEFT,
     RIGHT,
+    Dashpot,
     Element,
+    arm_of,
     border_of,
     changes_of,
     elements_of,
     first_key,
-    landed,
+    is_held,
+    marks_of,
     memories,
+    set_off,
     turnings_of,
 )
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
-from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, RELEASES, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._pulls import pulls_of
 
 QUARTER_TURN = 0.5 * np.pi
 
@@ -59,7 +64,12 @@ class ModalModel(Value):
     @cached_property
     def layout(self) -> StateLayout:
         """Layout of the state vector."""
-        return layout_of(self.properties.n_modes, integrated=self.integrated, remembered=len(memories(self.elements)))
+        return layout_of(
+            self.properties.n_modes,
+            integrated=self.integrated,
+            viscous=any(isinstance(each, Dashpot) for each in self.elements),
+            remembered=len(memories(self.elements)),
+        )
 
     @cached_property
     def elements(self) -> tuple[Element, ...]:
@@ -72,8 +82,31 @@ class ModalModel(Value):
         return sum(max(len(each.stops(branch)) for branch in each.branches) for each in self.elements)
 
     def start(self, side: int) -> Key:
-        """Return the branches on which a run starts with the base on a side."""
-        return first_key(self.elements, side)
+        """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
+        return first_key(self.properties, self.elements, side)
+
+    def begin(self, rotation: float, spin: float) -> tuple[Key, Array]:
+        """Return the branches and the memories at the start of a run with a rotation in rad and θ' in rad/s.
+
+        Elements as built are brought to the rotation, and may yield or break on the way.
+        """
+        outward = rotation or spin
+        side = (outward > 0.0) - (outward < 0.0)
+        known, kept, branches = memories(self.elements), list[float](), list[int]()
+        for place, each in enumerate(self.elements):
+            elongation = np.zeros(1) if side == CLOSED else self.elongations(each, side, np.array([abs(rotation)]))
+            memory = each.memory_at(float(elongation[0]))
+            branches.append(int(each.branch_at(elongation, np.array([memory]))[0]))
+            kept += [memory] if place in known else []
+        key = (side, *branches)
+        if side != CLOSED and spin != 0.0:
+            key = set_off(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
+        return key, np.array(kept)
+
+    def elongations(self, element: Element, side: int, rotation: Array) -> Array:
+        """Return the elongations δ of an element in m at rotations |θ| about a pivot, shape (n,)."""
+        stretch = 2.0 * np.sin(0.5 * rotation) if self.complete else rotation
+        return arm_of(self.properties, element, side) * stretch
 
     @property
     def sides(self) -> tuple[int, ...]:
@@ -96,7 +129,7 @@ class ModalModel(Value):
         b = len(FREEDOMS)
         leverage = (p.effective_mass * p.effective_height)[None]
         coupling = p.effective_height[None]
-        free = key[0] != CLOSED
+        free = self.is_free(key)
         border = border_of(p, self.elements, key) if free else Border.on_rotation()
         flexibility: Array = np.zeros((b, b))
         if free:
@@ -176,7 +209,7 @@ class ModalModel(Value):
         rows[:n] -= self.restoring
         rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
         rows[:n, -2] = -1.0
-        if key[0] != CLOSED:
+        if self.is_free(key):
             arrow, turn = self.arrow(key), rows[n]
             turn -= self._moment
             turn[self.layout.rotation] -= arrow.stiffness[0, 0]
@@ -189,28 +222,55 @@ class ModalModel(Value):
 
     def phase_of(self, key: Key, arrow: Arrow | None) -> Phase:
         """Return a phase with its equations of motion; None if they are not linear."""
-        turns, turnings = turnings_of(self.properties, self.elements, key) if key[0] != CLOSED else (0, ())
-        changes = changes_of(self.properties, self.elements, key) if key[0] != CLOSED else ()
-        stopped = tuple(landed(branch) for branch in key[1:])
-        return Phase(key, key[0], arrow, self.guard(key), changes, turns, turnings, stopped)
+        p, elements, rest = self.properties, self.elements, key[1:]
+        contact, right, left = (set_off(p, elements, (side, *rest), side) for side in (CLOSED, RIGHT, LEFT))
+        free = self.is_free(key)
+        turns, turnings = turnings_of(p, elements, key) if free else (0, ())
+        return Phase(
+            key=key,
+            side=key[0],
+            arrow=arrow,
+            guard=self.guard(key),
+            pulls=pulls_of(p, elements, key),
+            changes=changes_of(p, elements, key) if free else (),
+            turned=set_off(p, elements, key, 0),
+            beside=(contact, right, left),
+            free=free,
+            turns=turns,
+            turnings=turnings,
+            marks=marks_of(elements, key),
+        )
+
+    def is_free(self, key: Key) -> bool:
+        """Return whether the base rotates in a phase: it neither rests on the ground nor is held at a rotation."""
+        return key[0] != CLOSED and not is_held(self.properties, self.elements, key)
 
     def guard(self, key: Key) -> Guard:
-        """Return the guard of a phase: uplift from contact (Eqs. 16 and 24), impact and overturning while rocking."""
-        side, rest = key[0], key[1:]
-        unchanged = np.zeros((2, self.layout.remembered))
-        if side != CLOSED:
-            row = np.zeros(self.layout.columns)
-            row[self.layout.rotation] = 1.0
-            stopped = tuple(landed(branch) for branch in rest)
-            lands, tips = Exit(LANDS, (CLOSED, *stopped)), Exit(OVERTURNS, key)
-            if side == RIGHT:
-                return Guard(row, 0.0, QUARTER_TURN, lands, tips, unchanged)
-            return Guard(row, -QUARTER_TURN, 0.0, tips, lands, unchanged)
+        """Return the guard of a phase: impact and overturning while rocking, otherwise the overturning moment.
+
+        In contact the moment ends the phase by uplift (Eqs. 16 and 24), at a rotation held by friction by a release.
+        """
+        if self.is_free(key):
+            return self._rotation_guard(key)
         if not self.lifts:
+            unchanged = np.zeros((2, self.layout.remembered))
             return Guard(self.overturning_moment(), -np.inf, np.inf, None, None, unchanged)
-        # The base lifts when the forces of the following phase would start its rotation.
-        right, left = ((turned, *rest) for turned in (RIGHT, LEFT))
-        borders = [border_of(self.properties, self.elements, each) for each in (right, left)]
+        # The base starts to rotate when the forces of the following phase would turn it.
+        p, (side, *rest) = self.properties, key
+        following = [set_off(p, self.elements, (side or turn, *rest), turn) for turn in (1, -1)]
+        borders = [border_of(p, self.elements, each) for each in following]
         low, high = (float(each.constant[0]) for each in borders)
         recall = np.stack([each.recall[0] for each in borders])
-        return Guard(self.overturning_moment(), low, high, Exit(LIFTS, right), Exit(LIFTS, left), recall)
+        below, above = (Exit(LIFTS if side == CLOSED else RELEASES, each) for each in following)
+        turn = 0.0 if side == CLOSED else -float(borders[0].stiffness[0, 0])
+        return Guard(self.overturning_moment(), low, high, below, above, recall, turn)
+
+    def _rotation_guard(self, key: Key) -> Guard:
+        row = np.zeros(self.layout.columns)
+        row[self.layout.rotation] = 1.0
+        unchanged = np.zeros((2, self.layout.remembered))
+        lands = Exit(LANDS, set_off(self.properties, self.elements, (CLOSED, *key[1:]), 0))
+        tips = Exit(OVERTURNS, key)
+        if key[0] == RIGHT:
+            return Guard(row, 0.0, QUARTER_TURN, lands, tips, unchanged)
+        return Guard(row, -QUARTER_TURN, 0.0, tips, lands, unchanged)

@@ -68,16 +68,11 @@ class NonlinearModel(ModalModel):
         return Field(
             complete=self.complete,
             hysteretic=self.bouc_wen is not None,
+            viscous=self.layout.swept >= 0,
             modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega, p.effective_height, p.effective_mass)),
-            pivots=np.array(
-                [
-                    (each.arm, each.i_theta, each.prestress_moment, each.tendon_stiffness, each.axial_stiffness_moment)
-                    for each in pivots
-                ]
-            ),
+            pivots=np.array([(each.arm, each.i_theta) for each in pivots]),
             weight_arm=p.l0r,
             total_mass=p.m_tot,
-            prestress=p.prestress,
             gravity=GRAVITY,
             yield_displacement=b.yield_displacement,
             post_yield_ratio=b.post_yield_ratio,

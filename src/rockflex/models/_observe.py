@@ -9,14 +9,15 @@ from typing import NamedTuple
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel, python_kernel
-from rockflex.models._field import ARM, MASS, PULL, Field, pivot_at
+from rockflex.models._field import ARM, MASS, Field, pivot_at
+from rockflex.models._pulls import DRAG, FORCE, PULL
 
 LINEAR = 0  # the row itself
 SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row gives its u (Eq. 3)
 LEFT_OUT = 2  # the row and the masses left out: levers[0] is Σ m_i or Σ m_i h_i, levers[1] Σ m_i h_i or Σ m_i h_i²
 SWING = 3  # rate of the elongation of an element per unit distance from the pivot; the row gives θ'
-HORIZONTAL = 4  # Σ F_x (Eq. 21) including tendon forces
-VERTICAL = 5  # Σ F_z (Eq. 22 with the sign of the weight corrected) including tendon forces
+HORIZONTAL = 4  # Σ F_x (Eq. 21) including the forces of elements
+VERTICAL = 5  # Σ F_z (Eq. 22 with the sign of the weight corrected) including the forces of elements
 
 
 class Posture(NamedTuple):
@@ -32,8 +33,8 @@ class Posture(NamedTuple):
 
 
 @kernel
-def posture_of(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
-    """Return the posture of a motion while rocking; `rates` contains D'' and θ''."""
+def posture_of(field: Field, pulls: Array, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
+    """Return the posture of a motion while rocking; `pulls` as in `field_rates`; `rates` contains D'' and θ''."""
     n = field.modes.shape[1]
     spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
     sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
@@ -48,8 +49,8 @@ def posture_of(field: Field, side: float, acceleration: float, motion: Array, ra
         speed += field.modes[MASS, i] * motion[n + i]
         push += field.modes[MASS, i] * rates[n + i]
     along, beside = across * cosine - field.weight_arm * sine, across * sine + field.weight_arm * cosine
-    # A tendon points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
-    pull = field.prestress + 2.0 * field.pivots[pivot, PULL] * abs(half)
+    # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
+    pull = pulls[FORCE] + 2.0 * pulls[PULL] * abs(half) + pulls[DRAG] * upright * side * spin
     square, coriolis = spin * spin, 2.0 * spin * speed
     return Posture(
         sine=sine,
@@ -83,6 +84,7 @@ def observe(kind: int, value: float, near: float, far: float, posture: Posture) 
 @python_kernel
 def observe_all(
     field: Field,
+    pulls: Array,
     kind: int,
     values: Array,
     near: float,
@@ -92,7 +94,7 @@ def observe_all(
     motion: Array,
     rates: Array,
 ) -> None:
-    """Replace the `values` (n,) of a row by the quantity at many instants; `motion`, `rates`: (n, 2N + 2)."""
+    """Replace the `values` (n,) of a row by the quantity at many instants; `motion` and `rates`: (n, 2N + 2)."""
     for k in range(side.size):
-        posture = posture_of(field, side[k], acceleration[k], motion[k], rates[k])
+        posture = posture_of(field, pulls[k], side[k], acceleration[k], motion[k], rates[k])
         values[k] = observe(kind, values[k], near, far, posture)

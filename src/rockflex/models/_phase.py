@@ -11,7 +11,9 @@ FREEDOMS = ("rotation",)  # of the base, in the order of the borders
 
 Key = tuple[int, ...]  # the branch of every element, the base first
 
-LIFTS, LANDS, OVERTURNS, CHANGES = 0, 1, 2, 3  # events that end a phase; CHANGES: an element takes another branch
+# Events that end a phase. RELEASES: a base that friction dampers held begins to rotate. CHANGES: an element takes
+# another branch. TURNS: the rotation turns back while an element yields or slides.
+LIFTS, LANDS, OVERTURNS, RELEASES, CHANGES, TURNS = range(6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +136,8 @@ class Guard:
         What happens at each limit; None if there is no limit.
     recall : ndarray, shape (2, M)
         What the memories add to the lower and to the upper limit.
+    turn
+        What the rotation adds to both limits, per rad; zero unless the base is held at a rotation.
     """
 
     row: Array
@@ -142,10 +146,13 @@ class Guard:
     below: Exit | None
     above: Exit | None
     recall: Array
+    turn: float = 0.0
 
 
 class Change(NamedTuple):
-    """A limit of |θ|, place + recall m with the memory m of one element, at which this element changes its branch.
+    """A limit of δ/r, place + recall m with the memory m of one element, at which this element changes its branch.
+
+    δ/r, the elongation per unit distance from the pivot, is |θ|, and 2 sin(|θ|/2) in complete models.
 
     The limit is reached from below if `outer`. `memory` is the index of m, and `key` the following phase.
     """
@@ -158,7 +165,7 @@ class Change(NamedTuple):
 
 
 class Turning(NamedTuple):
-    """A memory that is set where the rotation turns back: m = arm |θ| - offset, with the index `memory`."""
+    """A memory that is set where the rotation turns back: m = arm δ/r - offset, with the index `memory`."""
 
     memory: int
     arm: float
@@ -181,19 +188,31 @@ class Phase:
         The condition that ends the phase: on the rotation while the base rocks, on the overturning moment in contact.
     changes
         Rotations at which an element changes its branch.
+    free
+        Whether the base rotates: it neither rests on the ground nor is held by friction dampers.
     turns
-        Sign of the velocity |θ|' while an element yields, whose branch ends at zero velocity; 0 if none yields.
+        Sign of the velocity |θ|' while an element yields or slides, whose branch ends at zero velocity; 0 if none does.
     turnings
         The memories of the elements that yield, as their branches end.
-    landed
-        The branches of the elements after their elongation has stopped.
+    marks
+        The memories that have a value of their own in this phase, by index.
+    turned
+        The phase that follows at zero velocity.
+    beside
+        The phases after a landing: in contact, about the right pivot and about the left pivot.
+    pulls : ndarray, shape (7, 1 + M)
+        Sums over the elements for phases that are not linear, and what the memories add to them; see `pulls_of`.
     """
 
     key: Key
     side: int
     arrow: Arrow | None
     guard: Guard
-    changes: tuple[Change, ...] = ()
+    pulls: Array
+    changes: tuple[Change, ...]
+    turned: Key
+    beside: tuple[Key, Key, Key]
+    free: bool = False
     turns: int = 0
     turnings: tuple[Turning, ...] = ()
-    landed: tuple[int, ...] = ()
+    marks: tuple[tuple[int, float], ...] = ()

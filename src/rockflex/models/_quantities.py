@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex.models._elements import CLOSED, RIGHT, arm_of, memories
+from rockflex.models._elements import CLOSED, RIGHT, Slider, arm_of, border_of, is_held, memories
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
@@ -126,7 +126,7 @@ def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
     rows[GROUND, -2] = 1.0
     if not large:
         rows[2 * n : 3 * n] = model.modal_accelerations(key)
-        if key[0] != CLOSED:
+        if model.is_free(key):
             rows[TURN] = model.angular_acceleration(key)
     return rows
 
@@ -139,9 +139,9 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
     """
     row = np.zeros(model.layout.columns)
     side, p = key[0], model.properties
-    if model.complete:
+    if model.complete and side != CLOSED:
         return row
-    if side != CLOSED:
+    if model.is_free(key):
         row -= side * p.m_tot * p.pivot(side).arm * model.angular_acceleration(key)
     row -= tensions(model, key).sum(axis=0)
     row[-1] += sum(each.pull(each.branches[0]).force for each in model.elements)
@@ -151,17 +151,36 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
 def tensions(model: ModalModel, key: Key) -> Array:
     """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
     rows = np.zeros((len(model.elements), model.layout.columns))
+    if is_held(model.properties, model.elements, key):
+        hold(model, key, rows)
     side, layout = key[0], model.layout
     known = memories(model.elements)
     for place, (each, branch) in enumerate(zip(model.elements, key[1:], strict=True)):
         pull = each.pull(branch)
-        rows[place, -1] = pull.force
+        rows[place, -1] += pull.force
         if place in known:
             rows[place, layout.memory + known[place]] = pull.recall
         if side != CLOSED:
             reach = side * arm_of(model.properties, each, side)
             rows[place, layout.rotation], rows[place, layout.spin] = pull.stiffness * reach, pull.damping * reach
     return rows
+
+
+def hold(model: ModalModel, key: Key, rows: Array) -> None:
+    """Add the tensions of friction dampers that hold the base: together they balance all other moments.
+
+    Each takes a part in proportion to its force F_0, as at the instant in which they slide.
+    """
+    side, layout, p = key[0], model.layout, model.properties
+    moment = -model.overturning_moment()
+    others = border_of(p, model.elements, key)
+    moment[layout.rotation] -= others.stiffness[0, 0]
+    moment[-1] += others.constant[0]
+    moment[layout.memory : layout.memory + layout.remembered] += others.recall[0]
+    sliders = {k: each for k, each in enumerate(model.elements) if isinstance(each, Slider)}
+    capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
+    for place, each in sliders.items():
+        rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment
 
 
 def turning_row(model: ModalModel) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
-from rockflex.models._kept import acting_side, rates_of
+from rockflex.models._kept import acting_side, pulls_at, rates_of
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER
 from rockflex.models._nonlinear import NonlinearModel
@@ -52,7 +52,8 @@ def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Rea
     field = NonlinearModel(model.label, model.properties, model.lifts, model.law).field()
     side, motion = acting_side(states), np.ascontiguousarray(states[:, HEADER:])
     moving = np.ascontiguousarray(rates_of(model, states, rates))
+    pulls = pulls_at(model, states)
     x, z = np.zeros(side.size), np.zeros(side.size)
     for kind, values in ((HORIZONTAL, x), (VERTICAL, z)):
-        observe_all(field, kind, values, 0.0, 0.0, side, states[:, GROUND].copy(), motion, moving)
+        observe_all(field, pulls, kind, values, 0.0, 0.0, side, states[:, GROUND].copy(), motion, moving)
     return Reactions(x, z)

@@ -2,12 +2,14 @@
 
 from rockflex.plot._clouds import plot_clouds
 from rockflex.plot._design import plot_design
+from rockflex.plot._design_search import plot_design_search
 from rockflex.plot._energy import plot_energy
 from rockflex.plot._fragility import plot_fragility
 from rockflex.plot._frequency_curves import plot_frequency_equation
 from rockflex.plot._frequency_ratios import plot_frequency_ratios
 from rockflex.plot._history import plot_history
 from rockflex.plot._ida import plot_ida
+from rockflex.plot._loops import plot_loops
 from rockflex.plot._mode_shapes import plot_mode_shapes
 from rockflex.plot._moment_rotation import plot_moment_rotation
 from rockflex.plot._moment_rotation_laws import plot_moment_rotation_laws
@@ -22,6 +24,7 @@ from rockflex.plot._yielding import plot_hysteresis, plot_yielding
 __all__ = [
     "plot_clouds",
     "plot_design",
+    "plot_design_search",
     "plot_energy",
     "plot_fragility",
     "plot_frequency_equation",
@@ -29,6 +32,7 @@ __all__ = [
     "plot_history",
     "plot_hysteresis",
     "plot_ida",
+    "plot_loops",
     "plot_mode_shapes",
     "plot_moment_rotation",
     "plot_moment_rotation_laws",

@@ -8,7 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex.plot._base_loops import follows_a_line, resistance_of
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._style import BLUE, new_figure, styled
 from rockflex.plot._units import readable
@@ -18,6 +20,7 @@ _HEADROOM = 1.1
 _PER_ROW = 3
 _FREE = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
 _HELD = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
+_PATH = "resisting moment of weight and elements"
 _SIDED = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
 
 
@@ -26,9 +29,10 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
 
     The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
     tendons add their prestress to M_r and their stiffness k_t to the slope, and the two sides differ if the base is
-    eccentric or the tendons are not symmetric. M_b is the moment of the elastic forces; it differs from the resisting
-    moment by rotational inertia and damping. Responses on a fixed base have no rotation and are left out. Overturning
-    does not extend the axes.
+    eccentric or the tendons are not symmetric. With elements that yield, slide or damp, the resisting moment depends on
+    the path, and that of the run is plotted: `plot_loops` shows its parts. M_b is the moment of the elastic forces; it
+    differs from the resisting moment by rotational inertia and damping. Responses on a fixed base have no rotation and
+    are left out. Overturning does not extend the axes.
 
     Parameters
     ----------
@@ -85,7 +89,8 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
             axes.set_axis_off()
         figure.supxlabel("θ [rad]", fontsize=9.0)
         figure.supylabel(f"$M_b$ [{unit}]", fontsize=9.0)
-        figure.legend(handles=panels[0].get_lines()[1:], loc="outside upper center", handlelength=3.0)
+        kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
+        figure.legend(handles=list(kinds.values()), loc="outside upper center", handlelength=3.0)
     return figure
 
 
@@ -100,11 +105,23 @@ def _largest_moment(curve: Curve) -> float:
     moment = curve.response.max_base_moment
     if curve.falls:
         moment = float(np.max(np.abs(curve.history.base_moment[curve.before_fall])))
-    return max(moment, *(pivot.resisting_moment for pivot in curve.history.model.properties.pivots))
+    p = curve.history.model.properties
+    held = 0.0 if follows_a_line(p) else float(np.max(np.abs(_path(curve)[1]), initial=0.0))
+    return max(moment, held, *(pivot.resisting_moment for pivot in p.pivots))
+
+
+def _path(curve: Curve) -> tuple[Array, Array]:
+    """Rotation and resisting moment while the base is off the ground."""
+    weight, parts = resistance_of(curve.history)
+    rocking = np.flatnonzero(curve.history.side[curve.before_fall] != 0.0)
+    return curve.history.rotation[rocking], (weight + parts.sum(axis=1))[rocking]
 
 
 def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
     p = curve.history.model.properties
+    if not follows_a_line(p):
+        theta, moment = _path(curve)
+        return Line2D(theta, moment / factor, color=BLUE, linewidth=0.8, label=_PATH, zorder=3.0)
     right, left = (
         (each.resisting_moment / factor, (each.resisting_moment + each.rocking_stiffness * rotation) / factor)
         for each in (p.pivot(1), p.pivot(-1))

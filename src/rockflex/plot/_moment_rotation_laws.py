@@ -2,14 +2,18 @@
 
 import math
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rockflex._arrays import Array
 from rockflex._checks import positive
 from rockflex._constants import GRAVITY
 from rockflex.modal import Pivot, RockingProperties
+from rockflex.plot._base_loops import follows_a_line
 from rockflex.plot._style import BLACK, GRAY, SMALL, letter, new_figure, styled
 from rockflex.plot._units import readable, short
+from rockflex.response import base_path
 from rockflex.study import RockingStructure, properties_of
 
 _ROOM = 1.18
@@ -22,7 +26,8 @@ def plot_moment_rotation_laws(
 
     The figure is that of Silva & Stojadinović 2024, Fig. 11: M = k_r θ, and M = ±(M_r + k |θ|) with the slope
     k = -L_0^r g, to which tendons add theirs. While the base stands, M is anything between -M_r and M_r. For an
-    eccentric base, or tendons that are not symmetric, M_r and k differ between the two sides.
+    eccentric base, or tendons that are not symmetric, M_r and k differ between the two sides. With elements that yield
+    or slide, the curve is that of a first push to each side; `plot_loops` shows cycles.
 
     Parameters
     ----------
@@ -61,9 +66,13 @@ def plot_moment_rotation_laws(
     default = _ROOM * max(vanishing) if vanishing else max(each.nominal_overturning_rotation for each in sides)
     end = default if rotation is None else positive("rotation", rotation, "rad")
     stiffness = p.l0r * GRAVITY if spring is None else positive("spring", spring, "N m/rad")
-    lasts = [side.resisting_moment + side.rocking_stiffness * end for side in sides]
-    largest = max(*(side.resisting_moment for side in sides), *map(abs, lasts))
+    pushes = [_push(p, side, end) for side in (1, -1)]
+    starts, lasts = ([moment[place] for _, moment in pushes] for place in (0, -1))
+    largest = max(float(np.max(np.abs(moment))) for _, moment in pushes)
     factor, unit = readable(largest, "N m")
+    line = follows_a_line(p)
+    if not line:
+        zeros = [_first_zero(*push) for push in pushes]
     with styled():
         figure = new_figure(6.3, 3.1)
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -77,20 +86,22 @@ def plot_moment_rotation_laws(
         left.locator_params(axis="x", nbins=5)
         moment = stiffness * end / factor
         left.plot([-end, end], [-moment, moment], color=BLACK, linewidth=1.4, label="pinned beam")
-        starts, lasts = [side.resisting_moment / factor for side in sides], [last / factor for last in lasts]
         right.plot(
-            [-end, 0.0, 0.0, end], [-lasts[1], -starts[1], starts[0], lasts[0]], color=BLACK, linewidth=1.4,
-            label="rocking",
+            np.concatenate((-pushes[1][0][::-1], pushes[0][0])),
+            np.concatenate((-pushes[1][1][::-1], pushes[0][1])) / factor,
+            color=BLACK, linewidth=1.4, label="rocking",
         )  # fmt: skip
         _note(left, f"slope $k_r$ =\n{_with_unit(stiffness, 'N m/rad')}", low=True)
+        starts, lasts = [start / factor for start in starts], [last / factor for last in lasts]
         low = lasts[0] > -0.3 * starts[0]
         crossings = [sign * zero for sign, zero in ((-1.0, zeros[1]), (1.0, zeros[0])) if zero <= end]
         if crossings:
             right.plot(
                 crossings, [0.0] * len(crossings), "o", color=BLACK, markersize=4.0, markerfacecolor="white", label="_0"
             )
-        slope, zero = _slope(sides, symmetric=p.symmetric), _vanishing(zeros, end, symmetric=p.symmetric)
-        resisting = [f"$M_r$ = {_with_unit(side.resisting_moment, 'N m')}" for side in sides]
+        slope = _slope(sides, symmetric=p.symmetric) if line else ""
+        zero = _vanishing(zeros, end, symmetric=p.symmetric) if line or min(zeros) <= end else ""
+        resisting = [f"$M_r$ = {_with_unit(start * factor, 'N m')}" for start in starts]
         corners = not p.symmetric or low  # where M_r is written; else with the rest
         if corners:
             _beside(right, resisting[0], starts[0], left=True)
@@ -102,6 +113,21 @@ def plot_moment_rotation_laws(
         at = 0.48 if low and not p.symmetric else None  # between the axis and the lower corner
         _note(right, "\n".join(filter(None, lines)), low=low, at=at)
     return figure
+
+
+def _push(p: RockingProperties, side: int, end: float) -> tuple[Array, Array]:
+    """Rotation |θ| and moment, positive, of a first push to one side, from lift-off on."""
+    push = base_path(p, np.array([side * end]))
+    return np.abs(push.rotation[1:]), side * push.moment[1:]
+
+
+def _first_zero(rotation: Array, moment: Array) -> float:
+    """Rotation at which the moment first vanishes; infinite if it does not."""
+    below = np.flatnonzero((moment[:-1] > 0.0) & (moment[1:] <= 0.0))[:1]
+    if not below.size:
+        return math.inf
+    k = int(below[0])
+    return float(rotation[k] + (rotation[k + 1] - rotation[k]) * moment[k] / (moment[k] - moment[k + 1]))
 
 
 def _slope(sides: tuple[Pivot, Pivot], *, symmetric: bool) -> str:

@@ -42,6 +42,18 @@ _STYLE: dict[Any, Any] = {
     "pdf.fonttype": 42,
     "svg.hashsalt": "rockflex",
 }
+_INK, _NIGHT = "#d7dbe0", "#14181d"
+_DARK: dict[Any, Any] = _STYLE | {
+    "axes.edgecolor": _INK,
+    "axes.facecolor": _NIGHT,
+    "axes.labelcolor": _INK,
+    "figure.facecolor": _NIGHT,
+    "grid.color": "#39414a",
+    "text.color": _INK,
+    "xtick.color": _INK,
+    "ytick.color": _INK,
+}
+THEMES = {"light": _STYLE, "dark": _DARK}
 _LOCK = RLock()
 
 
@@ -60,9 +72,9 @@ LOOKS = tuple(Look(color, dashes) for dashes in _DASHES for color in (PURPLE, OR
 
 
 @contextmanager
-def styled() -> Generator[None, None, None]:
+def styled(theme: str = "light") -> Generator[None, None, None]:
     """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time."""
-    with _LOCK, rc_context(_STYLE):
+    with _LOCK, rc_context(THEMES[theme]):
         yield
 
 

@@ -1,10 +1,13 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
+from rockflex.response._base_path import base_path
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._global import GLOBAL, asked_of
 from rockflex.response._history import History
+from rockflex.response._moment_rotation import MomentRotation
+from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
 from rockflex.response._respond import respond
 from rockflex.response._response import PEAKS, Response
 from rockflex.response._warnings import warnings_of
@@ -16,9 +19,14 @@ __all__ = [
     "EnergyLedger",
     "FloorPeaks",
     "History",
+    "MomentRotation",
     "Response",
     "asked_of",
+    "base_path",
+    "element_resistance",
     "friction_coefficient",
+    "large_resistance",
     "respond",
     "warnings_of",
+    "weight_resistance",
 ]

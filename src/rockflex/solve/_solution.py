@@ -23,7 +23,8 @@ class Solution:
     n_uplifts, n_impacts
         Number of uplifts and of impacts.
     final_state
-        The last state: [D.., D'.., θ, θ', ..] as in `rockflex.models.StateLayout`.
+        The last state: [D.., D'.., θ, θ', ..] as in `rockflex.models.StateLayout`. If the run has settled with the base
+        open, θ is the rotation that remains.
     states
         One row per state: time, side, ground acceleration, D (N), D' (N), θ, θ'. There are states before and after
         every jump. None if only peaks were requested.

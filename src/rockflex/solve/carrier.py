@@ -33,7 +33,7 @@ from rockflex.solve.layout import (
     Span,
     System,
 )
-from rockflex.solve.memory import load_in
+from rockflex.solve.memory import gather, load_in
 from rockflex.solve.peaks import raise_peak, raise_to
 
 
@@ -79,8 +79,8 @@ def exit_of_step(
     extend(flow, system.phases[p].side, span, room)
     row_poly(system, p, GUARD, span, room)
     if not math.isnan(at.lift):
-        # θ and θ' start exactly from zero, and θ'' exactly from the value given by the guard.
-        polys[GUARD, 0] = polys[GUARD, 1] = 0.0
+        # θ' starts exactly from zero, θ from zero or where it was held, and θ'' from the value given by the guard.
+        polys[GUARD, 0], polys[GUARD, 1] = motion.state[system.layout.rotation], 0.0
         polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
     return phase_exit(system, at, motion, polys)
 
@@ -126,7 +126,7 @@ def move(
 def move_by_series(system: System, at: Progress, span: Span, stop: float, log: Log, motion: Motion) -> None:
     """Move the motion to `stop` by its power series."""
     p = at.phase
-    if system.phases[p].side != 0.0:
+    if system.phases[p].free:
         raise_peak(motion.polys, GUARD, stop, span, log)
     advance(system, motion, stop, span.length)
     time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop
@@ -143,7 +143,7 @@ def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: flo
     """Move the motion to `stop` by the polynomials of the step."""
     p = at.phase
     side = system.phases[p].side
-    if side != 0.0:
+    if system.phases[p].free:
         raise_peak(room.polys, GUARD, stop, span, log)
         if flow.field.complete:
             raise_curves(system, flow, p, span, stop, log, room)
@@ -177,5 +177,8 @@ def turning_rate(system: System, steps: Integrator | None, phase: int, ground: f
             moment += system.border[phase, 0, LEVERAGE, i] * restoring
         return moment * system.base[phase, FLEXIBILITY, 0, 0]
     forget(steps.room)
-    field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0])
+    gather(system, phase, motion)
+    field_rates(
+        steps.flow.field, motion.pulls, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0]
+    )
     return steps.room.rates[0, system.layout.spin]

@@ -13,7 +13,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
-from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, NonlinearModel, Quantities, RockingModel, impact_of
+from rockflex.models import FREEDOMS, HEADER, LINEAR, VERTICAL, Key, NonlinearModel, Quantities, RockingModel, impact_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
@@ -135,9 +135,10 @@ class Engine:
         start = np.zeros(layout.size)
         if state is not None:
             start[: layout.core] = state
-        outward = float(start[layout.rotation] or start[layout.spin])
-        side = (outward > 0.0) - (outward < 0.0)
-        at = progress_at_start(self._place(side), stated=True)
+        key, start[layout.memory : layout.memory + layout.remembered] = self.model.begin(
+            float(start[layout.rotation]), float(start[layout.spin])
+        )
+        at = progress_at_start(self._place(key), stated=True)
         course = self._course(acceleration, dt, free_vibration)
         room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
         log = Log(
@@ -148,6 +149,8 @@ class Engine:
             np.zeros((room_for, HEADER + layout.size)),
         )
         log.peaks[-1] = -np.inf
+        if layout.remembered:
+            log.peaks[-2] = np.inf  # of the row of θ', whose peak nobody asks for
         left = math.inf if work_limit is None else work_limit
         motion, steps = None, None
         while True:
@@ -156,7 +159,7 @@ class Engine:
                 with preparing(self.model):
                     system = self._phases.system(dt, self.pace.fastest)
             motion = self._room(system, start, motion)
-            steps = steps or self._integrator(start, log, at)
+            steps = steps or self._integrator(motion, log, at)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
             status = self._carry(system, steps, course, at, log, motion)
@@ -178,9 +181,8 @@ class Engine:
         self._complain(status, at, dt, motion.state)
         return self._solution(status, at, dt, log, motion.state, history=history)
 
-    def _place(self, side: int) -> int:
+    def _place(self, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
-        key = self.model.start(side)
         if self._phases.knows(key):
             return self._phases.place(key)
         with preparing(self.model):
@@ -207,10 +209,11 @@ class Engine:
             series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))
         )
 
-    def _integrator(self, state: Array, log: Log, at: Progress) -> Integrator | None:
+    def _integrator(self, motion: Motion, log: Log, at: Progress) -> Integrator | None:
         if self._flow is None:
             return None
-        return Integrator(self._flow, stages_of(state, self.model.layout.moving, self._n_rows, log.work, at))
+        moving, rows = self.model.layout.core + 1, self._n_rows
+        return Integrator(self._flow, stages_of(motion.state, motion.pulls, moving, rows, log.work, at))
 
     def _carry(
         self, system: System, steps: Integrator | None, course: Course, at: Progress, log: Log, motion: Motion
@@ -272,10 +275,11 @@ def _flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) ->
     """Return the parameters of the integrated phases of a model."""
     own = VERTICAL if model.complete else LINEAR
     kinds = quantities.kinds if model.complete else np.full(len(quantities), LINEAR, dtype=np.int64)
+    turning = [LINEAR] * (model.layout.remembered > 0)  # the row of θ'
     return Flow(
         field=model.field(),
-        kinds=np.concatenate(([LINEAR], kinds, [own])).astype(np.int64),
-        levers=np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1, 2)))),
+        kinds=np.concatenate(([LINEAR], kinds, turning, [own])).astype(np.int64),
+        levers=np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1 + len(turning), 2)))),
         rest=model.properties.resting_reaction,
         scale=_scale(model),
         tolerance=tolerance,

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex.models import CHANGES, LANDS, OVERTURNS, Impact, kinetic_energy, may_pass, stick, strike
+from rockflex.models import CHANGES, LANDS, OVERTURNS, RELEASES, TURNS, Impact, kinetic_energy, may_pass, stick, strike
 from rockflex.solve.adaptive.check import nothing_hides
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.adaptive.step import FAILED, forget, step_over
@@ -43,7 +43,6 @@ BROKEN, CHATTER, GAINED, STALLED = (
     int(each) for each in (Status.BROKEN, Status.CHATTER, Status.GAINED, Status.STALLED)
 )
 
-TURNS = 4  # an event beside those of the guard: the rotation turns back while an element yields
 MOST_EVENTS = 20_000  # in one sample
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
 SNAP = 1e-10  # of a unit: an event this close to the end is handled at the start of the next unit
@@ -57,6 +56,14 @@ def enter(system: System, at: Progress, phase: int, motion: Motion) -> None:
     levels = system.phases[phase].levels
     at.place = min(int(at.begun / unit_of(system, levels)), (1 << levels) - 1)
     recollect(system, phase, motion)
+
+
+@inlined_kernel
+def set_off(system: System, steps: Integrator | None, at: Progress, bound: int, excess: float, motion: Motion) -> None:
+    """Continue with a base that begins to rotate because the moment exceeds a limit."""
+    enter(system, at, system.links[at.phase, FOLLOWS + bound], motion)
+    inertia = free_inertia(system, steps, at.phase, motion.state)
+    at.lift = (1.0 if bound == LOW else -1.0) * excess / inertia
 
 
 @kernel
@@ -134,14 +141,15 @@ def cross(
             at.lacking = lacks(system, at, event, bound, owner, impact)
             if at.lacking >= 0:
                 return LACKS_PHASE
-            if side != 0.0:
+            if system.phases[p].free:
                 log.tally[EVENTS] += 1
-                enter(system, at, system.links[p, BESIDE + 0], motion)
+                enter(system, at, system.links[p, TURNED if event == TURNS else BESIDE + 0], motion)
                 at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
             else:
-                enter(system, at, system.links[p, FOLLOWS + bound], motion)
-                inertia = free_inertia(system, steps, at.phase, motion.state)
-                at.onset, at.lift = LIFTED, system.phases[at.phase].side * excess / inertia
+                set_off(system, steps, at, bound, excess, motion)
+                at.onset = LIFTED
+                if event == RELEASES:
+                    keep(log, now, side, here, motion.state)
             at.fresh_rows = True
             if steps is not None:
                 forget(steps.room)
@@ -160,7 +168,8 @@ def cross(
             at.lacking = lacks(system, at, event, bound, owner, impact)
             if at.lacking >= 0:
                 return LACKS_PHASE
-        if at.onset >= LIFTED and not (event == CHANGES and stop == 0.0):
+        lifted = at.onset >= LIFTED and motion.state[system.layout.rotation] == 0.0
+        if lifted and not (event == CHANGES and stop == 0.0):
             log.tally[UPLIFTS] += 1
             log.tally[EVENTS] += 1
             keep(log, now, 0.0, here, motion.state)
@@ -180,15 +189,17 @@ def cross(
         here = sample.ground + sample.slope * at.begun
         now = min(sample.time + at.begun, sample.until)
         if event in (CHANGES, TURNS) and not turns:
-            keep(log, now, side, here, motion.state)
+            if at.onset == INSIDE:  # otherwise an uplift is yet to be recorded
+                keep(log, now, side, here, motion.state)
             log.tally[EVENTS] += 1
             if event == TURNS:
                 motion.state[system.layout.spin] = 0.0
                 remember(system, p, motion)
-                keep(log, now, side, here, motion.state)
                 enter(system, at, system.links[p, TURNED], motion)
             else:
+                remember(system, p, motion)
                 enter(system, at, int(system.links[p, CHANGED + int(owner)]), motion)
+            keep(log, now, side, here, motion.state)
             at.resume = 0.0
             at.fresh_rows = True
             if steps is not None:
@@ -202,8 +213,8 @@ def cross(
             motion.state[system.layout.rotation] = limit
             keep(log, now, side, here, motion.state)
             return OVERTURNED
-        motion.state[system.layout.rotation] = 0.0
         if event == LANDS:
+            motion.state[system.layout.rotation] = 0.0
             keep(log, now, side, here, motion.state)
             remember(system, p, motion)
             status, next_side = land(system, steps, impact, p, here, motion)
@@ -211,15 +222,15 @@ def cross(
                 return status
             log.tally[EVENTS] += 1
             log.tally[IMPACTS] += 1
-            keep(log, now, next_side, here, motion.state)
             enter(system, at, system.links[p, BESIDE + beside(next_side)], motion)
+            keep(log, now, next_side, here, motion.state)
             at.onset = PASSING if next_side != 0.0 else INSIDE
         else:
             motion.state[system.layout.spin] = 0.0
-            enter(system, at, system.links[p, FOLLOWS + bound], motion)
-            inertia = free_inertia(system, steps, at.phase, motion.state)
-            at.lift = system.phases[at.phase].side * excess / inertia
+            set_off(system, steps, at, bound, excess, motion)
             at.onset = LIFTED if excess > 0.0 else TOUCHED
+            if event == RELEASES:
+                keep(log, now, side, here, motion.state)
         at.resume = 0.0
         at.fresh_rows = True
         if steps is not None:

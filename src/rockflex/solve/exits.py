@@ -17,14 +17,14 @@ INSIDE, PASSING, LIFTED, TOUCHED = 0, 1, 2, 3
 def phase_exit(system: System, at: Progress, motion: Motion, polys: Array) -> tuple[float, int, float]:
     """Return where the guard first passes a limit, which limit, and by how much it then exceeds it.
 
-    The place is inf if no limit is passed. It is `BEFORE` if a moment in contact exceeds a limit from the start, or if
-    a rotation never left zero.
+    The place is inf if no limit is passed. It is `BEFORE` if the moment on a base at rest exceeds a limit from the
+    start, or if a rotation never left zero.
     """
     side, low, high = system.phases[at.phase].side, motion.limits[LOW], motion.limits[HIGH]
-    if side != 0.0:
+    if system.phases[at.phase].free:
         inner = LOW if side > 0.0 else HIGH
         if motion.owners[inner] < 0:
-            lands = landing(polys, side, at.onset)
+            lands = landing(polys, side, at.onset if motion.state[system.layout.rotation] == 0.0 else INSIDE)
             if lands < 0.0:
                 return BEFORE, inner, 0.0
         else:
@@ -92,12 +92,15 @@ def approach(polys: Array, side: float, limit: float) -> float:
 
 @kernel
 def turn_back(polys: Array, row: int, sign: float, zeros: int) -> float:
-    """Return the place where a velocity of a sign falls to zero; inf if it does not. `zeros` at 0 are divided out."""
+    """Return the place where a velocity of a sign falls to zero; inf if it does not, `BEFORE` if it never had the sign.
+
+    Its `zeros` at 0 are divided out.
+    """
     work, terms = polys.shape[0] - 1, polys.shape[1]
     for k in range(terms):
         polys[work, k] = sign * polys[row, k + zeros] if k + zeros < terms else 0.0
     if zeros > 0 and polys[work, 0] <= 0.0:
-        return np.inf
+        return BEFORE
     return first_descent(polys, work, 0.0, 1.0)
 
 

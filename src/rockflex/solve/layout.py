@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
-from rockflex.models import StateLayout
+from rockflex.models import SUMS, StateLayout
 
 Progress = Any  # a record of `_PROGRESS`
 
@@ -69,7 +69,9 @@ def _record(fields: list[tuple[str, Any]]) -> np.dtype[Any]:
 PHASE = _record(
     [
         ("side", np.float64),  # pivot about which the base rotates
-        ("turns", np.int64),  # sign of |θ|' while an element yields; 0 if none does
+        ("free", np.bool_),  # whether it rotates: it neither rests on the ground nor is held at a rotation
+        ("decays", np.bool_),  # whether free vibration comes to rest
+        ("turns", np.int64),  # sign of |θ|' while an element yields or slides; 0 if none does
         ("levels", np.int64),  # of the grid
         ("terms", np.int64),  # of the power series that converge over the finest step
         ("linear", np.bool_),  # solved in closed form
@@ -90,15 +92,18 @@ class System(NamedTuple):
     modes: Array  # (2, N): ω² and 2ζω
     phases: Any  # (P,): records of `PHASE`
     turning_row: int  # index of the row of θ', which guards elements that yield; -1 if no element can
+    chords: bool  # whether an element is stretched by 2 r sin(|θ|/2), rather than r |θ|
     links: NDArray[np.int64]  # (P, CHANGED + X): what follows each phase
-    limits: Array  # (P, 2, 1 + M): limits of the guard, and what each memory adds to them
-    changes: Array  # (P, X, 2): limits of |θ| at which an element changes its branch: place, and factor of its memory
+    limits: Array  # (P, 2, 2 + M): limits of the guard, and what the rotation and each memory add to them
+    changes: Array  # (P, X, 2): limits of δ/r at which an element changes its branch: place, and factor of its memory
     change_kinds: NDArray[np.int64]  # (P, X, 2): 1 if reached from below, 0 from above, -1 for none; memory's index
-    turnings: Array  # (P, M, 2): memory = arm |θ| - offset, of an element whose yielding ends; NaN for others
+    marks: Array  # (P, M): memories with a value of their own in a phase; NaN for others
+    turnings: Array  # (P, M, 2): memory = arm δ/r - offset, of an element whose yielding ends; NaN for others
     recall: Array  # (P, b, M): factors of the memories in the forces on the base
     border: Array  # (P, b, 2, N): c and m* c of `rockflex.models.Arrow`
     base: Array  # (P, 3, b, b): flexibility, damping and stiffness of the base
     push: Array  # (P, 2, b): constant forces on the base, and the factor of the ground acceleration
+    pulls: Array  # (P, 6, 1 + M): sums over the elements, and what the memories add: see `rockflex.models.pulls_of`
     # For the motion
     plain_rows: Array  # (P, F, C): the rows over the state, a and 1
     basis: Array  # (P, 2, S, S), S = 2 N + 2 b: from coordinates to states and back, both transposed
@@ -160,6 +165,7 @@ class Motion(NamedTuple):
     load: Array  # (b,): constant forces on the base
     still: Array  # (S,): constant part of the forced motion
     offset: Array  # (F,): constant part of the rows
+    pulls: Array  # (6,): sums over the elements
 
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.
@@ -235,6 +241,7 @@ def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> 
         load=np.zeros(freedoms),
         still=np.zeros(core),
         offset=np.zeros(rows),
+        pulls=np.zeros(SUMS),
     )
 
 

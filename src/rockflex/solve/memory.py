@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from rockflex._kernel import kernel
 from rockflex.solve.layout import (
     ARM,
@@ -26,10 +28,13 @@ ULP = 4e-16  # relative: how far such a limit is moved away, so that rounding do
 def recollect(system: System, phase: int, motion: Motion) -> None:
     """Set the limits and the constants of a phase that is entered in the present state."""
     first, count = system.layout.memory, system.layout.remembered
+    for m in range(count):
+        if not math.isnan(system.marks[phase, m]):
+            motion.state[first + m] = system.marks[phase, m]
     for bound in range(2):
         motion.limits[bound] = recalled(system, system.limits[phase, bound], motion.state)
         motion.owners[bound] = -1
-    if system.phases[phase].side != 0.0:
+    if system.phases[phase].free:
         nearest_changes(system, phase, motion)
     for k in range(motion.still.size):
         motion.still[k] = system.forced[phase, 2, k]
@@ -41,14 +46,26 @@ def recollect(system: System, phase: int, motion: Motion) -> None:
             motion.offset[f] += system.row_forcing[phase, f, 3 + m] * motion.state[first + m]
     for j in range(motion.load.size):
         motion.load[j] = load_in(system, phase, j, motion.state)
+    gather(system, phase, motion)
+
+
+@kernel
+def gather(system: System, phase: int, motion: Motion) -> None:
+    """Set the sums over the elements in a phase that is integrated."""
+    for k in range(motion.pulls.size):
+        motion.pulls[k] = system.pulls[phase, k, 0]
+        for m in range(system.layout.remembered):
+            motion.pulls[k] += system.pulls[phase, k, 1 + m] * motion.state[system.layout.memory + m]
 
 
 @kernel
 def recalled(system: System, factors: Array, state: Array) -> float:
-    """Return a constant and what the memories add to it."""
+    """Return a limit with what the rotation and the memories add to it."""
     value = factors[0]
+    if factors[1] != 0.0:
+        value += factors[1] * state[system.layout.rotation]
     for m in range(system.layout.remembered):
-        value += factors[1 + m] * state[system.layout.memory + m]
+        value += factors[2 + m] * state[system.layout.memory + m]
     return value
 
 
@@ -72,7 +89,7 @@ def nearest_changes(system: System, phase: int, motion: Motion) -> None:
             continue
         memory = motion.state[system.layout.memory + system.change_kinds[phase, x, MEMORY]]
         place, recall = system.changes[phase, x, PLACE], system.changes[phase, x, RECALL]
-        limit, rounding = place + recall * memory, CLOSE * (abs(place) + abs(recall * memory))
+        limit, rounding = turned(system, place + recall * memory), CLOSE * (abs(place) + abs(recall * memory))
         if kind == 0 and limit <= rounding:
             continue  # the base lands first, or at the same instant
         if abs(limit - size) <= rounding:
@@ -84,10 +101,19 @@ def nearest_changes(system: System, phase: int, motion: Motion) -> None:
 
 
 @kernel
+def turned(system: System, stretch: float) -> float:
+    """Return |θ| at which elements are stretched by `stretch` per unit distance from the pivot."""
+    if not system.chords:
+        return stretch
+    return 2.0 * math.asin(max(0.5 * stretch, -1.0)) if stretch < 2.0 else np.inf
+
+
+@kernel
 def remember(system: System, phase: int, motion: Motion) -> None:
     """Set the memories of the elements whose yielding ends at the present rotation."""
     size = abs(motion.state[system.layout.rotation])
+    stretch = 2.0 * math.sin(0.5 * size) if system.chords else size
     for m in range(system.layout.remembered):
         arm = system.turnings[phase, m, ARM]
         if not math.isnan(arm):
-            motion.state[system.layout.memory + m] = arm * size - system.turnings[phase, m, OFFSET]
+            motion.state[system.layout.memory + m] = arm * stretch - system.turnings[phase, m, OFFSET]

@@ -25,9 +25,9 @@ def raise_row(row: int, value: float, time: float, log: Log) -> None:
 
 
 @kernel
-def raise_peaks(values: Array, side: float, time: float, log: Log) -> None:
+def raise_peaks(values: Array, free: bool, time: float, log: Log) -> None:
     """Update the peaks with the values at the end of a step without hidden peaks."""
-    for f in range(0 if side != 0.0 else 1, values.size):
+    for f in range(0 if free else 1, values.size):
         raise_row(f, values[f], time, log)
 
 
@@ -77,5 +77,5 @@ def raise_to(system: System, phase: int, row: int, ground: float, time: float, l
 @kernel
 def raise_to_state(system: System, phase: int, ground: float, time: float, log: Log, motion: Motion) -> None:
     """Update all peaks with the present state."""
-    for f in range(GUARD if system.phases[phase].side != 0.0 else 1, log.peaks.size):
+    for f in range(GUARD if system.phases[phase].free else 1, log.peaks.size):
         raise_to(system, phase, f, ground, time, log, motion)

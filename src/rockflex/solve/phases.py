@@ -81,10 +81,10 @@ class CompiledPhases:
         """
         known = self._phases[phase]
         if lacking < FOLLOWING:
-            self.place(self._beside(known, lacking))
+            self.place(known.beside[lacking])
             return
         if lacking >= TURNING:
-            self.place(self._turned(known) if lacking == TURNING else known.changes[lacking - TURNING - 1].key)
+            self.place(known.turned if lacking == TURNING else known.changes[lacking - TURNING - 1].key)
             return
         for leads in (known.guard.below, known.guard.above):
             if leads is not None:
@@ -151,19 +151,11 @@ class CompiledPhases:
         links = np.full((capacity, CHANGED + self._model.most_changes), -1, dtype=np.int64)
         for p, phase in enumerate(self._phases):
             for place in range(3):
-                links[p, BESIDE + place] = self._places.get(self._beside(phase, place), -1)
+                links[p, BESIDE + place] = self._places.get(phase.beside[place], -1)
             for bound, leads in enumerate((phase.guard.below, phase.guard.above)):
                 if leads is not None:
                     links[p, EVENT + bound], links[p, FOLLOWS + bound] = leads.event, self._places.get(leads.key, -1)
-            links[p, TURNED] = self._places.get(self._turned(phase), -1)
+            links[p, TURNED] = self._places.get(phase.turned, -1)
             for x, change in enumerate(phase.changes):
                 links[p, CHANGED + x] = self._places.get(change.key, -1)
         return links
-
-    def _beside(self, phase: Phase, place: int) -> Key:
-        """Return the branches after a landing, with the base in contact, on its right pivot or on its left one."""
-        return ((0, 1, -1)[place], *phase.landed)
-
-    def _turned(self, phase: Phase) -> Key:
-        """Return the branches after the rotation has turned back."""
-        return (phase.side, *phase.landed)

@@ -9,10 +9,10 @@ import math
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel, python_kernel
-from rockflex.models import Impact
+from rockflex.models import Impact, field_rates
 from rockflex.solve.adaptive.curves import values_of_rows
-from rockflex.solve.adaptive.layout import TOLD, Integrator
-from rockflex.solve.adaptive.step import forget
+from rockflex.solve.adaptive.layout import TOLD, Flow, Integrator, Stages
+from rockflex.solve.adaptive.step import choose_branch, forget
 from rockflex.solve.adaptive.steps import step_through
 from rockflex.solve.events import CROSSED, PAUSED
 from rockflex.solve.exact.march import march, to_coordinates, to_state
@@ -42,6 +42,8 @@ from rockflex.solve.status import Status
 ENDED, SETTLED, UNSETTLED = int(Status.ENDED), int(Status.SETTLED), int(Status.UNSETTLED)
 
 BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: start of a stretch; whole samples; closer look at one sample
+STILL = 1e-13  # relative deviation of a row from its constant that is rounding
+CALM = 1e-8  # 1/s: of the largest value so far, the rate of one that is at rest
 BLOCK = 4096  # largest number of samples advanced at once
 
 
@@ -103,32 +105,69 @@ def begin_piece(
         at.slope = 0.0
         to_coordinates(system, at, ground, motion)
         at.tuned = True
-        if at.offset > 0 and course.settle and side == 0.0 and settled(system, at, log, motion):
+        if at.offset > 0 and course.settle and settled(system, at, log, motion):
+            if system.phases[at.phase].free:
+                motion.state[system.layout.rotation] = motion.offset[GUARD]
             return True
+    elif steps is not None and at.offset > 0 and course.settle and still(system, steps.flow, at, steps.room):
+        return True
     if ground != at.last:  # the start, or a jump of the acceleration at the end of the record
         keep(log, time, side, ground, motion.state)
+        raise_row(GUARD, motion.state[system.layout.rotation], time, log)
         if steps is None:
             raise_to_state(system, at.phase, ground, time, log, motion)
         else:
             forget(steps.room)
             values_of_rows(system, steps.flow, at.phase, ground, steps.room)
-            for f in range(GUARD if side != 0.0 else 1, log.peaks.size):
+            for f in range(GUARD if system.phases[at.phase].free else 1, log.peaks.size):
                 raise_row(f, steps.room.rows[TOLD, f], time, log)
     return False
 
 
 @kernel
 def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
-    """Return True if free vibration in contact can neither lift the base again nor increase a peak."""
+    """Return True if free vibration can neither end the phase nor increase a peak: every row stays near a constant.
+
+    The base then stays in contact, or open by a rotation that remains. A row whose deviation from its constant is below
+    rounding has settled, too: a base that creeps back has no later peak.
+    """
     p, pairs = at.phase, motion.norms.size
+    if not system.phases[p].decays:
+        return False
+    moving = pairs if system.phases[p].free else system.layout.modes
+    place = 0.0
     for f in range(log.peaks.size):
-        bound = 0.0
-        for k in range(pairs):
+        rest, stray = motion.offset[f], 0.0
+        for k in range(moving):
             size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
-            bound += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
-        if bound > (min(motion.limits[HIGH], -motion.limits[LOW]) if f == GUARD else log.peaks[f]):
+            stray += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
+        for k in range(moving, pairs):  # of a base that is held
+            rest += system.rows[p, VALUES, f, k] * motion.w[NOW, k]
+        if f == GUARD:
+            place = abs(rest)
+            if rest - stray < motion.limits[LOW] or rest + stray > motion.limits[HIGH]:
+                return False
+        if f == GUARD and not system.phases[p].free:
+            continue
+        if f == system.turning_row:
+            if system.phases[p].turns != 0 and stray > STILL * place:
+                return False
+        elif (rest if f == log.peaks.size - 1 else abs(rest)) + stray > log.peaks[f] and stray > STILL * abs(rest):
             return False
     return True
+
+
+@kernel
+def still(system: System, flow: Flow, at: Progress, room: Stages) -> bool:
+    """Return True if free vibration of an integrated phase has come to rest: its rates are tiny next to its largest."""
+    if flow.field.hysteretic:
+        choose_branch(flow, system.phases[at.phase].side, 0.0, room)
+    field_rates(flow.field, room.pulls, system.phases[at.phase].side, room.at.branch, 0.0, room.motion, room.rates[0])
+    forget(room)
+    worst = 0.0
+    for i in range(room.size.size):
+        worst = max(worst, abs(room.rates[0, i]) - CALM * room.size[i])
+    return worst <= 0.0
 
 
 @inlined_kernel

@@ -67,7 +67,7 @@ def cross_sample(
                 at.begun, at.stated, at.tuned = unit * at.place, True, False
                 start_crossing(at, False)
                 continue
-            raise_peaks(motion.values[FINAL], system.phases[p].side, now + unit * stride, log)
+            raise_peaks(motion.values[FINAL], system.phases[p].free, now + unit * stride, log)
         if at.finding == PEAK and not survey(system, at, step, log, motion):
             return PAUSED
         for k in range(motion.w.shape[1]):

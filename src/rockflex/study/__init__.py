@@ -5,6 +5,7 @@ from rockflex.study._case import Case
 from rockflex.study._frequency_ratios import frequency_ratios
 from rockflex.study._initial import InitialState
 from rockflex.study._modal_combination import CombinedPeaks, SecondMode, modal_combination
+from rockflex.study._moment_rotation import moment_rotation
 from rockflex.study._overturning import OverturningScales, overturning_scales, overturning_spectrum
 from rockflex.study._rocking_spectrum import rocking_spectrum
 from rockflex.study._simulate import simulate
@@ -20,6 +21,7 @@ __all__ = [
     "SecondMode",
     "frequency_ratios",
     "modal_combination",
+    "moment_rotation",
     "overturning_scales",
     "overturning_spectrum",
     "properties_of",

@@ -27,7 +27,7 @@ from rockflex.web._forms import forms
 from rockflex.web._headers import Headers
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limit_states import limit_states
-from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, RUNS
+from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, MOST_ELEMENTS, RUNS
 from rockflex.web._measures import measures
 from rockflex.web._pages import PAGES
 from rockflex.web._presets import PRESETS
@@ -126,8 +126,8 @@ class Server:
     async def response(self, request: Request) -> Response:
         """Response tab."""
         state, content = await question_of(request)
-        focus = content.get("focus")
-        return JSONResponse(await self._run(request, lambda: response_view(state, self.uploads, focus)))
+        asked = content.get("focus"), content.get("element")
+        return JSONResponse(await self._run(request, lambda: response_view(state, self.uploads, *asked)))
 
     async def upload(self, request: Request) -> Response:
         """A record from an uploaded file; its name and unit are in the query."""
@@ -243,7 +243,14 @@ async def _page(_: Request) -> Response:
 def _about() -> dict[str, Any]:
     usual = ("amplitude", "period")
     pulses = {name: {"title": each.title, "fields": (*usual, *each.fields)} for name, each in PULSES.items()}
-    limits = {"file": FILE, "freedoms": FREEDOMS, "duration": DURATION, "models": MODELS, "runs": RUNS}
+    limits = {
+        "file": FILE,
+        "freedoms": FREEDOMS,
+        "duration": DURATION,
+        "models": MODELS,
+        "runs": RUNS,
+        "elements": MOST_ELEMENTS,
+    }
     first = State.model_validate({"structure": PRESETS[0]["structure"]})
     return forms() | {
         "suites": suites(),

@@ -42,7 +42,7 @@ def design_study(state: State) -> DesignStudy:
         raise Refusal({"design.widest": message})
     widths = np.linspace(choice.narrowest, choice.widest, choice.widths) * present.half_width
     levels: list[dict[str, Any]] = []
-    if not present.tendons:  # else the structure keeps its own tendons
+    if not present.elements:  # else the structure keeps its own, which levels of tendons would replace
         for force in dict.fromkeys(choice.tendons):
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0

@@ -12,6 +12,7 @@ import tomli_w
 
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
+from rockflex.response import Response
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
 from rockflex.web._records import motion_of
@@ -121,8 +122,21 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
     heads = {name: f"{name} ({unit})" if unit else name for name, unit in COLUMNS.items()}
     # The total displacement is missing where the height of the top is not known.
     columns = ({head: getattr(each, name, math.nan) for name, head in heads.items()} for each in found)
-    tables = [pd.DataFrame({"model": each.model, **part}) for each, part in zip(found, columns, strict=True)]
+    tables = [
+        pd.DataFrame({"model": each.model, **part, **_of_elements(each)})
+        for each, part in zip(found, columns, strict=True)
+    ]
     return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
+
+
+def _of_elements(response: Response) -> dict[str, Any]:
+    """Return the histories of the elements between the base and the ground as columns, counted from one."""
+    columns: dict[str, Any] = {}
+    parts = zip(response.element_elongation.T, response.element_force.T, strict=True)
+    for place, (elongation, force) in enumerate(parts, start=1):
+        columns[f"element_{place}_elongation (m)"] = elongation
+        columns[f"element_{place}_force (N)"] = force
+    return columns
 
 
 def _record(state: State, uploads: Uploads) -> tuple[str, str]:

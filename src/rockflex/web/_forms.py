@@ -7,18 +7,18 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from rockflex._json import plain
-from rockflex.structure.file import KINDS, StructureEntry, Table, TendonTable, inner_table, key_of, parts
+from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, Table, inner_table, key_of, parts
 from rockflex.study.assumed import BoucWenTable
 from rockflex.web._presets import PRESETS
 
 
 def forms() -> dict[str, Any]:
-    """Return the fields of every kind of structure, its base, a tendon and a hysteresis, and the presets."""
+    """Return the fields of every kind of structure and of element, the base and a hysteresis, and the presets."""
     return plain(
         {
             "kinds": {name: {"title": table.title, "fields": _fields(table)} for name, table in KINDS.items()},
             "eccentricity": _field("eccentricity", StructureEntry.model_fields["eccentricity"]),
-            "tendon": _fields(TendonTable),
+            "elements": {name: {"title": table.title, "fields": _fields(table)} for name, table in ELEMENTS.items()},
             "bouc_wen": _fields(BoucWenTable),
             "presets": PRESETS,
         }
@@ -26,7 +26,7 @@ def forms() -> dict[str, Any]:
 
 
 def _fields(table: type[Table]) -> list[dict[str, Any]]:
-    return [_field(name, field) for name, field in table.model_fields.items()]
+    return [_field(name, field) for name, field in table.model_fields.items() if name != "kind"]  # chosen in a list
 
 
 def _field(name: str, field: FieldInfo) -> dict[str, Any]:

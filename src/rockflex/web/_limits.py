@@ -10,7 +10,7 @@ from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.solve import Task
-from rockflex.structure.file import Table, inner_table, key_of, parts
+from rockflex.structure.file import ELEMENTS, ElementTable, Table, inner_table, key_of, parts
 from rockflex.study import Case
 from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._refusal import Refusal, refusing
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 FILE = 5_000_000  # bytes of an upload
 BODY = 6_000_000  # bytes of any request
 FREEDOMS = 200  # stories, masses, rows of a matrix
+MOST_ELEMENTS = 20  # between the base and the ground: each can change its branch at every turn of the base
 SAMPLES = 200_000
 DURATION = 300.0  # s of a record
 MODELS = 4  # at once
@@ -50,7 +51,7 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
             if field is None or not _takes_text(field):
                 errors[place] = "it must be numbers, not the name of a file: import the file instead."
         elif isinstance(each, list):
-            errors[place] = f"it holds {len(each)} values, but the page takes {FREEDOMS} at most."
+            errors[place] = f"it holds {len(each)} values, but the page takes {_most(each)} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
             key = Key("") if field is None else key_of(field)
             low, high = (-LARGEST if key.low is None else key.low), (LARGEST if key.high is None else key.high)
@@ -60,9 +61,10 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
 
 
 def _takes_text(field: FieldInfo) -> bool:
-    """Tell whether a field holds a word or a name; one that may hold numbers takes text as the path of a file."""
+    """Tell whether a field holds a word, a name or a table; one for numbers takes text as the path of a file."""
     kinds = parts(field.annotation)
-    return kinds == [str] or any(get_origin(kind) is Literal for kind in kinds)
+    words = kinds == [str] or any(get_origin(kind) is Literal for kind in kinds)
+    return words or inner_table(field.annotation) is not None
 
 
 def _leaves(
@@ -70,6 +72,8 @@ def _leaves(
 ) -> Iterator[tuple[str, FieldInfo | None, Any]]:
     """Yield every number and text with its field, and every list that is too long."""
     if isinstance(value, Mapping):
+        if table is not None and issubclass(table, ElementTable):
+            table = ELEMENTS.get(str(value.get("kind")), table)
         for key, each in value.items():
             if str(key).isdigit():  # the heights of degrees of freedom by their indices
                 yield from _leaves(path, each, None, field)
@@ -78,13 +82,18 @@ def _leaves(
                 below = None if inner is None else inner_table(inner.annotation)
                 yield from _leaves(f"{path}.{key}", each, below, inner)
     elif isinstance(value, list | tuple):
-        if len(value) > FREEDOMS:
+        if value and len(value) > _most(value):
             yield path, field, list(value)
             return
         for place, each in enumerate(value):
             yield from _leaves(f"{path}.{place}" if isinstance(each, Mapping) else path, each, table, field)
     elif value is not None:
         yield path, field, value
+
+
+def _most(values: Sequence[Any]) -> int:
+    """Return how many values or tables a list may have."""
+    return MOST_ELEMENTS if isinstance(values[0], Mapping) else FREEDOMS
 
 
 def check_motion(motion: GroundMotion, path: str) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import RockingProperties
@@ -14,6 +15,7 @@ from rockflex.response import History, Response
 from rockflex.solve import pace_of
 from rockflex.study import Case
 from rockflex.study._yielding import labelled_hysteresis
+from rockflex.web._elements import chosen_element, elements_view, self_centring
 from rockflex.web._limits import STOP, check_together
 from rockflex.web._packing import envelope, pack
 from rockflex.web._records import motion_of
@@ -52,18 +54,26 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     return built, motion, found
 
 
-def response_view(state: State, uploads: Uploads, focus: object = "") -> dict[str, Any]:
-    """Return histories, events and peaks of all models; the energy of the one named `focus`, or of the first."""
+def response_view(state: State, uploads: Uploads, focus: object = "", element: object = 0) -> dict[str, Any]:
+    """Return histories, events and peaks of all models, and the loop of one element.
+
+    The energies and the elements are those of the model named `focus`, or of the first; elements of the first that
+    lifts if that one does not.
+    """
     built, motion, found = responses(state, uploads)
     main = next((r for r in found if r.model == focus), found[0])
     p = built.properties
+    drawn = chosen_element(element, p)
     return plain(
         {
             **outline(state.structure, built),
             "motion": motion.name,
             "duration": motion.duration,
             "nominal": p.nominal_overturning_rotation,
-            "models": [_curves(built, response) for response in found],
+            "models": [_curves(built, response, drawn) for response in found],
+            "element": drawn,
+            "held": _held(p, motion, main, found, state),
+            "self_centring": self_centring(p.pivots),
             "suggested_yield": _suggested_yield(p, motion),
             "energy": _energy(motion, main, state),
         }
@@ -80,10 +90,11 @@ def _suggested_yield(p: RockingProperties, motion: GroundMotion) -> float | None
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
 
 
-def _curves(built: Built, response: Response) -> dict[str, Any]:
+def _curves(built: Built, response: Response, element: int | None) -> dict[str, Any]:
     history = response.history
     assert history is not None  # asked for in `responses`
-    kept = _kept(history)
+    pulled = None if element is None or not history.model.lifts else history.element_force[:, element]
+    kept = _kept(history, pulled)
     modal = history.modal_displacement[kept]
     points = modal @ built.shapes[:, : modal.shape[1]].T
     known = history.model.properties.top_height is not None
@@ -100,15 +111,24 @@ def _curves(built: Built, response: Response) -> dict[str, Any]:
         **{name: pack(getattr(history, name)[kept]) for name in SENT},
         "total_top_displacement": pack(history.total_top_displacement[kept]) if known else None,
         "points": pack(points),
+        "element_force": None if pulled is None else pack(pulled[kept]),
+        "element_elongation": None if pulled is None else pack(history.element_elongation[kept, element]),
     }
 
 
-def _kept(history: History) -> NDArray[np.intp]:
-    """Return the nodes that are sent: the extremes of every interval, and both sides of the events."""
+def _kept(history: History, pulled: Array | None) -> NDArray[np.intp]:
+    """Return the nodes that are sent: the extremes of every interval, and both sides of the events.
+
+    `pulled` is the force of an element in N, if one is drawn.
+    """
     curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear]
+    points = POINTS
+    if pulled is not None:  # loops need more points than curves over time
+        curves.append(pulled)
+        points *= 2
     if history.model.properties.top_height is not None:
         curves.append(history.total_top_displacement)
-    kept = envelope(curves, POINTS)
+    kept = envelope(curves, points)
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: EVENTS // 2]
     return np.unique(np.concatenate((kept, events, events + 1)))
 
@@ -123,11 +143,27 @@ def _fall_time(history: History) -> float | None:
     return float(history.time[inside[-1] + 1])
 
 
+def _held(
+    p: RockingProperties, motion: GroundMotion, main: Response, found: list[Response], state: State
+) -> dict[str, Any] | None:
+    """Return the peaks of the elements in the model `main`, or in the first that lifts; None if nothing is held."""
+    shown = next((r for r in (main, *found) if r.history is not None and r.history.model.lifts), None)
+    if not p.elements or shown is None:
+        return None
+    try:
+        check_energy(shown, motion, state)
+        return elements_view(p, shown, energies=True)
+    except (Refusal, InputError):
+        return elements_view(p, shown, energies=False)
+
+
 def check_energy(response: Response, motion: GroundMotion, state: State) -> None:
     """Refuse energies that would take too long to compute."""
     assert response.history is not None  # asked for in `responses`
+    model = response.history.model
     samples = motion.acceleration.size + state.free_vibration / motion.dt
-    if pace_of(response.history.model, 1).energy(samples, motion.dt) > LEDGER:
+    work = pace_of(model, 1).energy(samples, motion.dt) * (1.0 + 0.5 * len(model.elements))  # more branches to follow
+    if work > LEDGER:
         message = "the energy is not computed here for so many or such fast modes over so long a time."
         raise Refusal({"energy": message})
 
@@ -142,8 +178,12 @@ def _energy(motion: GroundMotion, response: Response, state: State) -> dict[str,
     except (Refusal, InputError) as error:
         said = error.errors["energy"].capitalize() if isinstance(error, Refusal) else str(error)
         return {"label": response.model, "note": said}
-    names = ("kinetic", "strain", "gravity", "tendons", "damped", "yielded", "lost", "input")
+    names = ("kinetic", "strain", "gravity", "element_strain", "damped", "yielded", "lost", "input")
     curves = {name: np.asarray(getattr(ledger, name)) for name in names}
+    curves["elements"] = ledger.elements.sum(axis=1)
+    held = -min(float(ledger.element_strain.min()), 0.0)  # at t = 0, and given back later
+    curves["element_strain"] = curves["element_strain"] + held
+    curves["input"] = curves["input"] + held
     kept = envelope([curves["kinetic"], curves["strain"]], 1000)
     kept = np.unique(np.concatenate((kept, np.flatnonzero(np.diff(ledger.lost) != 0.0)[:EVENTS] + 1)))
     return {

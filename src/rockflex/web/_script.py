@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rockflex.fragility import NOMINAL, ROCKING
-from rockflex.modal import Tendon
+from rockflex.modal import BaseElement
 from rockflex.structure import LumpedMasses
 from rockflex.structure.file import StructureEntry
 from rockflex.study._yielding import yielding
@@ -40,6 +40,7 @@ def response_script(state: State, upload_name: str = "record") -> str:
             '    print(f"  largest base moment {response.max_base_moment:.6g} N m")',
             '    print(f"  largest base shear {response.max_base_shear:.6g} N")',
             '    print(f"  the ground must hold {response.max_horizontal_reaction:.6g} N across")',
+            *_element_lines(state),
             "    for warning in response.warnings:",
             '        print(f"  {warning}")',
             'rf.save_figure(rf.plot_history(responses.values()), "response.svg")',
@@ -93,6 +94,18 @@ def record_file(upload_name: str) -> str:
     return f"{upload_name}.csv"
 
 
+def _element_lines(state: State) -> list[str]:
+    """Return lines about the elements between the base and the ground; none without them."""
+    if not state.structure.elements:
+        return []
+    return [
+        '    print(f"  the base is left at {response.residual_rotation:.6g} rad")',
+        '    print("  largest forces of its elements in N:", response.max_element_force)',
+        '    print("  largest elongations in m:", response.max_element_elongation)',
+        '    print("  dissipated energies in J:", response.element_energy)',
+    ]
+
+
 def _law(state: State) -> str:
     """The argument for an impact law; empty if each model has its own."""
     return "" if state.impact is None else f", impact=rf.{state.law()!r}"
@@ -117,11 +130,11 @@ def _motions(suites: Sequence[str]) -> str:
 def _structure(entry: StructureEntry) -> list[str]:
     given: Any = entry.table
     lines = [f"structure = {_call(type(given).makes.__name__, given.arguments(''))}"]
-    tendons = [Tendon(**each.model_dump()) for each in entry.tendons]
-    based = {name: value for name, value in (("eccentricity", entry.eccentricity), ("tendons", tendons)) if value}
+    elements = [each.element() for each in entry.elements or []]
+    based = {name: value for name, value in (("eccentricity", entry.eccentricity), ("elements", elements)) if value}
     if based and entry.kind in ("properties", "block"):
         return [*lines, "from dataclasses import replace", f"structure = replace(structure, {_named(based)})"]
-    wraps = {"eccentricity": "Eccentric", "tendons": "Restrained"}
+    wraps = {"eccentricity": "Eccentric", "elements": "Restrained"}
     return lines + [f"structure = rf.{wraps[name]}(structure, {_literal(value)})" for name, value in based.items()]
 
 
@@ -152,7 +165,7 @@ def _named(values: Mapping[str, Any]) -> str:
 def _literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return _literal(value.tolist())
-    if isinstance(value, LumpedMasses | Tendon):
+    if isinstance(value, LumpedMasses | BaseElement):
         return _call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key!r}: {_literal(each)}' for key, each in value.items())}}}"

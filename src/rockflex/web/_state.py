@@ -143,6 +143,7 @@ def parse_state(content: Any) -> State:
     try:
         if _size(content) > NODES:
             raise Refusal(f"The link holds more than {NODES} values, which is more than the page takes.", 413)
+        content = _with_elements(content)
         state = State.model_validate(_infinite(content))
     except ValidationError as error:
         structure = _infinite(content.get("structure"))
@@ -194,6 +195,20 @@ def _size(value: Any) -> int:
     return 1 + sum(map(_size, value)) if isinstance(value, list) else 1
 
 
+def _with_elements(content: dict[str, Any]) -> dict[str, Any]:
+    """Return a state whose tendons are among its elements; older links have a list of them."""
+    structure = content.get("structure")
+    if not isinstance(structure, dict) or not isinstance(structure.get("tendons"), list):
+        return content
+    rest = {key: value for key, value in structure.items() if key != "tendons"}
+    tendons = [{"kind": "tendon", **each} if isinstance(each, dict) else each for each in structure["tendons"]]
+    others = structure.get("elements")
+    if others is None or isinstance(others, list):
+        elements = [*tendons, *(others or [])]
+        rest |= {"elements": elements} if elements else {}
+    return content | {"structure": rest}
+
+
 def _infinite(value: Any) -> Any:
     """Replace "inf" by the number, which JSON cannot write."""
     if isinstance(value, dict):
@@ -211,7 +226,7 @@ def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]
         wanted = "something else" if spot.field is None else expected(spot.field)
         if problem["type"] == "extra_forbidden":
             said = "it is not known here."
-        elif problem["type"] == "missing":
+        elif problem["type"] in ("missing", "union_tag_not_found"):
             said = f"it is missing: {wanted}."
         elif problem["type"] == "value_error":
             said = str(problem.get("ctx", {}).get("error", problem["msg"]))

@@ -17,6 +17,7 @@ from rockflex.web._refusal import Refusal, refusing
 
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
+CENTRING = "moment of weight and prestress over that of the dissipators; above 1 the base closes by itself"
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +121,7 @@ def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
         "shapes_known": built.modes is not None,
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,
-        "tendons": [tendon.position for tendon in p.tendons],
+        "elements": [{"kind": table.kind, "position": table.position} for table in entry.elements or []],
     }
 
 
@@ -161,6 +162,7 @@ def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, 
         ("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
         ("a_lift", lifting, "m/s²", "slow ground acceleration that lifts the base"),
         ("α", alpha, "rad", "rotation beyond which it does not return to the upright position"),
+        *([("λ", pivot.recentring_ratio, "", CENTRING)] if pivot.dissipator_moment > 0.0 else []),
         ("θ_nom", nominal, "rad", limit),
     ]
     return [
@@ -198,4 +200,5 @@ def _place(entry: StructureEntry, name: str | None) -> str:
     """Return the path of a field of the form, or of the whole form if it has no such field."""
     if name in type(entry.table).model_fields:
         return f"structure.{entry.kind}.{name}"
-    return f"structure.{name}" if name in type(entry).model_fields else "structure"
+    own = name is not None and name.partition(".")[0] in type(entry).model_fields
+    return f"structure.{name}" if own else "structure"

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from rockflex.motion import MEASURES
 from rockflex.study._yielding import yielding
@@ -69,7 +69,7 @@ def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
         If they cannot be prepared, are too many for the page, or take too long.
     """
     with refusing(path):
-        plan = study.plan()
+        plan = cast("CloudPlan", study.plan())  # the page has no design study with a search
     plan.bench = plan.bench.limited(RUN)
     check_runs(plan, path)
     return plan

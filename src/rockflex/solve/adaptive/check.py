@@ -6,12 +6,21 @@ hundredths of the curvature of the cubic (for a harmonic of ω: (ωh)²/48); a f
 """
 
 from rockflex._arrays import Array
-from rockflex._kernel import inlined_kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
 from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System
 from rockflex.solve.peaks import raise_peaks, size_of
+
+
+@kernel
+def turn_hides(system: System, phase: int, step: float, room: Stages) -> bool:
+    """Return whether the rotation may turn back inside the step, which ends the yielding of elements."""
+    spin, sign = system.layout.spin, system.phases[phase].turns * system.phases[phase].side
+    first, last = sign * room.motion[spin], sign * room.vectors[TRIAL, spin]
+    before, after = sign * room.rates[0, spin], sign * room.rates[LAST, spin]
+    return stretch(first, last, step * before, step * after)[0] <= 0.0
 
 
 @inlined_kernel
@@ -29,6 +38,8 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
         and flow.field.complete
         and curves_hide(system, flow, phase, span, room.vectors[TRIAL], room.rates[LAST], log, room)
     ):
+        return False
+    if system.phases[phase].turns != 0 and turn_hides(system, phase, step, room):
         return False
     low_limit, high_limit = limits[LOW], limits[HIGH]
     for f in range(log.peaks.size):
@@ -49,7 +60,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
             # Peaks at the ends are known; they are recorded below.
             known = max(log.peaks[f], max(size_of(first, f, log), size_of(last, f, log)))
             hidden = max(size_of(high, f, log), size_of(low, f, log)) > known
-        elif side == 0.0:
+        elif not system.phases[phase].free:
             hidden = low < low_limit or high > high_limit
         else:
             hidden = min(low, first) <= low_limit or max(high, first) >= high_limit
@@ -57,5 +68,5 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
         if hidden:
             return False
         room.rows[AT_ENDS, f] = last
-    raise_peaks(room.rows[AT_ENDS], side, span.time + step, log)
+    raise_peaks(room.rows[AT_ENDS], system.phases[phase].free, span.time + step, log)
     return True

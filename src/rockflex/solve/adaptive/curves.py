@@ -43,11 +43,18 @@ def is_curved(flow: Flow, f: int, side: float) -> bool:
 
 @inlined_kernel
 def tell(
-    system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array
+    system: System,
+    flow: Flow,
+    phase: int,
+    acceleration: float,
+    motion: Array,
+    rates: Array,
+    values: Array,
+    room: Stages,
 ) -> None:
     """Compute the values of the curved rows; the last one is the loss of support, as in `Log`."""
     n, last, side = flow.field.modes.shape[1], system.plain_rows.shape[2] - 2, system.phases[phase].side
-    posture = posture_of(flow.field, side, acceleration, motion, rates)
+    posture = posture_of(flow.field, room.pulls, side, acceleration, motion, rates)
     for f in range(1, values.size):
         kind = flow.kinds[f]
         if kind == LINEAR:
@@ -88,9 +95,9 @@ def curves_hide(
     """
     there = span.ground + span.slope * span.length
     if not room.at.told:
-        tell(system, flow, phase, span.ground, room.motion, room.rates[0], room.rows[AT_STARTS])
+        tell(system, flow, phase, span.ground, room.motion, room.rates[0], room.rows[AT_STARTS], room)
     room.at.told = True
-    tell(system, flow, phase, there, end, end_rates, room.rows[AT_ENDS])
+    tell(system, flow, phase, there, end, end_rates, room.rows[AT_ENDS], room)
     near = False
     for f in range(1, log.peaks.size):
         room.doubt[f] = False
@@ -139,9 +146,15 @@ def look_ahead(
     for i in range(motion.size):
         room.vectors[PLACE, i] = motion[i] + AHEAD * span.length * rates[i]
     field_rates(
-        flow.field, system.phases[phase].side, room.at.branch, later, room.vectors[PLACE], room.vectors[PLACE_RATES]
+        flow.field,
+        room.pulls,
+        system.phases[phase].side,
+        room.at.branch,
+        later,
+        room.vectors[PLACE],
+        room.vectors[PLACE_RATES],
     )
-    tell(system, flow, phase, later, room.vectors[PLACE], room.vectors[PLACE_RATES], values)
+    tell(system, flow, phase, later, room.vectors[PLACE], room.vectors[PLACE_RATES], values, room)
 
 
 @kernel
@@ -150,7 +163,13 @@ def raise_curves(system: System, flow: Flow, phase: int, span: Span, stop: float
     side, length = system.phases[phase].side, span.length * stop
     place_at(stop, room, room.vectors[END])
     field_rates(
-        flow.field, side, room.at.branch, span.ground + span.slope * length, room.vectors[END], room.vectors[END_RATES]
+        flow.field,
+        room.pulls,
+        side,
+        room.at.branch,
+        span.ground + span.slope * length,
+        room.vectors[END],
+        room.vectors[END_RATES],
     )
     part = Span(span.time, span.until, span.ground, span.slope, length)
     hidden = curves_hide(system, flow, phase, part, room.vectors[END], room.vectors[END_RATES], log, room)
@@ -195,9 +214,15 @@ def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Spa
     ground = span.ground + span.slope * span.length * u
     place_at(u, room, room.vectors[PLACE])
     field_rates(
-        flow.field, system.phases[phase].side, room.at.branch, ground, room.vectors[PLACE], room.vectors[PLACE_RATES]
+        flow.field,
+        room.pulls,
+        system.phases[phase].side,
+        room.at.branch,
+        ground,
+        room.vectors[PLACE],
+        room.vectors[PLACE_RATES],
     )
-    tell(system, flow, phase, ground, room.vectors[PLACE], room.vectors[PLACE_RATES], room.rows[TOLD])
+    tell(system, flow, phase, ground, room.vectors[PLACE], room.vectors[PLACE_RATES], room.rows[TOLD], room)
     return room.rows[TOLD, f]
 
 
@@ -208,9 +233,9 @@ def values_of_rows(system: System, flow: Flow, phase: int, ground: float, room: 
     n = rows.shape[2] - 2
     if flow.field.hysteretic:
         choose_branch(flow, side, ground, room)
-    field_rates(flow.field, side, room.at.branch, ground, room.motion, room.rates[0])
+    field_rates(flow.field, room.pulls, side, room.at.branch, ground, room.motion, room.rates[0])
     if side != 0.0 and flow.field.complete:
-        tell(system, flow, phase, ground, room.motion, room.rates[0], room.rows[TOLD])
+        tell(system, flow, phase, ground, room.motion, room.rates[0], room.rows[TOLD], room)
     for f in range(room.rows.shape[1]):
         if not is_curved(flow, f, side):
             value = rows[phase, f, n] * ground + rows[phase, f, n + 1]

@@ -1,6 +1,6 @@
 """The arrays for the Runge-Kutta steps, in addition to those of `rockflex.solve.layout`.
 
-The state of an integrated model is [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic].
+The state of an integrated model is [D.., D'.., θ, θ', z, E_damped, E_input, E_hysteretic], and what elements add.
 """
 
 from typing import NamedTuple
@@ -37,6 +37,7 @@ class Stages(NamedTuple):
     """Work arrays for one step."""
 
     motion: Array  # (S',): at the start of the step; `Motion.state`
+    pulls: Array  # (6,): of the elements in the present phase; `Motion.pulls`
     vectors: Array  # (5, S'): other states and rates, at the indices above
     rates: Array  # (16, S')
     bends: Array  # (7, S'): the continuous extension
@@ -48,14 +49,15 @@ class Stages(NamedTuple):
     at: Progress
 
 
-def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) -> Stages:
+def stages_of(motion: Array, pulls: Array, moving: int, rows: int, work: Array, at: Progress) -> Stages:
     """Return the work arrays for a run that starts from `motion`; its first `moving` entries enter the error norm.
 
-    `work` is that of the log of the run.
+    `pulls` are those of `Motion`, and `work` is that of the log of the run.
     """
     n = motion.size
     return Stages(
         motion,
+        pulls,
         np.zeros((5, n)),
         np.zeros((STAGES, n)),
         np.zeros((TERMS - 1, n)),

@@ -28,7 +28,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
         room.at.told = False
         if flow.field.hysteretic:
             choose_branch(flow, side, rest.ground, room)
-        field_rates(flow.field, side, room.at.branch, rest.ground, room.motion, room.rates[0])
+        field_rates(flow.field, room.pulls, side, room.at.branch, rest.ground, room.motion, room.rates[0])
     room.at.known = True
     most = MOST
     while True:
@@ -37,6 +37,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
             place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL])
             field_rates(
                 flow.field,
+                room.pulls,
                 side,
                 room.at.branch,
                 rest.ground + rest.slope * step * C[stage],
@@ -63,7 +64,7 @@ def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) ->
     n = flow.field.modes.shape[1]
     velocity = room.motion[n]
     if velocity == 0.0:
-        field_rates(flow.field, side, 1.0, acceleration, room.motion, room.rates[0])
+        field_rates(flow.field, room.pulls, side, 1.0, acceleration, room.motion, room.rates[0])
         velocity = room.rates[0, n]
     room.at.branch = 1.0 if velocity >= 0.0 else -1.0
 
@@ -94,6 +95,7 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
         place_stage(stage, step, room.motion, room.rates, room.bends[0])
         field_rates(
             flow.field,
+            room.pulls,
             side,
             room.at.branch,
             span.ground + span.slope * step * C[stage],

@@ -58,7 +58,7 @@ def with_constant(known: Basis, arrow: Arrow) -> Basis:
 
 
 def _contact_basis(omega2: Array, damping: Array, pairs_in_all: int) -> Basis:
-    """Return the uncoupled coordinates of full contact (Eq. 15); the last pairs are empty."""
+    """Return the uncoupled coordinates of a base at rest (Eq. 15); the last pairs are its rotation and θ' = 0."""
     n, count = omega2.size, pairs_in_all
     omega = np.sqrt(omega2)
     modes = np.arange(n)
@@ -75,9 +75,12 @@ def _contact_basis(omega2: Array, damping: Array, pairs_in_all: int) -> Basis:
     basis = np.zeros((2 * count, 2 * count))
     basis[modes, modes] = 1.0
     basis[n + modes, speeds] = omega
+    places = np.arange(n, count)
+    basis[n + places, places] = basis[n + places + 1, places + count] = 1.0
     inverse = np.zeros((2 * count, 2 * count))
     inverse[modes, modes] = 1.0
     inverse[speeds, n + modes] = 1.0 / omega
+    inverse[places, n + places] = inverse[places + count, n + places + 1] = 1.0
     steady = np.zeros((3, 2 * count))
     steady[0, :n] = -1.0 / omega2
     steady[1, :n] = damping / omega2**2

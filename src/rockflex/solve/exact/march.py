@@ -51,6 +51,8 @@ def to_coordinates(system: System, at: Progress, ground: float, motion: Motion) 
     for i in range(size):
         for k in range(size):
             motion.w[NOW, k] += system.basis[p, INTO, i, k] * motion.state[i]
+    for k in range(size):
+        motion.w[ENDS, k] = motion.w[NOW, k]  # in contact the steps leave out the base, which does not move
 
 
 @kernel
@@ -108,7 +110,7 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
                 at.stated = at.stated and i == first
                 at.slope, at.index, at.started = slope, i, False
                 return
-            raise_peaks(closes, system.phases[p].side, (at.offset + i + 1) * dt, log)
+            raise_peaks(closes, system.phases[p].free, (at.offset + i + 1) * dt, log)
             set_limits(system, p, log, motion)
         for k in range(2 * pairs):
             now[k] = ends[k]

@@ -38,7 +38,7 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
     for f in range(log.peaks.size):
         motion.values[LOWER, f] = -log.peaks[f]
         motion.values[UPPER, f] = log.peaks[f]
-    if system.phases[phase].side == 0.0:
+    if not system.phases[phase].free:
         motion.values[LOWER, GUARD] = motion.limits[LOW]
         motion.values[UPPER, GUARD] = motion.limits[HIGH]
     else:

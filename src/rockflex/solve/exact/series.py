@@ -32,7 +32,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
     condition that is satisfied continuously); NaN otherwise.
     """
     n, freedoms, step, series = system.layout.modes, motion.push.size, span.length, motion.series
-    free = system.phases[phase].side != 0.0
+    free = system.phases[phase].free
     for i in range(n):
         series[i, 0] = motion.state[i]
         series[i, 1] = motion.state[n + i] * step

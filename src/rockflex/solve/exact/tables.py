@@ -13,7 +13,7 @@ from scipy.linalg import expm
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex.models import FREEDOMS, Phase, RockingModel
+from rockflex.models import FREEDOMS, SUMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis
 from rockflex.solve.layout import (
     CHANGED,
@@ -84,15 +84,18 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
         modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
         phases=np.zeros(capacity, dtype=PHASE),
         turning_row=rows - 2 if memories else -1,
+        chords=model.complete,
         links=links,
-        limits=np.zeros((capacity, 2, 1 + memories)),
+        limits=np.zeros((capacity, 2, 2 + memories)),
         changes=np.zeros((capacity, changes, 2)),
         change_kinds=np.full((capacity, changes, 2), -1, dtype=np.int64),
+        marks=np.full((capacity, memories), np.nan),
         turnings=np.full((capacity, memories, 2), np.nan),
         recall=np.zeros((capacity, b, memories)),
         border=np.zeros((capacity, b, 2, n)),
         base=np.zeros((capacity, 3, b, b)),
         push=np.zeros((capacity, 2, b)),
+        pulls=np.zeros((capacity, SUMS, 1 + memories)),
         plain_rows=np.zeros((capacity, rows, columns)),
         basis=np.zeros((capacity, 2, core, core)),
         forced=np.zeros((capacity, 3 + memories, core)),
@@ -123,30 +126,36 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     """
     guard, arrow, dt = phase.guard, phase.arrow, system.dt
     system.plain_rows[p] = plain_rows
-    system.limits[p, LOW], system.limits[p, HIGH] = (guard.low, *guard.recall[LOW]), (guard.high, *guard.recall[HIGH])
+    system.pulls[p] = phase.pulls
+    for bound, limit in ((LOW, guard.low), (HIGH, guard.high)):
+        system.limits[p, bound] = limit, guard.turn, *guard.recall[bound]
     for x, change in enumerate(phase.changes):
         system.changes[p, x] = change.place, change.recall
         system.change_kinds[p, x] = change.outer, change.memory
+    for memory, mark in phase.marks:
+        system.marks[p, memory] = mark
     for turning in phase.turnings:
         system.turnings[p, turning.memory] = turning.arm, turning.offset
     if basis is None or arrow is None:
-        system.phases[p] = phase.side, phase.turns, 0, 0, False, False
+        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, 0, False, False
         return
     levels = levels_of(basis.fastest, dt)
-    system.phases[p] = phase.side, phase.turns, levels, terms_of(basis.fastest, dt), True, basis.dense
+    terms = terms_of(basis.fastest, dt)
+    decays = not phase.free or (not basis.dense and bool((basis.roots.real < 0.0).all()))
+    system.phases[p] = phase.side, phase.free, decays, phase.turns, levels, terms, True, basis.dense
     system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
     system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
     system.recall[p] = arrow.recall
-    core, own = basis.basis.shape[0], slice(levels + 1)
+    core, own, memory = basis.basis.shape[0], slice(levels + 1), system.layout.memory
     moving = plain_rows[:, :core]
     rows = moving @ basis.basis
     first = rows @ basis.matrix
     forcing = moving @ basis.steady.T
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
-    forcing[:, 3:] += plain_rows[:, core : core + forcing.shape[1] - 3] if basis.steady.shape[0] > 3 else 0.0
+    forcing[:, 3:] += plain_rows[:, memory : memory + system.layout.remembered]
     system.basis[p, OUT], system.basis[p, INTO] = basis.basis.T, basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T
     system.rows[p, VALUES], system.rows[p, SLOPES] = rows, first

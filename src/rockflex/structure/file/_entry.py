@@ -8,10 +8,11 @@ from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
 from rockflex._schema import PLAIN, Eccentricity, Key
-from rockflex.modal import RockingProperties, Tendon
+from rockflex.modal import BaseElement, RockingProperties
 from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._matrix_files import checksum
 from rockflex.structure.file._beam_table import BeamTable
+from rockflex.structure.file._element_tables import AnyElementTable, TendonTable
 from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
 from rockflex.structure.file._table import Table, inner_table
 from rockflex.structure.file._tables import (
@@ -30,17 +31,8 @@ from rockflex.structure.file._tables import (
 _KIND = Key("a table", form=PLAIN)
 
 
-class TendonTable(Table):
-    """The arguments of `Tendon`."""
-
-    position: Annotated[float, Key("the distance to the right of the axis of the masses", "m")] = 0.0
-    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N")]
-    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m")]
-    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N")] = None
-
-
 class StructureEntry(Table):
-    """A structure, with its optional name, its place on the base, and its tendons.
+    """A structure, with its optional name, its place on the base, and the elements that hold the base.
 
     Attributes
     ----------
@@ -52,6 +44,8 @@ class StructureEntry(Table):
         In m; None in the middle of the base.
     tendons : list of TendonTable
         May be empty.
+    elements : list of tables, one of each element
+        None if there are none. They follow the tendons.
     """
 
     name: Annotated[str, Key("a name, in quotes", form=PLAIN)] = ""
@@ -70,6 +64,9 @@ class StructureEntry(Table):
     tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]", form=PLAIN)] = (
         Field(default_factory=list[TendonTable])
     )
+    elements: Annotated[
+        list[AnyElementTable] | None, Key("a list of tables, each under a heading [[elements]]", form=PLAIN)
+    ] = None  # not an empty list, which would be new in the documents of stored studies
 
     @model_validator(mode="after")
     def _one_structure(self) -> "StructureEntry":
@@ -116,14 +113,37 @@ class StructureEntry(Table):
         if self.eccentricity:
             e = self.eccentricity
             built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
-        if not self.tendons:
+        return self.hold(built)
+
+    def hold(self, built: Built) -> Built:
+        """Return a structure with the tendons and elements of this one.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range, or an element is outside the base. The message begins with its heading and
+            number; the field is such as ``"elements.0.position"``, which counts from zero.
+        """
+        tables = {
+            **{("tendons", place): table for place, table in enumerate(self.tendons, start=1)},
+            **{("elements", place): table for place, table in enumerate(self.elements or [], start=1)},
+        }
+        if not tables:
             return built
-        try:
-            tendons = [Tendon(**each.model_dump()) for each in self.tendons]
-            known = isinstance(built, RockingProperties)
-            return replace(built, elements=tendons) if known else Restrained(built, tendons)
-        except InputError as error:
-            raise InputError(str(error), place="[[tendons]]", field="tendons") from error
+        known = isinstance(built, RockingProperties)
+        alone = built if known else built.rocking(1)
+        elements: list[BaseElement] = []
+        for (key, place), table in tables.items():
+            row = f"{key}.{place - 1}"
+            try:
+                elements.append(table.element())
+            except InputError as error:
+                raise InputError(str(error), place=f"[[{key}]] no. {place}", field=f"{row}.{error.field}") from error
+            try:
+                replace(alone, elements=elements[-1:])
+            except InputError as error:  # it is outside the base
+                raise InputError(str(error), place=f"[[{key}]] no. {place}", field=f"{row}.position") from error
+        return replace(built, elements=elements) if known else Restrained(built, elements)
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is built from, by its key, such as "matrices.mass".
@@ -137,10 +157,11 @@ class StructureEntry(Table):
         return {f"{self.kind}.{name}": checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
-        """Return the values of the structure's table, with eccentricity and tendons if given."""
+        """Return the values of the structure's table, with eccentricity, tendons and elements if given."""
         more: dict[str, Any] = {"eccentricity": self.eccentricity} if self.eccentricity else {}
-        if self.tendons:
-            more["tendons"] = [each.model_dump(exclude_none=True) for each in self.tendons]
+        for key, tables in (("tendons", self.tendons), ("elements", self.elements)):
+            if tables:
+                more[key] = [each.describe() for each in tables]
         return {**self.table.values(), **more}
 
 

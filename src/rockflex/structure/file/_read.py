@@ -21,9 +21,11 @@ def read_structure(path: str | Path) -> Built:
     (`FishBone`), ``[wall_frame]`` (`WallFrame`), ``[tapered_tower]`` (`TaperedTower`), ``[cantilever]``
     (`CantileverWithTipMass`), ``[beam]`` (`Beam`, with lists of values at the heights ``z``), ``[lumped]``
     (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
-    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[tendons]]`` (`Tendon`) restrain it, and a number
-    ``eccentricity`` above all tables moves it from the middle of its base (`Eccentric`). Units are kg, m, s, N and rad;
-    paths of matrices are relative to the folder of the file.
+    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[elements]]`` restrain it; their key ``kind`` is
+    "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`), "viscous_damper" (`ViscousDamper`) or
+    "friction_damper" (`FrictionDamper`). Tables ``[[tendons]]`` are tendons without that key. A number ``eccentricity``
+    above all tables moves the structure from the middle of its base (`Eccentric`). Units are kg, m, s, N and rad; paths
+    of matrices are relative to the folder of the file.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 import reprlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from types import GenericAlias, UnionType
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
@@ -44,13 +44,20 @@ def parts(annotation: Any) -> list[Any]:
     return [annotation]
 
 
+def inner_tables(annotation: Any) -> list[type["Table"]]:
+    """Return the kinds of table that a field holds, one or a list of them; none if it holds other values."""
+    inner = [get_args(part)[0] if get_origin(part) is list else part for part in parts(annotation)]
+    return [
+        kind
+        for part in inner
+        for kind in parts(part)
+        if isinstance(kind, type) and not isinstance(kind, GenericAlias) and issubclass(kind, Table)
+    ]
+
+
 def inner_table(annotation: Any) -> type["Table"] | None:
-    """Return the kind of table that a field holds, one or a list of them; None if it holds another value."""
-    for part in parts(annotation):
-        kind = get_args(part)[0] if get_origin(part) is list else part
-        if isinstance(kind, type) and not isinstance(kind, GenericAlias) and issubclass(kind, Table):
-            return kind
-    return None
+    """Return the kind of table that a field holds, the first of several; None if it holds another value."""
+    return next(iter(inner_tables(annotation)), None)
 
 
 def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") -> AnyTable:
@@ -74,8 +81,7 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
     for problem in error.errors():
         spot = spot_of(problem["loc"], content, model)
         key = str(spot.path[-1]) if spot.path and not spot.of_table else ""
-        header = _header(spot.path[:-1] if key else spot.path)
-        label = " ".join(filter(None, (header, key))) if key else header.removesuffix(",")
+        label = label_of(spot.path) if key else _header(spot.path).removesuffix(",")
         known = spot.table.model_fields
         if problem["type"] == "extra_forbidden":
             near = get_close_matches(key, known, n=1)
@@ -83,7 +89,7 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
             said = f"{label} is not known; there are {', '.join(known)}.{hint}"
         elif problem["type"] == "value_error":  # raised by a check of the whole table
             said = ": ".join(filter(None, (label, str(problem["ctx"]["error"]) if "ctx" in problem else "")))
-        elif problem["type"] == "missing":
+        elif problem["type"] in ("missing", "union_tag_not_found"):
             said = f"{label} is missing: {expected(known[key])}."
         elif key:
             said = f"{label} must be {expected(known[key])}, but {reprlib.repr(spot.value)} was given."
@@ -125,19 +131,44 @@ class Spot:
 
 
 def spot_of(location: Sequence[str | int], content: Any, model: type[Table]) -> Spot:
-    """Follow the location of a problem, without the parts that unions and lists of values add."""
-    spot, inner = Spot((), model, None, content), model
+    """Follow the location of a problem, without the parts that unions and lists of values add.
+
+    Of a table whose `kind` is missing or unknown, it is that key.
+    """
+    spot, inner, tags = Spot((), model, None, content), model, dict[str, type[Table]]()
     for key in location:
         if inner is None:
             break
+        if key in tags and isinstance(spot.path[-1], int):  # the kind of the table, which is no key
+            spot, inner, tags = replace(spot, table=tags[key]), tags[key], {}
+            continue
         path, value = (*spot.path, key), spot.value
         if isinstance(key, int):
             spot = Spot(path, inner, spot.field, value[key] if isinstance(value, list) else None)
+            tags = {} if spot.field is None else _tags(spot.field)
             continue
         field = inner.model_fields.get(key)
         spot = Spot(path, inner, field, value.get(key) if isinstance(value, Mapping) else None)
         inner = None if field is None else inner_table(field.annotation)
+    if tags and isinstance(spot.value, Mapping):
+        kind = spot.table.model_fields["kind"]
+        return Spot((*spot.path, "kind"), spot.table, kind, spot.value.get("kind"))
     return spot
+
+
+def _tags(field: FieldInfo) -> dict[str, type[Table]]:
+    """Return the tables of a field by their kinds; none if it has one kind of table at most."""
+    tables = inner_tables(field.annotation)
+    if len(tables) < 2:
+        return {}
+    return {word: table for table in tables for word in get_args(table.model_fields["kind"].annotation)}
+
+
+def label_of(path: Sequence[str | int]) -> str:
+    """Return the words for a key of a file: the heading of its table, and its name; places in its list do not count."""
+    while isinstance(path[-1], int):
+        path = path[:-1]
+    return " ".join(filter(None, (_header(path[:-1]), path[-1])))
 
 
 def _header(path: Sequence[str | int]) -> str:

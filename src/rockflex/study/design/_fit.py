@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex
 
 import numpy as np
@@ -10,19 +11,21 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._checks import in_range, positive, whole_number
-from rockflex._errors import InputError
+from rockflex._errors import InputError, SolverError
 from rockflex.fragility import (
     OVERTURNED,
     OVERTURNING,
     HazardCurve,
-    OutcomeFragility,
+    LimitState,
+    LogisticFit,
     UnanimousOutcome,
     annual_rate,
+    fit_logistic,
     fit_outcomes,
     resample_weights,
     resampled_exceedance,
 )
-from rockflex.study.design._limits import rotation_of
+from rockflex.study.design._limits import is_rotation, state_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -87,26 +90,65 @@ class Question:
 
 
 class Runs(NamedTuple):
-    """The solved runs of one design and model, and the rotation of the limit."""
+    """The solved runs of one design and model, and which of them exceed the limit."""
 
     im: Array
     rotation: Array
     fallen: Bools
+    exceeded: Bools
     groups: NDArray[Any]
-    limit: float
+    state: LimitState
 
-    def curve(self, fit: OutcomeFragility) -> Curve:
-        """Probability of exceeding the limit."""
-        if self.limit == OVERTURNED:
-            return fit.overturning.probability
-        return lambda im: fit.exceedance(im, self.limit)
+    @classmethod
+    def of(cls, solved: "pd.DataFrame", limit: float | str, measure: str) -> "Runs":
+        """Take the runs from the rows of a table that have a status, at least one."""
+        state = state_of(limit, float(solved["nominal_limit"].iloc[0]))
+        rotation = solved["max_rotation"].to_numpy(dtype=float)
+        exceeded, fallen = (
+            np.asarray(each.exceeded(solved).fillna(False), dtype=bool) for each in (state, OVERTURNING)
+        )
+        return cls(solved[measure].to_numpy(float), rotation, fallen, exceeded, solved["group"].to_numpy(), state)
 
-    def certain(self, fit: OutcomeFragility) -> bool:
-        """Whether every resample would give the same result."""
-        rocks, falls = fit.initiation, fit.overturning
-        if isinstance(falls, UnanimousOutcome) and (falls.outcome or self.limit == OVERTURNED):
-            return True
-        return isinstance(rocks, UnanimousOutcome) and not rocks.outcome
+    def fitted(self) -> "Fitted":
+        """Fit the curve of exceeding the limit.
+
+        Raises
+        ------
+        InputError, SolverError
+            If there is no fit.
+        """
+        fit = fit_outcomes(self.im, self.rotation, self.fallen)
+        falls, rocks = fit.overturning, fit.initiation
+        if is_rotation(self.state):
+            limit = self.state.threshold
+            sure = isinstance(falls, UnanimousOutcome) and (falls.outcome or limit == OVERTURNED)
+            sure |= isinstance(rocks, UnanimousOutcome) and not rocks.outcome
+            curve: Curve = falls.probability if limit == OVERTURNED else partial(fit.exceedance, limit=limit)
+            return Fitted(curve, falls.probability, sure, [note for note in fit.notes if note.kind != "initiation"])
+        alike = self.exceeded.all() or not self.exceeded.any()
+        found: LogisticFit | UnanimousOutcome = (
+            UnanimousOutcome(bool(self.exceeded[0]), self.exceeded.size)
+            if alike
+            else fit_logistic(self.im, self.exceeded)
+        )
+        return Fitted(found.probability, falls.probability, bool(alike), [found.note] if found.note else [])
+
+    def resampled(self, question: Question, n: int, seed: int) -> Array:
+        """The result for each of `n` resamples of the recordings, NaN where there is no fit."""
+        import pandas as pd
+
+        weights = resample_weights(pd.factorize(self.groups)[0], n, seed)
+        outcome, limit = (self.fallen, self.state.threshold) if is_rotation(self.state) else (self.exceeded, OVERTURNED)
+        return resampled_exceedance(self.im, self.rotation, outcome, weights, question.nodes, limit) @ question.weights
+
+
+class Fitted(NamedTuple):
+    """The curves of exceeding a limit and of overturning, and whether every resample would give the same."""
+
+    curve: Curve
+    overturning: Curve
+    certain: bool
+    notes: list[str]
 
 
 def judged(
@@ -114,64 +156,70 @@ def judged(
 ) -> dict[str, Any]:
     """Columns of `design_table` for all runs of one design and model."""
     solved = group[group["status"].notna()]
-    fallen = OVERTURNING.exceeded(solved).to_numpy(dtype=bool)
-    rotation = solved["max_rotation"].to_numpy(dtype=float)
-    nominal = float(solved["nominal_limit"].iloc[0]) if len(solved) else math.nan
-    bound = rotation_of(limit, nominal) if len(solved) else math.nan
-    runs = Runs(solved[measure].to_numpy(dtype=float), rotation, fallen, solved["group"].to_numpy(), bound)
-    return {
-        "limit": bound,
-        **_answers(runs, question, band),
+    found: dict[str, Any]
+    if len(solved):
+        runs = Runs.of(solved, limit, measure)
+        bound = runs.state.threshold if is_rotation(runs.state) else math.nan
+        found = {"limit": bound, "state": runs.state.label, **_answers(runs, question, band)}
+        counts = int(runs.exceeded.sum()), int(runs.fallen.sum())
+    else:
+        found = {
+            "limit": math.nan,
+            "state": "",
+            **_nothing(question),
+            "note": "No run was solved: see the column error.",
+        }
+        counts = 0, 0
+    return found | {
         "median_base_moment": solved["max_base_moment"].median(),
         "median_tendon_utilisation": solved["tendon_utilisation"].median(),
         "n_runs": len(solved),
-        "n_exceeding": int((fallen | (rotation > bound)).sum()),
-        "n_overturned": int(fallen.sum()),
+        "n_exceeding": counts[0],
+        "n_overturned": counts[1],
         "n_failed": len(group) - len(solved),
     }
+
+
+def _nothing(question: Question) -> dict[str, Any]:
+    names = ("probability", "low", "high", "overturning") if question.hazard is None else (
+        "rate", "low", "high", "overturning", "beyond",
+    )  # fmt: skip
+    return dict.fromkeys(names, math.nan)
 
 
 def _answers(runs: Runs, question: Question, band: Band | None) -> dict[str, Any]:
     """Value, band, value for overturning, and notes."""
     name = "probability" if question.hazard is None else "rate"
-    found: dict[str, Any] = dict.fromkeys((name, "low", "high", "overturning"), math.nan)
-    if question.hazard is not None:
-        found["beyond"] = math.nan
-    if not runs.im.size:
-        return found | {"note": "No run was solved: see the column error."}
+    found = _nothing(question)
     try:
-        fit = fit_outcomes(runs.im, runs.rotation, runs.fallen)
-        found["overturning"] = question.answer(fit.overturning.probability)[0]
-        notes: list[str] = [note for note in fit.notes if note.kind != "initiation"]
+        fit = runs.fitted()
+        found["overturning"] = question.answer(fit.overturning)[0]
+        notes = list(fit.notes)
         if question.hazard is None and not runs.im.min() <= question.nodes[0] <= runs.im.max():
             ends = f"{runs.im.min():.3g} to {runs.im.max():.3g}"
             notes.append(f"The level lies outside the measures of the runs, {ends}: the result is extrapolated.")
-        if not np.isfinite(runs.curve(fit)(question.nodes)).all():
+        if not np.isfinite(fit.curve(question.nodes)).all():
             notes.append("There is no probability: a curve that it needs could not be fitted.")
             return found | {"note": " ".join(notes)}
-        found[name], beyond = question.answer(runs.curve(fit))
-    except InputError as error:
+        found[name], beyond = question.answer(fit.curve)
+    except (InputError, SolverError) as error:
         return found | {"note": str(error)}
     if question.hazard is not None:
         found["beyond"] = beyond
     if band is not None:
-        found["low"], found["high"], note = _limits(runs, question, band, fit)
+        found["low"], found["high"], note = _limits(runs, question, band, certain=fit.certain)
         notes += [note] if note else []
     return found | {"note": " ".join(notes)}
 
 
-def _limits(runs: Runs, question: Question, band: Band, fit: OutcomeFragility) -> tuple[float, float, str]:
+def _limits(runs: Runs, question: Question, band: Band, *, certain: bool) -> tuple[float, float, str]:
     """Lower and upper confidence limit, and a note."""
-    if runs.certain(fit):
+    if certain:
         return math.nan, math.nan, "No band: all runs had the same outcome."
-    import pandas as pd
-
-    codes, names = pd.factorize(runs.groups)
-    if len(names) < 2:
+    n_groups = len(set(runs.groups))
+    if n_groups < 2:
         return math.nan, math.nan, "No band: all runs belong to one recording."
-    weights = resample_weights(codes, int(band.n), band.seed)
-    drawn = resampled_exceedance(runs.im, runs.rotation, runs.fallen, weights, question.nodes, runs.limit)
-    values = drawn @ question.weights
+    values = runs.resampled(question, int(band.n), band.seed)
     values = values[np.isfinite(values)]
     if values.size < FEWEST:
         return math.nan, math.nan, f"No band: only {values.size} of {int(band.n)} resamples could be fitted."
@@ -180,6 +228,6 @@ def _limits(runs: Runs, question: Question, band: Band, fit: OutcomeFragility) -
     if values.size < int(band.n):
         lost = int(band.n) - values.size
         notes.append(f"{lost} of {int(band.n)} resamples could not be fitted, so the band is too narrow.")
-    if len(names) < 20:
-        notes.append(f"A band from {len(names)} recordings is too narrow.")
+    if n_groups < 20:
+        notes.append(f"A band from {n_groups} recordings is too narrow.")
     return float(low), float(high), " ".join(notes)

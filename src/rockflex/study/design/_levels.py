@@ -120,7 +120,7 @@ def designs_of(
         for width in widths:
             name = f"B = {width:.6g} m" + (f", {level.name}" if level and len(levels) > 1 else "")
             try:
-                based = _on_base(properties, width, per_width)
+                based = on_base(properties, width, per_width)
                 based = based if level is None else level.held(based)
             except InputError as error:
                 raise InputError(f"{name}: {error}") from error
@@ -129,7 +129,7 @@ def designs_of(
     return found
 
 
-def _on_base(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
+def on_base(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
     """The structure on another base, which gains `per_width` in kg for each metre of its width 2 B.
 
     The mass of the base has no height, so it changes neither L_0^r nor the modes.

@@ -1,6 +1,6 @@
 """Design of a base: how wide it must be, and which tendon holds it down (Section 4.1)."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
@@ -9,17 +9,20 @@ from pydantic import Field, field_validator, model_validator
 from rockflex._checks import in_range, positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
-from rockflex.structure.file import StructureEntry, Table
+from rockflex.structure.file import StructureEntry
 from rockflex.study._arguments import WORK_LIMIT, RockingStructure, described
 from rockflex.study._subjects import Models, Motions
 from rockflex.study._tables import Columns, Row
 from rockflex.study.cloud._study import CloudPlan, Factors
 from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
-from rockflex.study.design._limits import check_limit, check_same_for_all, rotation_of
-from rockflex.study.design._table import design_table
+from rockflex.study.design._limits import check_limit, check_same_for_all, state_of
+from rockflex.study.design._questions import search_of
+from rockflex.study.design._tables import HazardTable, SearchTable, TendonLevelTable
+from rockflex.study.design.search import DesignSearch, SearchPlan
 from rockflex.study.plan._bench import Bench, bench_of, check_lifts
 from rockflex.study.plan._chunked import run_plan
 from rockflex.study.plan._spec import FreeVibration, StructuresSpec, checked_by
@@ -28,27 +31,15 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-class TendonLevelTable(Table):
-    """The arguments of `TendonLevel`."""
-
-    prestress_ratio: float = Field(0.0, description="the initial force over the weight m_tot g, a number")
-    stiffness_ratio: float = Field(0.0, description="EA/L over L_0^r g/B², a number; 1 keeps the moment constant")
-    yield_ratio: float | None = Field(None, description="the yield force over the weight m_tot g, a number")
-    name: str = Field("", description="a name, in quotes")
-
-
-class HazardTable(Table):
-    """The arguments of `HazardCurve`."""
-
-    im: list[float] = Field(description="a list of levels of the measure, in SI units, rising")
-    rate: list[float] = Field(description="a list of annual rates at which they are exceeded, falling")
-
-
 class DesignStudy(StructuresSpec):
     """One structure on bases of many half widths B, with tendons of a few levels, under all records.
 
     The table has one row per run and the columns of `run_design`. `limits`, `measure`, `level` or `hazard`, and
-    `target` define the requirement: see `design_table` and `smallest_width`.
+    `target` define the requirements: see `design_table` and `smallest_width`. `level` and `target` are numbers, or
+    lists with one for each limit.
+
+    With a table `search`, width, tendons and dissipators are searched together for the cheapest design that meets all
+    requirements; the columns are then those of `search_design`, and `best_design` evaluates them.
 
     Examples
     --------
@@ -80,10 +71,17 @@ class DesignStudy(StructuresSpec):
     measure: Annotated[str, checked_by(check_same_for_all)] = Field(
         "pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"'
     )
-    level: float | None = Field(None, description="the level of the measure, in SI units")
+    level: float | list[float] | None = Field(
+        None, description="the level of the measure in SI units, a number, or a list of one for each limit"
+    )
     hazard: HazardTable | None = Field(None, description="a table of the lists im and rate")
-    target: float | None = Field(
-        None, description="the probability, or with a hazard the annual rate, that a design must not exceed"
+    target: float | list[float] | None = Field(
+        None,
+        description="the probability, or with a hazard the annual rate, that a design must not exceed, a number, or a "
+        "list of one for each limit",
+    )
+    search: SearchTable | None = Field(
+        None, description="a table of a search for the cheapest design, under the heading [search]"
     )
 
     @field_validator("half_widths", mode="before")
@@ -95,17 +93,49 @@ class DesignStudy(StructuresSpec):
     def _question(self) -> "DesignStudy":
         if (self.level is None) == (self.hazard is None):
             raise InputError("level and hazard: give one of them, not both, for the strength of the shaking.")
-        if self.level is not None:
-            positive("level", self.level, "the unit of the measure")
         if self.hazard is not None:
             HazardCurve(self.hazard.im, self.hazard.rate)
-        if self.target is not None:
-            positive("target", self.target, "probability or 1/year")
-            if self.level is not None:
-                in_range("target", self.target, 0.0, 1.0, hint="With a level it is a probability.")
+        for name, unit in (("level", "the unit of the measure"), ("target", "probability or 1/year")):
+            given = getattr(self, name)
+            if isinstance(given, list) and len(given) != len(self.limits):  # pyright: ignore[reportUnknownArgumentType]
+                raise InputError(
+                    f"{name} must be one number, or one for each of the {len(self.limits)} limits, but "
+                    f"{shown(given)} was given."
+                )
+            for each in self._for_each(name):
+                if each is not None:
+                    positive(name, each, unit)
+        for each in self._for_each("target"):
+            if each is not None and self.hazard is None:
+                in_range("target", each, 0.0, 1.0, hint="With a level it is a probability.")
         return self
 
-    def plan(self) -> "DesignPlan":
+    @model_validator(mode="after")
+    def _searched(self) -> "DesignStudy":
+        if self.search is None:
+            return self
+        if self.target is None:
+            raise InputError(
+                "target is missing: a search needs the probability or annual rate that must not be exceeded."
+            )
+        if self.tendons:
+            raise InputError(
+                "A search varies the elements of the structure itself by factors. Leave out the levels [[tendons]], "
+                "and give the structure its tendons as [[structures.tendons]]."
+            )
+        search_of(self.document())
+        self._space(self.search)
+        return self
+
+    def _for_each(self, name: str) -> list[float | None]:
+        given: Any = getattr(self, name)
+        return given if isinstance(given, list) else [given] * len(self.limits)
+
+    def _space(self, search: SearchTable) -> DesignSearch:
+        given: dict[str, Any] = search.model_dump(exclude={"cost"})
+        return DesignSearch(self.half_widths, base_mass_per_width=self.base_mass_per_width, **given)  # pyright: ignore[reportArgumentType]
+
+    def plan(self) -> "DesignPlan | SearchPlan":
         """Build the designs, load the records, and cut the study into chunks.
 
         Raises
@@ -114,14 +144,17 @@ class DesignStudy(StructuresSpec):
             If a design cannot be built, a record cannot be read, a limit is out of range for a design, or a model's
             base cannot lift.
         """
-        levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
         bench = self.bench()
+        if self.search is not None:
+            requirements, cost = search_of(self.document())
+            return SearchPlan(bench, self._space(self.search), requirements, cost, self.scales, self.runs_per_chunk)
+        levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
         (properties,) = bench.structures
         designs = designs_of(properties, self.half_widths, levels, self.base_mass_per_width)
         for design in designs:
             for limit in self.limits:
                 try:
-                    rotation_of(limit, design.properties.nominal_overturning_rotation)
+                    state_of(limit, design.properties.nominal_overturning_rotation)
                 except InputError as error:
                     raise InputError(f"{design.name}: {error}") from error
         return DesignPlan(bench, designs, self.scales, self.runs_per_chunk)
@@ -228,27 +261,3 @@ def run_design(
     bench = bench_of([structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
     designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
     return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)
-
-
-def design_tables(
-    runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
-) -> "Iterator[tuple[float | str, pd.DataFrame]]":
-    """Yield each limit of a study with its `design_table`.
-
-    Parameters
-    ----------
-    runs
-        The table of the study.
-    spec
-        The study as returned by its `document()`.
-    confidence
-        As in `design_table`.
-    """
-    hazard = None if spec.get("hazard") is None else HazardCurve(**spec["hazard"])
-    for limit in spec["limits"]:
-        yield (
-            limit,
-            design_table(
-                runs, limit, measure=spec["measure"], at=spec.get("level"), hazard=hazard, confidence=confidence
-            ),
-        )

@@ -1,6 +1,7 @@
 """The structures, records and models of a study, prepared for its runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -73,6 +74,12 @@ class Bench:
         given = dict(zip(self.names, self.structures, strict=True))
         return Bench(given, self.motions, replace(self.assumptions, work_limit=work_limit))
 
+    def with_structure(self, properties: RockingProperties) -> "Bench":
+        """Return a bench of the same records and models with another structure in place of the only one."""
+        other = copy(self)
+        other.structures, other._cases, other._measures = [properties], {}, {}
+        return other
+
     @property
     def columns(self) -> Columns:
         """Columns of a run."""
@@ -93,9 +100,13 @@ class Bench:
             self._measures[structure, record] = found
         return found
 
+    def head(self, structure: int, record: int, model: int, scale: float) -> Row:
+        """Return the columns of a run that need no simulation."""
+        return {"structure": structure, **self._facts[record], "model": model, "scale": scale}
+
     def run(self, structure: int, record: int, model: int, scale: float) -> Row:
         """Simulate one run and return its row; if it cannot be solved, the row has a message and no results."""
-        row: Row = {"structure": structure, **self._facts[record], "model": model, "scale": scale}
+        row = self.head(structure, record, model, scale)
         row |= scaled_measures(self.measures(structure, record), scale)
         case = self._case(structure, model)
         if isinstance(case, str):

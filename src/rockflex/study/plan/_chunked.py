@@ -54,9 +54,28 @@ class ChunkedPlan(ABC):
         return
 
     @property
+    def rounds(self) -> list[range]:
+        """Numbers of the chunks that can be computed one round after the other, all of them at once by default."""
+        return [range(-(-self.n_units // self.per_chunk))]
+
+    def informed(self, table: "pd.DataFrame") -> "ChunkedPlan":  # noqa: ARG002
+        """Return the plan of the next round, which may depend on the table of the rounds before."""
+        return self
+
+    @property
+    def n_ready(self) -> int:
+        """Number of units, from the first, that do not depend on other units."""
+        return self.n_units
+
+    @property
     def n_chunks(self) -> int:
         """Number of chunks."""
-        return -(-self.n_units // self.per_chunk)
+        return self.rounds[-1].stop
+
+    def units_of(self, number: int) -> range:
+        """Units of a chunk."""
+        first = self.per_chunk * number
+        return range(first, min(first + self.per_chunk, self.n_units))
 
     @property
     def checksums(self) -> dict[str, str]:
@@ -71,8 +90,7 @@ class ChunkedPlan(ABC):
         InputError
             If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
         """
-        first = self.per_chunk * whole_number("number", number, 0, self.n_chunks - 1)
-        units = range(first, min(first + self.per_chunk, self.n_units))
+        units = self.units_of(whole_number("number", number, 0, self.n_chunks - 1))
         return tabulate([row for unit in units for row in self.rows(unit)], self.columns)
 
 
@@ -92,4 +110,9 @@ def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.Dat
         The rows of all chunks; see the study for its columns.
     """
     plan.check_work()
-    return to_frame(*in_order(plan.chunk, range(plan.n_chunks), workers))
+    tables: list[ArrowTable] = []
+    for numbers in plan.rounds:
+        if tables:
+            plan = plan.informed(to_frame(*tables))
+        tables += in_order(plan.chunk, numbers, workers)
+    return to_frame(*tables)

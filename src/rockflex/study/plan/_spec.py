@@ -86,10 +86,9 @@ class Spec(Table):
         return self
 
 
-class StructuresSpec(Assumed, Spec):
-    """A study of given structures: the structures, the models, and the options of the runs."""
+class RunsSpec(Assumed, Spec):
+    """A study with models, and with the options of the runs."""
 
-    structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
     models: Annotated[list[str], checked_by(lambda labels: [*map(parse_model, labels)])] = Field(
         ["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]'
     )
@@ -108,6 +107,35 @@ class StructuresSpec(Assumed, Spec):
         return self.model_copy(update={"impact": None}).document() | {"impact": law_document(self.impact)}
 
     def checksums(self) -> dict[str, str]:
+        """Return the SHA-256 of the source of a user-defined impact law.
+
+        Raises
+        ------
+        InputError
+            If that law is not defined in a file.
+        """
+        return {} if self.impact is None or isinstance(self.impact, str) else law_checksum(self.impact)
+
+    def assumptions(self, *, friction: bool = False) -> Assumptions:
+        """Return the options that all runs share.
+
+        Raises
+        ------
+        InputError
+            If they contradict each other.
+        """
+        free = free_vibration_time(self.free_vibration)
+        models = tuple(map(parse_model, self.models))
+        limit = work_limit_of(self.work_limit)
+        return Assumptions(models, free, self.law(), self.hysteresis(), friction, limit)
+
+
+class StructuresSpec(RunsSpec):
+    """A study of given structures: the structures, the models, and the options of the runs."""
+
+    structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
+
+    def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of the numbers in each file that a structure names, and of a user-defined impact law.
 
         Raises
@@ -120,7 +148,7 @@ class StructuresSpec(Assumed, Spec):
             for place, entry in enumerate(self.structures)
             for key, value in entry.checksums(self._folder).items()
         }
-        return files if self.impact is None or isinstance(self.impact, str) else files | law_checksum(self.impact)
+        return files | super().checksums()
 
     def bench(self, *, friction: bool = False) -> Bench:
         """Build the structures and load the records.
@@ -140,8 +168,4 @@ class StructuresSpec(Assumed, Spec):
                 raise InputError(
                     f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"
                 ) from error
-        free = free_vibration_time(self.free_vibration)
-        models = tuple(map(parse_model, self.models))
-        limit = work_limit_of(self.work_limit)
-        assumptions = Assumptions(models, free, self.law(), self.hysteresis(), friction, limit)
-        return Bench(properties, self.records.load(self._folder), assumptions)
+        return Bench(properties, self.records.load(self._folder), self.assumptions(friction=friction))

@@ -2,7 +2,7 @@
 
 import { drawAxes, FONT, layout, line, ranges } from "./axes.js";
 import { color, context, h, number } from "./dom.js";
-import { drawMarks, drawReadout, readings } from "./marks.js";
+import { drawMarks, drawReadout, drawTrails, readings } from "./marks.js";
 
 const KEYS = "ArrowLeft ArrowRight Home End + - Escape";
 
@@ -38,9 +38,11 @@ export class Chart {
     this.draw();
   }
 
-  setCursor(x, points = []) {
+  // A line at x, points, and trails: the first `n` nodes of `xs` and `ys`, and from there to the point.
+  setCursor(x, points = [], trails = []) {
     this.cursor = x;
     this.points = points;
+    this.trails = trails;
     this.#overlay();
   }
 
@@ -68,6 +70,7 @@ export class Chart {
     g.strokeStyle = color("text");
     if (this.cursor !== null && this.cursor >= range.x0 && this.cursor <= range.x1)
       line(g, px(this.cursor), box.y, px(this.cursor), box.y + box.h);
+    if (this.trails?.length) drawTrails(g, this.trails, this.frame);
     const inside = ({ x, y }) => x >= range.x0 && x <= range.x1 && y >= range.y0 && y <= range.y1;
     for (const point of (this.points ?? []).filter(inside)) {
       g.fillStyle = color(point.color);

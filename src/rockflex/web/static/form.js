@@ -37,6 +37,8 @@ export function showErrors(root, errors) {
       left.push(path ? `${path}: ${text}` : text);
       continue;
     }
+    const folded = element.closest("details");
+    if (folded) folded.open = true;
     const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
     element.querySelector(":scope > .error").textContent = sentence;
     // A message about a whole group does not concern its single fields.

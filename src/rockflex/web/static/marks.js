@@ -64,6 +64,24 @@ function drawSeries(g, s, px, py) {
   g.globalAlpha = 1;
 }
 
+// The last trail first, so that the first one is on top.
+export function drawTrails(g, trails, { box, px, py }) {
+  g.save();
+  g.beginPath();
+  g.rect(box.x, box.y, box.w, box.h);
+  g.clip();
+  g.lineWidth = 2;
+  g.lineJoin = "round";
+  for (const { xs, ys, n, x, y, color: tone } of trails.toReversed()) {
+    g.strokeStyle = color(tone);
+    g.beginPath();
+    for (let i = 0; i < n; i++) g.lineTo(px(xs[i]), py(ys[i]));
+    g.lineTo(px(x), py(y));
+    g.stroke();
+  }
+  g.restore();
+}
+
 // A straight line across the chart with its label; labels of vertical ones are stacked.
 function rule(g, each, x0, y0, x1, y1, row, box) {
   g.strokeStyle = g.fillStyle = color(each.color ?? "muted");

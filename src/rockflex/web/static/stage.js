@@ -2,8 +2,10 @@
 
 import { bracket, FONT } from "./axes.js";
 import { color, context, h } from "./dom.js";
+import { colorOf, strokes } from "./symbols.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
+const BRACKET = 34; // px above the base to which elements reach
 
 export class Stage {
   constructor(height = 340) {
@@ -103,7 +105,7 @@ export class Stage {
     g.lineWidth = 5;
     path(frame.base);
     g.stroke();
-    this.#tendons(g, frame, path);
+    this.#elements(g, frame, to, zoom);
     if (frame.impact) this.#blow(g, to);
     this.#words(g, model, index, frame, centre, cell - 8);
     g.restore();
@@ -145,14 +147,16 @@ export class Stage {
     }
   }
 
-  #tendons(g, frame, path) {
-    const { heights, tendons } = this.view;
+  // Tendons reach from below the ground into the structure, the others from the ground to a bracket on the base.
+  #elements(g, frame, to, zoom) {
+    const { heights, elements } = this.view;
     const top = heights[heights.length - 1];
-    g.strokeStyle = color("tendons");
-    g.lineWidth = 1.5;
-    for (const x of tendons) {
-      path([[x, -0.02 * top], frame.place(x, 0.6 * top)]);
-      g.stroke();
+    for (const { kind, position } of elements) {
+      const tendon = kind === "tendon";
+      const from = to([position, tendon ? -0.02 * top : 0]);
+      const end = to(frame.place(position, tendon ? 0.6 * top : Math.min(BRACKET / zoom, 0.4 * top)));
+      g.strokeStyle = g.fillStyle = color(colorOf(kind));
+      drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
     }
   }
 
@@ -189,6 +193,21 @@ function stateOf(model, frame, time) {
   if (frame.impact) return ["impact", "lost"];
   if (frame.side) return ["uplifted", "c1"];
   return [model.lifts ? "in contact" : "fixed base", "muted"];
+}
+
+// Strokes across and along the line from one point to another.
+function drawBetween(g, parts, from, end) {
+  g.save();
+  g.translate(...from);
+  g.rotate(Math.atan2(end[1] - from[1], end[0] - from[0]) - Math.PI / 2);
+  for (const { points, width, fill } of parts) {
+    g.lineWidth = width;
+    g.beginPath();
+    for (const [u, v] of points) g.lineTo(-u, v);
+    if (fill) g.fill();
+    else g.stroke();
+  }
+  g.restore();
 }
 
 function drawGround(g, left, right, ground) {

@@ -8,9 +8,10 @@ const PARTS = [
   ["kinetic", "kinetic"],
   ["strain", "strain"],
   ["gravity", "raised weight"],
-  ["tendons", "tendons"],
+  ["element_strain", "stored in elements", "tendons"],
   ["damped", "damping"],
   ["yielded", "yielding"],
+  ["elements", "taken by elements", "fuse"],
   ["lost", "impacts"],
 ];
 
@@ -42,11 +43,11 @@ export class Energy {
     const x = decode(energy.t);
     let below = new Float32Array(x.length);
     const series = [];
-    for (const [name, label] of PARTS) {
+    for (const [name, label, tone = name] of PARTS) {
       const values = energy[name] ? decode(energy[name]) : [];
       if (!values.some((value) => value !== 0)) continue;
       const high = below.map((value, i) => value + values[i] / 1000);
-      series.push({ kind: "band", x, low: below, high, color: name, alpha: 0.75, edge: true, label, until });
+      series.push({ kind: "band", x, low: below, high, color: tone, alpha: 0.75, edge: true, label, until });
       below = high;
     }
     const input = decode(energy.input).map((value) => value / 1000);

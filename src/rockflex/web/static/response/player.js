@@ -2,15 +2,18 @@
 
 import { h } from "../dom.js";
 import { slider } from "../form.js";
+import { legend } from "../marks.js";
 import { Stage } from "../stage.js";
+import { colorOf } from "../symbols.js";
 
 const SPEEDS = [["0.05", "1/20"], ["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2"], ["1", "real time"], ["2", "× 2"]];
 const STEPS = 200; // of the arrow keys over the whole duration
 
 export class Player {
-  // `moved` is called with each time shown.
-  constructor(moved) {
+  // `moved` is called with each time shown; `kinds` are those of elements.
+  constructor(moved, kinds) {
     this.moved = moved;
+    this.kinds = kinds;
     this.stage = new Stage();
     this.view = null;
     this.time = 0;
@@ -37,7 +40,8 @@ export class Player {
       this.stage.show(this.time, this.amplification);
     });
     this.stage.canvas.addEventListener("keydown", (event) => this.#key(event));
-    this.element = h("div", { class: "stage" }, this.stage.canvas,
+    this.keys = h("div");
+    this.element = h("div", { class: "stage" }, this.stage.canvas, this.keys,
       h("div", { class: "buttons" }, this.button, this.speed, jump),
       h("div", { class: "buttons time" }, this.scrub, this.clock), this.amplify);
   }
@@ -49,6 +53,8 @@ export class Player {
       this.amplify.setValue(this.amplification);
     }
     this.stage.set({ ...view, colors });
+    const shown = Object.keys(this.kinds).filter((kind) => view.elements.some((each) => each.kind === kind));
+    this.keys.replaceChildren(legend(shown.map((kind) => ({ label: this.kinds[kind].title, color: colorOf(kind) }))));
     this.scrub.max = view.end;
     this.scrub.step = Math.max(0.001, Number((view.end / 20000).toPrecision(1)));
     this.move(this.time);

@@ -16,6 +16,7 @@ const PEAKS = [
 ];
 const MEANT = "In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; "
   + "unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.";
+const LEFT = " θ_res: rotation at the end of the run.";
 
 // The fixed-base model to compare with, if any; preferably one that yields too if the model does.
 function reference(view, model) {
@@ -28,15 +29,15 @@ function named(fixed) {
 }
 
 export function table(view) {
-  const held = view.tendons.length > 0;
+  const held = view.elements.length > 0;
   const lifting = view.models.filter((m) => m.lifts);
   const standing = lifting.filter((m) => m.status !== "overturned");
   const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
-  const last = held ? ["Largest tendon force [kN]"] : [];
+  const last = held ? ["θ_res [mrad]"] : [];
   const head = ["Model", "Outcome", ...PEAKS.map(([, label]) => label), "Impacts", "θ_max/θ_nom", ...last];
   return [
     tableOf(head.map(symbol), view.models.map((m) => row(m, view, held))),
-    h("p", { class: "hint" }, ...symbol(MEANT), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
+    h("p", { class: "hint" }, ...symbol(held ? MEANT + LEFT : MEANT), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
   ];
 }
 
@@ -59,7 +60,13 @@ function row(m, view, held) {
     PEAKS.map(cell),
     h("td", { "data-name": "n_impacts", "data-value": m.peaks.n_impacts }, String(m.peaks.n_impacts)),
     h("td", {}, m.lifts && !fell ? `${number((100 * m.peaks.max_rotation) / view.nominal, 3)} %` : "–"),
-    held ? h("td", {}, m.lifts ? number(m.peaks.max_tendon_force / 1000) : "–") : null);
+    held ? residual(m) : null);
+}
+
+// The rotation at the end of a run, which friction or a lack of weight can leave.
+function residual(m) {
+  const value = m.lifts ? m.peaks.residual_rotation : null;
+  return h("td", { "data-name": "residual_rotation", "data-value": value }, number(value === null ? null : 1000 * value));
 }
 
 // Demands on the ground or tendons that they cannot meet, one paragraph each.

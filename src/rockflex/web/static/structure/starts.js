@@ -1,4 +1,4 @@
-// Default values of a form where no preset has the kind, and of a table added to a structure.
+// Default values of a form where no preset has the kind, and of tables and elements added to a structure.
 
 export const KINDS = {
   fish_bone: {
@@ -23,7 +23,12 @@ export const KINDS = {
   block: { slenderness: 0.2, half_diagonal: 3 },
 };
 
-export const TENDON = { position: 0, initial_force: 1e5, stiffness: 1e6 };
+export const ELEMENTS = {
+  tendon: { position: 0, initial_force: 1e5, stiffness: 1e6 },
+  yielding_dissipator: { position: 0, stiffness: 5e7, yield_force: 1e5 },
+  viscous_damper: { position: 0, coefficient: 5e5 },
+  friction_damper: { position: 0, force: 5e4 },
+};
 
 // Tables nested in that of a structure, by name.
 export const INNER = {

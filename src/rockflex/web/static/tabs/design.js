@@ -27,7 +27,7 @@ export default function designTab(app) {
   const narrowest = entry("narrowest", "From", { unit: "× present B", hint: "0.2 to 2" });
   const widest = entry("widest", "To", { unit: "× present B", hint: "1 to 10" });
   const widths = entry("widths", "Widths", { hint: "3 to 20" });
-  const own = h("p", { class: "help" }, "The structure already has tendons; they stay unchanged.");
+  const own = h("p", { class: "help" }, "The structure already has elements at its base; they stay unchanged.");
   const tendons = entry("tendons", "Initial forces of a central tendon",
     { many: true, unit: "× weight", hint: "up to four, 0 for none" });
   const stiffness = entry("stiffness", "Stiffness EA/L of the tendon",
@@ -104,7 +104,7 @@ export default function designTab(app) {
     model.setOptions([...offered].map((label) => [label, label]), choice().model);
     rotation.hidden = choice().limit !== "rotation";
     at.querySelector(".unit").textContent = unitOf(app.about, choice().measure);
-    const held = (app.state.structure.tendons ?? []).length > 0;
+    const held = (app.state.structure.elements ?? []).length > 0;
     own.hidden = !held;
     tendons.hidden = stiffness.hidden = held;
     study.refresh();

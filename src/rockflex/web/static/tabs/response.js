@@ -1,14 +1,16 @@
 // Response: the rocking structure, animated with its response histories.
 
 import { bracket } from "../axes.js";
-import { Chart, overTime } from "../chart.js";
+import { overTime } from "../chart.js";
 import { decode, h, latest } from "../dom.js";
 import { select, slider } from "../form.js";
 import { looks } from "../looks.js";
 import { legend } from "../marks.js";
 import { models } from "../models.js";
 import { assumptions } from "../response/assumptions.js";
+import { Elements } from "../response/elements.js";
 import { Energy } from "../response/energy.js";
+import { Loop } from "../response/loop.js";
 import { Player } from "../response/player.js";
 import { table, warnings, words } from "../response/table.js";
 
@@ -33,7 +35,7 @@ const FIRST = "Computing … The first run after an installation compiles the ke
 
 export default function responseTab(app) {
   let view = null;
-  const player = new Player(follow);
+  const player = new Player(follow, app.about.elements);
   const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const labels = models("models", app.state.models, app.about.limits.models, (value) => app.change({ models: value }));
@@ -44,11 +46,12 @@ export default function responseTab(app) {
   const charts = overTime(PANELS.map(([, yLabel, , name], i) => (
     { label: `${name} over time`, yLabel, height: [150, 118, 118, 134][i], firstOnTop: true, onpick })));
   const panels = PANELS.map(([key], i) => [key, charts[i]]);
-  const loop = new Chart({
-    label: "Base moment over rotation", yLabel: "M_b [kN m]", xLabel: "θ [mrad]", xName: "θ [mrad]", height: 240,
-    firstOnTop: true,
-  });
+  const loop = new Loop({ label: "Base moment over rotation", yLabel: "M_b [kN m]", xLabel: "θ [mrad]" });
   const energy = new Energy(() => load());
+  const elements = new Elements(app.about, () => {
+    energy.focus = elements.model.value;
+    load();
+  });
   const seen = select("displacement", "Plotted top displacement", DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
     if (!view) return;
     choose(view);
@@ -61,8 +64,9 @@ export default function responseTab(app) {
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
       "Click or use the arrow keys to set the time; drag or press + and − to zoom; double-click or press Escape to reset."),
-    h("h2", {}, "Largest values"), peaks,
-    h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.element), energy.element));
+    h("h2", {}, "Largest values"), peaks, elements.table,
+    h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.chart.element), elements.chart,
+      energy.element));
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       player.element,
@@ -83,12 +87,10 @@ export default function responseTab(app) {
       vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
     }));
     const lifting = view.models.filter((m) => m.lifts);
-    loop.set({ series: lifting.map((m) => {
-      const end = m.fall_time ? m.t.findIndex((t) => t >= m.fall_time) : m.t.length;
-      const [x, y] = [m.scaled.rotation.subarray(0, end), m.scaled.base_moment.subarray(0, end)];
-      return { x, y, label: m.label, parametric: true, ...m.look, width: 1 };
-    }) });
-    loop.element.parentElement.hidden = !lifting.length;
+    loop.set(lifting.map((m) => (
+      { t: m.t, x: m.scaled.rotation, y: m.scaled.base_moment, until: m.fall_time ?? Infinity, label: m.label, look: m.look })));
+    loop.chart.element.parentElement.hidden = !lifting.length;
+    elements.set(view);
     energy.set(view);
     keys.replaceChildren(legend(view.models.map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
@@ -116,8 +118,8 @@ export default function responseTab(app) {
     });
     for (const [key, chart] of panels)
       chart.setCursor(time, view.models.map((m, i) => ({ x: time, y: at[i](key), color: m.look.color })));
-    const places = view.models.map((m, i) => ({ x: at[i]("rotation"), y: at[i]("base_moment"), color: m.look.color }));
-    loop.setCursor(null, places.filter((_, i) => view.models[i].lifts));
+    loop.follow(time);
+    elements.loop.follow(time);
     energy.chart.setCursor(time);
   }
 
@@ -126,7 +128,7 @@ export default function responseTab(app) {
     const before = verdict.textContent;
     const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? "Computing …" : FIRST), PATIENCE);
     const requested = JSON.stringify([app.state.scale, app.state.models]);
-    const answer = await app.ask("/api/response", element, { focus: energy.focus });
+    const answer = await app.ask("/api/response", element, { focus: energy.focus, element: elements.element });
     clearTimeout(patience);
     results.classList.toggle("stale", !answer);
     if (!answer) {
@@ -135,7 +137,7 @@ export default function responseTab(app) {
     }
     const all = looks(answer.models);
     answer.models.forEach((m, i) => {
-      for (const name of ["t", "side", "points", ...SERIES]) m[name] = m[name] && decode(m[name]);
+      for (const name of ["t", "side", "points", "element_force", "element_elongation", ...SERIES]) m[name] = m[name] && decode(m[name]);
       const factor = (key) => PANELS.find(([name]) => name === key)?.[2] ?? 1;
       m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v * factor(key))]));
       m.look = all[i];
@@ -163,6 +165,7 @@ export default function responseTab(app) {
     time: () => player.time,
     playing: () => Boolean(player.playing),
     panel: panels[0][1],
+    loops: { base: loop, element: elements.loop },
   };
   return { element, refresh, leave: () => player.pause() };
 }

@@ -2,14 +2,14 @@
 
 import { clone, h, latest, number, symbol } from "../dom.js";
 import { field, select, tableField, tableGroup, trouble } from "../form.js";
+import { base } from "../structure/base.js";
+import { elements } from "../structure/elements.js";
 import { importing } from "../structure/matrices.js";
 import { pictures, table } from "../structure/modes.js";
-import { INNER, KINDS, TENDON } from "../structure/starts.js";
-
-const MOST_TENDONS = 6;
+import { INNER, KINDS } from "../structure/starts.js";
 
 export default function structureTab(app) {
-  const { kinds, eccentricity, tendon, presets, limits } = app.about;
+  const { kinds, eccentricity, presets, limits } = app.about;
   const current = () => clone(app.state.structure);
   const kindOf = (structure) => Object.keys(kinds).find((key) => structure[key]) ?? "frame";
   let drawn = false; // whether the form has the fields of the present structure
@@ -34,15 +34,13 @@ export default function structureTab(app) {
   const name = h("input", { type: "text", maxlength: 80, onchange: () => put({ ...current(), name: name.value }) });
   const fields = h("div");
   const moved = h("div");
-  const tendonList = h("div");
+  const held = elements(app, current, put);
   const results = h("div", { class: "results" });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Structure"), preset, kind, field("structure.name", "Name", name),
         h("div", { "data-path": "structure" }, fields, moved, trouble()), h("p", { class: "error foot", role: "alert" })),
-      importing(limits.file, current, (structure) => put(structure, true)),
-      h("fieldset", { "data-path": "structure.tendons" },
-        h("legend", {}, "Tendons"), tendonList, trouble())),
+      held, importing(limits.file, current, (structure) => put(structure, true))),
     results);
 
   // The first preset of a kind, or default values.
@@ -66,7 +64,7 @@ export default function structureTab(app) {
       set(next, "eccentricity", value);
       put(next);
     }));
-    tendons(structure.tendons ?? []);
+    held.draw(structure.elements ?? []);
   }
 
   function entry(now, spec, values) {
@@ -79,29 +77,6 @@ export default function structureTab(app) {
     if (spec.type !== "table") return tableField(path, spec, values[spec.name], change);
     const start = () => INNER[spec.name]?.(app.state.structure[now]) ?? {};
     return tableGroup(path, spec, values[spec.name], start, change);
-  }
-
-  function tendons(list) {
-    const add = h("button", { type: "button", disabled: list.length >= MOST_TENDONS, onclick: () => {
-      put({ ...current(), tendons: [...current().tendons ?? [], { ...TENDON }] }, true);
-      tendonList.querySelector("details:last-of-type").open = true;
-      tendonList.querySelector("details:last-of-type input").focus();
-    } }, "Add a tendon");
-    tendonList.replaceChildren(...list.map((each, i) => oneTendon(each, i, list.length < 2)), add);
-  }
-
-  function oneTendon(each, i, open) {
-    const remove = () => {
-      put({ ...current(), tendons: current().tendons.filter((_, j) => j !== i) }, true);
-      tendonList.querySelector(":scope > button").focus();
-    };
-    return h("details", { open }, h("summary", {}, `Tendon ${i + 1}`),
-      tendon.map((spec) => tableField(`structure.tendons.${i}.${spec.name}`, spec, each[spec.name], (value) => {
-        const next = current();
-        set(next.tendons[i], spec.name, value);
-        put(next);
-      })),
-      h("button", { type: "button", onclick: remove }, "Remove"));
   }
 
   const load = latest(async () => {
@@ -119,6 +94,7 @@ export default function structureTab(app) {
       view.adequacy ? h("p", { class: "hint" }, "This check uses masses and frequencies only. Impacts also excite higher modes, ",
         "which affect the base shear most: compare with MDOF-S on the Response tab.") : "",
       pictures(view),
+      view.elements.length ? base(app.about, view) : "",
       h("dl", { class: "values" }, view.properties.map(parameter)),
       table(view),
       app.downloads(element, [["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]),
@@ -148,9 +124,10 @@ function same(a, b) {
   return JSON.stringify(tidy(a)) === JSON.stringify(tidy(b));
 }
 
-// The same content in the same order, without an empty list of tendons.
+// The same content in the same order, without empty lists.
 function tidy(value) {
-  if (value === null || typeof value !== "object" || Array.isArray(value)) return value;
-  const entries = Object.entries(value).filter(([key, each]) => key !== "tendons" || each?.length);
+  if (Array.isArray(value)) return value.map(tidy);
+  if (value === null || typeof value !== "object") return value;
+  const entries = Object.entries(value).filter(([, each]) => !Array.isArray(each) || each.length);
   return Object.fromEntries(entries.sort().map(([key, each]) => [key, tidy(each)]));
 }

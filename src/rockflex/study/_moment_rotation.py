@@ -1,0 +1,79 @@
+"""Cyclic pushover of the base of a structure."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rockflex._checks import finite_vector
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.response import MomentRotation, base_path
+from rockflex.study._arguments import RockingStructure, properties_of
+
+QUARTER_TURN = 0.5 * math.pi
+
+
+def moment_rotation(structure: RockingStructure | RockingProperties, rotations: ArrayLike) -> MomentRotation:
+    """Rotate the base of a structure slowly to and fro, and return its moment and the forces of its elements.
+
+    M = s (m_tot g B_s + Σ F r) - L_0^r g θ about the acting pivot, with the tension F of each element at its distance r
+    from this pivot (Silva & Stojadinović 2024, Eq. 23 without inertia and flexure, and the elements). The path begins
+    at rest. In contact the moment passes from the value at which the base closes to the one at which it lifts about the
+    other pivot. An element that has yielded keeps a force there, which shifts these values.
+
+    The rotation is prescribed, and the geometry is that of the simplified models. Everything is then linear between
+    points at which elements change their branch, and these points are exact. Viscous dampers contribute nothing,
+    because the rotation is infinitely slow. A friction damper turns its force round at once where the rotation turns.
+
+    Parameters
+    ----------
+    structure
+        A structure with its elements, such as a `Restrained` one, or its `RockingProperties`.
+    rotations : array_like, shape (m,)
+        Rotations θ in rad through which the base is driven, positive about the right pivot: turning points, or the
+        samples of any history. Between adjacent values the rotation does not turn back.
+
+    Returns
+    -------
+    MomentRotation
+        At the given rotations and at all points in between where an element changes its branch.
+
+    Raises
+    ------
+    InputError
+        If there are no rotations, or one is not finite or beyond π/2.
+
+    References
+    ----------
+    The flag shape: Christopoulos, Filiatrault & Folz 2002, doi 10.1002/eqe.152.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> wall = rf.CantileverWithTipMass(
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3, half_width=1.5, damping_ratio=0.02
+    ... )
+    >>> fuse = rf.YieldingDissipator(stiffness=60e6, yield_force=150e3)
+    >>> held = rf.Restrained(wall, [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
+    >>> curve = rf.moment_rotation(held, [0.0, 0.02, 0.0])
+    >>> print((curve.to_frame()[["rotation", "moment", "element_force_2"]] / [1.0, 1e3, 1e3]).round(4))
+       rotation    moment  element_force_2
+    0    0.0000     0.000              0.0
+    1    0.0000  1332.900              0.0
+    2    0.0017  1579.725            150.0
+    3    0.0200  1819.800            150.0
+    4    0.0167  1326.150           -150.0
+    5    0.0000  1107.900           -150.0
+    """
+    path = finite_vector("rotations", rotations, "rad")
+    if path.size == 0:
+        raise InputError("rotations is empty. Give at least one rotation of the base in rad.", field="rotations")
+    beyond = np.flatnonzero(np.abs(path) > QUARTER_TURN * (1.0 + 1e-9))  # a run that overturns ends at π/2
+    if beyond.size:
+        raise InputError(
+            f"rotations must be at most a quarter turn, {QUARTER_TURN:.4g} rad, to each side, but "
+            f"rotations[{beyond[0]}] = {path[beyond[0]]:g} rad was given. Check the units: one degree is 0.01745 rad.",
+            field="rotations",
+        )
+    return base_path(properties_of(structure), path)

@@ -1,0 +1,143 @@
+"""What a design must meet: a limit that is exceeded with at most a target probability, or annual rate."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex._checks import in_range, positive
+from rockflex._errors import InputError, SolverError
+from rockflex.fragility import HazardCurve, limit_label
+from rockflex.study.design._fit import Question, Runs
+from rockflex.study.design._limits import check_limit, check_same_for_all
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FAR = 5.0  # largest margin; values far from a target say little about where it is met
+TINY = 1e-12
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A limit, and the largest probability or annual rate with which a design may exceed it.
+
+    Attributes
+    ----------
+    limit : float or str
+        As in `design_table`.
+    target : float
+        Largest probability at the level `at`, or with a hazard the largest annual rate in 1/year.
+    at : float or None
+        Level of the measure in its unit.
+    hazard : HazardCurve or None
+        Hazard curve in the measure's unit, in place of a level.
+    measure : str
+        Intensity measure, which must not depend on the base.
+
+    Raises
+    ------
+    InputError
+        If the limit or measure is unknown, the target is not positive, or not exactly one of `at` and `hazard` is
+        given.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.Requirement("overturning", target=0.01, at=0.8).label
+    'overturning at pgv = 0.8'
+    """
+
+    limit: float | str
+    target: float
+    at: float | None = None
+    hazard: HazardCurve | None = None
+    measure: str = "pgv"
+
+    def __post_init__(self) -> None:
+        check_limit(self.limit)
+        check_same_for_all(self.measure)
+        Question.of(self.at, self.hazard)
+        if self.hazard is None:
+            positive("target", self.target, "probability")
+            in_range("target", self.target, 0.0, 1.0, hint="With a level it is a probability.")
+        else:
+            positive("target", self.target, "1/year")
+
+    @property
+    def question(self) -> Question:
+        """The strength of the shaking."""
+        return Question.of(self.at, self.hazard)
+
+    @property
+    def label(self) -> str:
+        """The limit in words, with the level."""
+        return limit_label(self.limit) + ("" if self.at is None else f" at {self.measure} = {self.at:g}")
+
+    @property
+    def asked(self) -> str:
+        """What `target` is."""
+        return "P" if self.hazard is None else "annual rate"
+
+    def value(self, runs: "pd.DataFrame") -> float:
+        """Probability or annual rate of the runs of one design; NaN if it cannot be fitted."""
+        solved = runs[runs["status"].notna()]
+        if not len(solved):
+            return np.nan
+        try:
+            return self.question.answer(Runs.of(solved, self.limit, self.measure).fitted().curve)[0]
+        except (InputError, SolverError):
+            return np.nan
+
+    def resampled(self, runs: "pd.DataFrame", n: int, seed: int) -> Array:
+        """The same for `n` resamples of the recordings, shape (n,)."""
+        solved = runs[runs["status"].notna()]
+        if not len(solved):
+            return np.full(n, np.nan)
+        return Runs.of(solved, self.limit, self.measure).resampled(self.question, n, seed)
+
+    def margin(self, values: Any) -> Array:
+        """How far values are above the target, within ±5: probits of probabilities, logarithms of rates.
+
+        The probit of a lognormal fragility is linear in the logarithm of its median.
+        """
+        from scipy.special import ndtri
+
+        given = np.clip(np.asarray(values, dtype=float), TINY, None)
+        if self.hazard is not None:
+            return np.clip(np.log(given / self.target), -FAR, FAR)
+        return np.clip(ndtri(np.clip(given, TINY, 1.0 - TINY)) - ndtri(self.target), -FAR, FAR)
+
+
+def check_requirements(given: Sequence[Requirement]) -> list[Requirement]:
+    """Return requirements as a list.
+
+    Raises
+    ------
+    InputError
+        If there are none, something else is among them, or two are alike.
+    """
+    listed = list(given)
+    for place, each in enumerate(listed):
+        if not isinstance(each, Requirement):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise InputError(f"requirements[{place}] is {type(each).__name__}. Expected a Requirement.")
+    labels = [each.label for each in listed]
+    if not labels or len(set(labels)) < len(labels):
+        raise InputError(
+            "requirements must be one or more Requirement objects, each with another limit or level, but "
+            f"{labels or 'none'} were given."
+        )
+    return listed
+
+
+def values_of(designs: "Sequence[pd.DataFrame]", requirements: Sequence[Requirement]) -> Array:
+    """Value of each requirement for the runs of each design, shape (n_designs, n_requirements)."""
+    found = [[each.value(runs) for each in requirements] for runs in designs]
+    return np.reshape(np.array(found, dtype=float), (len(designs), len(requirements)))
+
+
+def margins_of(values: Array, requirements: Sequence[Requirement]) -> Array:
+    """Margins of values whose last axis is that of the requirements; NaN where there is no value."""
+    return np.stack([each.margin(values[..., place]) for place, each in enumerate(requirements)], axis=-1)

@@ -1,0 +1,243 @@
+"""The designs among which a search looks: half widths, and factors on the tendons and dissipators."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from itertools import product
+from math import prod
+from typing import Any, Literal
+
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex._checks import one_of, positive, real_or_nan, whole_number
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, YieldingDissipator
+from rockflex.study.design._levels import RANGE, half_widths_of, on_base
+
+Scaling = Literal["size", "force"]
+Point = tuple[int, int, int]  # of the finest grid: numbers of a half width and of both factors
+
+VARIABLES = ("half_width", "tendon_factor", "dissipator_factor")
+FACTORS = ("tendon_factors", "dissipator_factors")
+MOST_REFINEMENTS, MOST_DESIGNS, MOST_POINTS = 8, 1000, 300_000
+
+
+@dataclass(frozen=True)
+class DesignSearch:
+    """The half widths and the factors on the elements among which a search looks, and how many designs it may try.
+
+    The search first runs every combination of the values given. Each refinement then halves the distance between
+    neighbouring values and runs at most `designs_per_refinement` more, where the cheapest designs that meet the targets
+    are expected.
+
+    A factor multiplies the elements of the structure itself: 1 is the structure as given, 0 takes them away. When the
+    width changes, every element keeps its place relative to the edges: one at an edge stays there. Viscous dampers move
+    too, but are not scaled.
+
+    Attributes
+    ----------
+    half_widths : tuple of float
+        B in m, or a range as a dictionary of `smallest`, `largest` and `count`.
+    tendon_factors, dissipator_factors : tuple of float
+        Factors on all tendons, and on all yielding dissipators and friction dampers; or a range.
+    tendon_scaling : {"size", "force"}
+        What `tendon_factors` multiply: ``"size"``, the initial force, stiffness and yield force, as of a larger
+        cross-section at the same stress; ``"force"``, the initial force alone.
+    dissipator_scaling : {"size", "force"}
+        ``"size"``: stiffness and yield force; ``"force"``: the yield force alone. A friction damper has only its force.
+    base_mass_per_width : float
+        As in `run_design`.
+    refinements : int
+        Number of refinements, from 0 to 8.
+    designs_per_refinement : int
+        The largest number of designs that each of them adds.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range or occurs twice, no variable has two values, or the finest grid is too large.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> search = rf.DesignSearch([1.0, 1.5, 2.0], tendon_factors=[0.5, 1.0, 2.0], refinements=2)
+    >>> search.n_first, search.n_designs
+    (9, 25)
+    """
+
+    half_widths: tuple[float, ...]
+    tendon_factors: tuple[float, ...] = (1.0,)
+    dissipator_factors: tuple[float, ...] = (1.0,)
+    tendon_scaling: Scaling = "size"
+    dissipator_scaling: Scaling = "size"
+    base_mass_per_width: float = 0.0
+    refinements: int = 4
+    designs_per_refinement: int = 8
+
+    def __post_init__(self) -> None:
+        given: Any = self.half_widths
+        vars(self).update(
+            half_widths=tuple(half_widths_of(given)),
+            tendon_factors=factors_of("tendon_factors", self.tendon_factors),
+            dissipator_factors=factors_of("dissipator_factors", self.dissipator_factors),
+            base_mass_per_width=positive("base_mass_per_width", self.base_mass_per_width, "kg/m", zero=True),
+            refinements=whole_number("refinements", self.refinements, 0, MOST_REFINEMENTS),
+            designs_per_refinement=whole_number("designs_per_refinement", self.designs_per_refinement, 1),
+        )
+        for name in ("tendon_scaling", "dissipator_scaling"):
+            if not one_of(getattr(self, name), ("size", "force")):
+                raise InputError(f'{name} must be "size" or "force", but {shown(getattr(self, name))} was given.')
+        if self.n_first == 1:
+            raise InputError(
+                "There is only one design to look at. Give two values or more of half_widths, tendon_factors or "
+                "dissipator_factors."
+            )
+        if self.n_designs > MOST_DESIGNS:
+            raise InputError(
+                f"The search would try {self.n_designs} designs, but at most {MOST_DESIGNS} are possible: "
+                f"{self.n_first} of the values given, and {self.designs_per_refinement} in each of {self.refinements} "
+                "refinements. Give fewer values; refinements find the values in between."
+            )
+        points = prod((len(values) - 1) * 2**self.refinements + 1 for values in self.values)
+        if points > MOST_POINTS:
+            raise InputError(
+                f"The finest grid would have {points} designs, but at most {MOST_POINTS} are possible. Give fewer "
+                f"values or fewer refinements than {self.refinements}."
+            )
+
+    @property
+    def values(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """The values given for each variable."""
+        return self.half_widths, self.tendon_factors, self.dissipator_factors
+
+    @property
+    def varied(self) -> list[int]:
+        """Numbers of the variables that have more than one value."""
+        return [axis for axis, values in enumerate(self.values) if len(values) > 1]
+
+    @property
+    def n_first(self) -> int:
+        """Number of designs that are run first: all combinations of the values given."""
+        return prod(map(len, self.values))
+
+    @property
+    def n_designs(self) -> int:
+        """The largest number of designs in all."""
+        return self.n_first + self.refinements * self.designs_per_refinement
+
+    def grid(self, level: int) -> list[list[int]]:
+        """Numbers of each variable on the grid of a refinement; 0 is that of the values given."""
+        step = 2 ** (self.refinements - level)
+        return [list(range(0, (len(values) - 1) * 2**self.refinements + 1, step)) for values in self.values]
+
+    def first(self) -> list[Point]:
+        """Points of the values given, dissipators innermost."""
+        widths, tendons, dissipators = self.grid(0)
+        return [*product(widths, tendons, dissipators)]
+
+    def at(self, points: Any) -> Array:
+        """Values of the variables at points of the finest grid, shape (n, 3)."""
+        places = np.reshape(points, (-1, 3)) / 2**self.refinements
+        columns = [np.interp(places[:, axis], range(len(values)), values) for axis, values in enumerate(self.values)]
+        return np.column_stack(columns)
+
+    def points_of(self, values: Array) -> list[Point]:
+        """Points of the finest grid with these values of the variables, shape (n, 3)."""
+        columns = [
+            np.interp(values[:, axis], given, np.arange(len(given))) * 2**self.refinements
+            for axis, given in enumerate(self.values)
+        ]
+        return [(int(b), int(tendon), int(dissipator)) for b, tendon, dissipator in np.rint(columns).T]
+
+    def built(self, properties: RockingProperties, point: Point) -> RockingProperties:
+        """The structure as the design of a point.
+
+        Raises
+        ------
+        InputError
+            If the design is impossible; the message names its values.
+        """
+        width, tendons, dissipators = (float(value) for value in self.at(point)[0])
+        try:
+            moved = [moved_with(each, properties, width) for each in properties.elements]
+            scaled = [self._scaled(each, tendons, dissipators) for each in moved]
+            bare = replace(properties, elements=())
+            based = on_base(bare, width, self.base_mass_per_width)
+            return replace(based, elements=tuple(each for each in scaled if each is not None))
+        except InputError as error:
+            raise InputError(
+                f"B = {width:.6g} m, tendons times {tendons:.6g}, dissipators times {dissipators:.6g}: {error}"
+            ) from error
+
+    def check_elements(self, properties: RockingProperties) -> None:
+        """Raise an InputError if factors are given for elements that the structure lacks."""
+        kinds = (Tendon, YieldingDissipator | FrictionDamper)
+        names = ("tendon", "yielding dissipator or friction damper")
+        for factors, kind, name in zip(FACTORS, kinds, names, strict=True):
+            if getattr(self, factors) != (1.0,) and not any(isinstance(each, kind) for each in properties.elements):
+                raise InputError(f"{factors} were given, but the structure has no {name} that they could multiply.")
+
+    def _scaled(self, element: BaseElement, tendons: float, dissipators: float) -> BaseElement | None:
+        if isinstance(element, Tendon):
+            return tendon_times(element, tendons, self.tendon_scaling)
+        if isinstance(element, YieldingDissipator):
+            if dissipators == 0.0:
+                return None
+            stiffness = element.stiffness * (dissipators if self.dissipator_scaling == "size" else 1.0)
+            return replace(element, stiffness=stiffness, yield_force=element.yield_force * dissipators)
+        if isinstance(element, FrictionDamper):
+            return replace(element, force=element.force * dissipators) if dissipators else None
+        return element
+
+
+def tendon_times(tendon: Tendon, factor: float, scaling: Scaling) -> Tendon | None:
+    """The tendon with a factor on its size or on its initial force; None where nothing is left of it."""
+    force = tendon.initial_force * factor
+    if scaling == "force":
+        return replace(tendon, initial_force=force)
+    if factor == 0.0:
+        return None
+    limit = None if tendon.yield_force is None else tendon.yield_force * factor
+    return replace(tendon, initial_force=force, stiffness=tendon.stiffness * factor, yield_force=limit)
+
+
+def moved_with(element: BaseElement, properties: RockingProperties, half_width: float) -> BaseElement:
+    """The element at the same place relative to the edges of a base of another width.
+
+    The middle of the base is at -e from the axis of the masses, from which positions are measured.
+    """
+    e, ratio = properties.eccentricity, half_width / properties.half_width
+    return element if ratio == 1.0 else replace(element, position=(element.position + e) * ratio - e)
+
+
+def dissipator_force_of(properties: RockingProperties) -> float:
+    """ΣF_y of all yielding dissipators and friction dampers in N."""
+    forces = [each.yield_force for each in properties.elements if isinstance(each, YieldingDissipator)]
+    return sum((each.force for each in properties.elements if isinstance(each, FrictionDamper)), sum(forces))
+
+
+def factors_of(name: str, given: Any) -> tuple[float, ...]:
+    """Factors, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included.
+
+    Raises
+    ------
+    InputError
+        If one is negative or not finite, or occurs twice.
+    """
+    if isinstance(given, dict):
+        smallest, largest, count = (real_or_nan(given.get(key)) for key in RANGE)
+        if set(given) != set(RANGE) or not (0.0 <= smallest < largest < np.inf and count in range(2, 1001)):
+            raise InputError(
+                f"{name} must be a list of factors, or a range {{smallest = 0.5, largest = 2.0, count = 4}} of two to "
+                f"1000 of them, zero or positive, but {shown(given)} was given."
+            )
+        given = np.linspace(smallest, largest, int(count)).tolist()
+    listed = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
+    factors = sorted(real_or_nan(value) for value in listed)
+    if not factors or not all(0.0 <= factor < np.inf for factor in factors) or len(set(factors)) < len(factors):
+        raise InputError(
+            f"{name} must be one or more different factors, zero or positive, on the forces of the structure, but "
+            f"{shown(given)} was given."
+        )
+    return tuple(factors)

@@ -1,0 +1,195 @@
+"""The study of a random population of structures."""
+
+from collections.abc import Iterator
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.motion import Suite, intensities
+from rockflex.study._arguments import factors_of
+from rockflex.study._results import RESULTS
+from rockflex.study._tables import Columns, Row, kinds_of
+from rockflex.study.cloud._study import Factors
+from rockflex.study.monte_carlo._population import FACTS, Population, facts_of
+from rockflex.study.monte_carlo._variables import Variables, draws
+from rockflex.study.plan._bench import Bench
+from rockflex.study.plan._chunked import ChunkedPlan
+from rockflex.study.plan._spec import RunsSpec
+
+MOST = 2**32 - 1  # structures with different random numbers
+TRIED = 20  # structures, at most, until one can be built
+OF_STRUCTURE = "resisting_moment recentring_ratio"
+_RUN = "structure number motion group magnitude distance_km model scale nominal_limit error"
+_COLUMNS = (*_RUN.split(), *OF_STRUCTURE.split(), *(measure.name for measure in intensities()), "status", *RESULTS)
+
+
+class MonteCarloStudy(RunsSpec):
+    """Random structures under all records, or under some that are drawn for each structure.
+
+    `variables` are distributions (`uniform`, `log_uniform`, `whole`, `normal`, `lognormal` or `one_of`), formulas of
+    other variables, and numbers. `structure` is a structure as a file describes it; any number in it may be a formula,
+    a text that begins with "=": numbers, names of variables, + - * / **, parentheses, min, max, sqrt, exp and log.
+    Formulas of tendons and elements may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width`
+    (B, m) and `l0r_g` (L_0^r g, N m), so that strengths can be shares of the weight.
+
+    The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
+    `run_cloud`, with the name of the study as `structure`; `number`, which counts the structures from 0; each variable;
+    `weight`, `weight_moment`, `half_width`, `l0r_g`, `resisting_moment` and `recentring_ratio` of the structure. The
+    runs of a structure that cannot be built have a message in `error`. The draw of a variable depends only on `seed`,
+    the number, and the name of the variable: other variables, or more structures, change no value.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> study = rf.MonteCarloStudy(
+    ...     count=1000,
+    ...     variables={"height": {"uniform": [10.0, 40.0]}, "fuse": {"lognormal": [0.3, 0.4]}},
+    ...     structure={
+    ...         "wall_frame": {
+    ...             "height": "= height", "mass": "= 2e4 * height", "stiffness_parameter": 0.0, "base_mass": 4e4,
+    ...             "period": "= 0.05 * height**0.75", "aspect_ratio": 5.0, "damping_ratio": 0.03, "n_modes": 3},
+    ...         "elements": [{"kind": "yielding_dissipator", "stiffness": "= 50 * weight / half_width",
+    ...                       "yield_force": "= fuse * weight"}]},
+    ...     records={"suites": ["fema-p695-far-field"]},
+    ...     records_per_structure=4,
+    ... )
+    >>> study.plan().n_runs
+    4000
+    >>> wall = study.structure_of(0)
+    >>> round(wall.recentring_ratio, 3)
+    3.246
+    """
+
+    study: Literal["monte_carlo"] = Field("monte_carlo", description='"monte_carlo"')
+    count: int = Field(
+        1000, ge=1, le=MOST, description="the number of random structures, a whole number from 1 to 4294967295"
+    )
+    seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
+    variables: dict[str, Any] = Field(description="a table of random variables")
+    structure: dict[str, Any] = Field(description="a table of a structure, such as [structure.frame]")
+    scales: Factors = Field([1.0])
+    records_per_structure: int | None = Field(
+        None, ge=1, description="how many records to draw for each structure, a whole number (default: all records)"
+    )
+
+    def population(self) -> Population:
+        """Return the population of structures.
+
+        Raises
+        ------
+        InputError
+            If a variable or a formula is wrong.
+        """
+        taken = dict.fromkeys(_COLUMNS, "a column of the table")
+        return Population(Variables(self.variables, taken | FACTS), self.structure, self._folder)
+
+    def structure_of(self, number: int) -> RockingProperties:
+        """Return the random structure of a number from 0.
+
+        Raises
+        ------
+        InputError
+            If it cannot be built.
+        """
+        population = self.population()
+        return population.build(population.variables.draw(self.seed, number))
+
+    def checksums(self) -> dict[str, str]:
+        """Return the SHA-256 of the numbers in each file that the structure names, and of a user-defined impact law.
+
+        Raises
+        ------
+        InputError
+            If a file cannot be read, or that law is not defined in a file.
+        """
+        population = self.population()
+        entry = population.entry(population.variables.draw(self.seed, 0))
+        files = {f"structure.{key}": value for key, value in entry.checksums(self._folder).items()}
+        return files | super().checksums()
+
+    def plan(self) -> "MonteCarloPlan":
+        """Load the records, and divide the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a variable or a formula is wrong, none of the first structures can be built, a record cannot be read, or
+            fewer records are there than are to be drawn.
+        """
+        return MonteCarloPlan(self, self.records.load(self._folder))
+
+
+class MonteCarloPlan(ChunkedPlan):
+    """The runs of each random structure, divided into chunks of structures.
+
+    Structures share nothing but the records, so a study of any size fits in memory.
+    """
+
+    def __init__(self, study: MonteCarloStudy, motions: Suite) -> None:
+        self.population, self.seed = study.population(), study.seed
+        self._per_structure = len(motions) if study.records_per_structure is None else study.records_per_structure
+        if self._per_structure > len(motions):
+            raise InputError(
+                f"records_per_structure must be at most the number of records, {len(motions)}, but "
+                f"{self._per_structure} was given."
+            )
+        self.scales = factors_of(study.scales, max(motions, key=lambda motion: motion.pga))
+        first = self._first(study.count)
+        self.bench = Bench({study.name or "random structures": first}, motions, study.assumptions())
+        runs = self._per_structure * len(self.bench.labels) * len(self.scales)
+        super().__init__(motions, study.count, max(1, study.runs_per_chunk // runs))
+
+    def _first(self, count: int) -> RockingProperties:
+        """Return the first structure that can be built."""
+        first: InputError | None = None
+        for number in range(min(count, TRIED)):
+            try:
+                return self.population.build(self.population.variables.draw(self.seed, number))
+            except InputError as error:
+                first = first or error
+        raise InputError(f"None of the first {min(count, TRIED)} structures can be built. Number 0: {first}")
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs."""
+        return self.n_units * self._per_structure * len(self.bench.labels) * len(self.scales)
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        head, *rest = self.bench.columns.items()
+        drawn = dict.fromkeys(self.population.variables.kinds, float)
+        of_structure = dict.fromkeys(FACTS, float) | kinds_of(OF_STRUCTURE, float)
+        return dict([head]) | {"number": int} | drawn | of_structure | dict(rest)
+
+    def records_of(self, number: int) -> list[int]:
+        """Return the places of the records of a structure, in the order of the suite."""
+        if self._per_structure == len(self.motions):
+            return [*range(len(self.motions))]
+        order = np.argsort(draws(self.seed, number, "", len(self.motions)), kind="stable")
+        return sorted(order[: self._per_structure].tolist())
+
+    def rows(self, unit: int) -> Iterator[Row]:
+        """Draw a structure, and simulate it."""
+        row: Row = {"number": unit}
+        try:
+            row |= self.population.variables.draw(self.seed, unit)
+            properties = self.population.build(row)
+        except InputError as error:
+            for run in self._runs(unit):
+                yield self.bench.head(*run) | row | {"error": str(error)}
+            return
+        row |= facts_of(properties)
+        row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
+        bench = self.bench.with_structure(properties)
+        for run in self._runs(unit):
+            yield bench.run(*run) | row
+
+    def _runs(self, number: int) -> Iterator[tuple[int, int, int, float]]:
+        models = range(len(self.bench.labels))
+        return (
+            (0, record, model, scale) for record in self.records_of(number) for model in models for scale in self.scales
+        )

@@ -1,0 +1,152 @@
+"""Loops of a base and of its elements, from a cyclic pushover and from a run."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+import rockflex as rf
+from drawing import drawn
+
+WALL = rf.CantileverWithTipMass(
+    height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.5, damping_ratio=0.02
+)
+TENDON = rf.Tendon(300e3, 8e6, yield_force=500e3, post_yield_ratio=0.02)
+FUSES = [rf.YieldingDissipator(60e6, 100e3, 0.02, x) for x in (-0.5, 0.5)]
+HELD = rf.Restrained(WALL, [TENDON, *FUSES])
+ARM, WEIGHT, SLOPE = 1.5, 60e3 * 9.81, 50e3 * 10.0 * 9.81
+MOTION = rf.load_suite("fema-p695-far-field")["FF-2-a"].scaled(1.5)
+PULSE = rf.ricker_pulse(5.0, 1.2)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return rf.simulate(HELD, MOTION, "MDOF-S")
+
+
+def legend(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_a_pushover_is_drawn_with_its_parts():
+    curve = rf.moment_rotation(HELD, [0.01, -0.02, 0.03, 0.0])
+    figure = drawn(rf.plot_loops(curve))
+    base, *elements = figure.axes
+    assert (base.get_xlabel(), base.get_ylabel()) == ("θ [rad]", "M [MN m]")
+    names = ["total", "weight", "1 tendon, x = 0 m", "2 fuse, x = −0.5 m", "3 fuse, x = 0.5 m"]
+    assert legend(figure) == names
+    total, weight, *parts = base.get_lines()
+    np.testing.assert_array_equal(total.get_xdata(), curve.rotation)
+    np.testing.assert_allclose(total.get_ydata(), curve.moment / 1e6, rtol=1e-14)
+    np.testing.assert_allclose(weight.get_ydata() + sum(part.get_ydata() for part in parts), total.get_ydata())
+    for place, (axes, part) in enumerate(zip(elements, parts, strict=True)):
+        (line,) = axes.get_lines()
+        np.testing.assert_array_equal(line.get_xdata(), curve.element_elongation[:, place])
+        np.testing.assert_allclose(line.get_ydata(), curve.element_force[:, place] / 1e3, rtol=1e-14)
+        assert (axes.get_title(), axes.get_ylabel()) == (names[2 + place], "F [kN]")
+        assert to_hex(line.get_color()) == to_hex(part.get_color())
+    assert len({to_hex(line.get_color()) for line in base.get_lines()}) == 5
+
+
+def test_a_run_is_drawn_without_its_states_in_contact(run):
+    figure = drawn(rf.plot_loops(run))
+    assert figure.legends[0].get_title().get_text() == "FF-2-a"
+    base, tendon, *_ = figure.axes
+    total = base.get_lines()[0]
+    rocking = run.history.side != 0.0
+    theta, force = run.history.rotation[rocking], run.history.element_force[rocking]
+    np.testing.assert_array_equal(total.get_xdata(), theta)
+    side = np.sign(theta)
+    levers = np.array([ARM * side, (ARM + 0.5 * side) * side, (ARM - 0.5 * side) * side]).T
+    expected = side * WEIGHT * ARM - SLOPE * theta + (levers * force).sum(axis=1)
+    away = theta != 0.0
+    np.testing.assert_allclose(total.get_ydata()[away] * 1e6, expected[away], rtol=1e-9)
+    np.testing.assert_array_equal(tendon.get_lines()[0].get_ydata() * 1e3, run.history.element_force[:, 0])
+    assert rf.plot_loops(run, title="mine $1").legends[0].get_title().get_text() == r"mine \$1"
+
+
+def test_many_elements_fill_rows_and_a_free_base_has_none():
+    many = rf.Restrained(
+        WALL, [TENDON, *FUSES, rf.FrictionDamper(5e4, -1.0), rf.ViscousDamper(1e5), rf.Tendon(1e5, 1e6, 1.2)]
+    )
+    figure = drawn(rf.plot_loops(rf.moment_rotation(many, [0.02, -0.02])))
+    assert [axes.get_title()[:8] for axes in figure.axes[1:]] == [
+        "1 tendon", "2 fuse, ", "3 fuse, ", "4 fricti", "5 viscou", "6 tendon"
+    ]  # fmt: skip
+    assert len({axes.get_position().y0 for axes in figure.axes[1:]}) == 3
+    free = drawn(rf.plot_loops(rf.moment_rotation(WALL, [0.02, -0.02])))
+    assert len(free.axes) == 1
+    assert legend(free) == ["total"]
+
+
+def test_a_run_that_falls_is_cut_and_one_at_rest_is_empty():
+    initial = rf.InitialState(rotation=0.05, rotation_velocity=1.5)
+    held = rf.Restrained(WALL, FUSES[0])
+    fallen = rf.simulate(held, rf.quiet_motion(20.0), "2DOF-S", initial=initial)
+    assert fallen.status == "overturned"
+    assert drawn(rf.plot_loops(fallen)).axes[0].get_xlim()[1] < 0.6
+    still = rf.simulate(HELD, PULSE.scaled(0.01), "2DOF-S")
+    assert still.status == "no_uplift"
+    assert drawn(rf.plot_loops(still)).axes[0].get_lines()[0].get_xdata().size == 0
+
+
+def test_the_static_line_of_a_base_with_fuses_is_its_path(run):
+    elastic = rf.simulate(rf.Restrained(WALL, rf.Tendon(300e3, 8e6)), MOTION, "MDOF-S")
+    figure = drawn(rf.plot_moment_rotation([run, elastic], ["fuses", "tendon"]))
+    assert legend(figure) == [
+        "resisting moment of weight and elements",
+        r"static, $\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$",
+    ]
+    path = figure.axes[0].get_lines()[1]
+    total = rf.plot_loops(run).axes[0].get_lines()[0]
+    np.testing.assert_array_equal(path.get_xydata(), total.get_xydata())
+    assert figure.axes[0].get_ylim()[1] > np.abs(path.get_ydata()).max()
+
+
+def test_the_law_of_a_base_with_fuses_is_a_first_push():
+    figure = drawn(rf.plot_moment_rotation_laws(HELD, rotation=0.03))
+    (law,) = [line for line in figure.axes[1].get_lines() if line.get_label() == "rocking"]
+    curve = rf.moment_rotation(HELD, [0.03])
+    theta, moment = law.get_data()
+    half = theta.size // 2
+    np.testing.assert_allclose(theta[half:], curve.rotation[1:])
+    np.testing.assert_allclose(moment[half:] * 1e6, curve.moment[1:])
+    np.testing.assert_allclose(theta, -theta[::-1])
+    np.testing.assert_allclose(moment, -moment[::-1])
+    said = [text.get_text() for text in figure.axes[1].texts]
+    assert f"$M_r$ = {curve.uplift_moments[0] / 1e6:.3g} MN m" in said
+    assert not any("slope" in text for text in said)
+
+
+def test_the_law_marks_where_a_fuse_no_longer_helps():
+    held = rf.Restrained(WALL, rf.YieldingDissipator(60e6, 100e3))
+    axes = drawn(rf.plot_moment_rotation_laws(held, rotation=0.3)).axes[1]
+    (mark,) = [line for line in axes.get_lines() if line.get_label() == "_0"]
+    zero = (WEIGHT + 100e3) * ARM / SLOPE
+    np.testing.assert_allclose(mark.get_xdata(), [-zero, zero])
+    assert any(f"$M$ = 0 at ±{zero:.3g} rad" in text.get_text() for text in axes.texts)
+
+
+@pytest.mark.parametrize(
+    ("result", "message"),
+    [
+        (
+            3.0,
+            "result must be a Response or a MomentRotation, but float was given. Give what simulate or moment_rotation "
+            "returned.",
+        ),
+        (
+            rf.simulate(WALL, MOTION, "2DOF-S", output="peaks"),
+            "responses[0] (2DOF-S under 'FF-2-a') keeps peaks only, but a plot needs the history. "
+            'Simulate it with output="history".',
+        ),
+        (
+            rf.simulate(WALL, PULSE, "fixed"),
+            "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "
+            'as "2DOF-S".',
+        ),
+    ],
+)
+def test_bad_input_is_explained(result, message):
+    with pytest.raises(rf.InputError) as caught:
+        rf.plot_loops(result)
+    assert str(caught.value) == message
