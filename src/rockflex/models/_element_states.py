@@ -3,7 +3,7 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models._elements import BROKEN, DOWN, LEFT, RIGHT, UP, Bar, Spring, arm_of
+from rockflex.models._elements import BROKEN, DOWN, LEFT, RIGHT, UP, Bar, Slider, Spring, arm_of
 from rockflex.models._kept import acting_side, by_phase
 from rockflex.models._label import RockingModel
 from rockflex.models._quantities import tensions
@@ -42,6 +42,9 @@ def element_forces(model: RockingModel, states: Array) -> Array:
             vector[:, layout.rotation] = 2.0 * np.sin(half)
             vector[:, layout.spin] *= np.cos(half)
         found[chosen] = vector @ tensions(model, key).T
+    for place, each in enumerate(model.elements):
+        if isinstance(each, Slider):  # where it turns back without a stop, it would take more than F_0 to hold the base
+            np.clip(found[:, place], -each.force, each.force, out=found[:, place])
     return found
 
 
