@@ -20,9 +20,16 @@ SETS = {
     "hardening fuse": [rf.YieldingDissipator(20.7e6, 172e3, 0.4, -0.5)],
     "hooks": [rf.YieldingDissipator(20.7e6, 172e3, 0.05, x, tension_only=True) for x in (-0.771, 0.4)],
     "tendons": [rf.Tendon(434e3, 29.8e6, 0.0, 508e3, 0.01), rf.Tendon(90e3, 20e6, 0.6, 148e3, 0.02)],
+    "stiff tendon": [rf.Tendon(100e3, 29.8e6, 0.5, 148e3, 0.3)],  # yields downwards before it is slack
+    "sliders": [rf.FrictionDamper(60e3, x) for x in (-0.7, 0.4)],
+    "breaking": [
+        rf.YieldingDissipator(20.7e6, 172e3, 0.05, -0.771, rupture_elongation=0.03),
+        rf.YieldingDissipator(20.7e6, 172e3, 0.2, 0.5, True, 0.02),
+        rf.Tendon(434e3, 29.8e6, 0.0, 508e3, 0.01, 0.012),
+    ],
     "dampers": [rf.ViscousDamper(78.5e3, -0.883), rf.ViscousDamper(178.5e3, 0.3)],
 }
-SETS["all"] = [each for elements in SETS.values() for each in elements]
+SETS["all"] = [each for name in ("one fuse", "hooks", "stiff tendon", "sliders", "dampers") for each in SETS[name]]
 
 
 def held(elements, eccentricity=0.0):
@@ -43,6 +50,41 @@ def test_the_balance_closes(name, eccentricity, model):
     assert (energy.elements[-1] > 0.01 * np.abs(energy.input).max() / len(SETS[name])).all()
     assert np.array_equal(run.element_energy, energy.elements[-1])
     assert energy.tendons is energy.element_strain
+
+
+@pytest.mark.parametrize("name", [name for name in SETS if name not in ("sliders", "all")])
+@pytest.mark.parametrize("model", ["2DOF-C", "MDOF-C-SI"])
+def test_the_balance_of_large_rotations_closes(name, model):
+    run = rf.simulate(held(SETS[name], 0.3), MOTION, model, free_vibration=3.0)
+    assert run.impact_times.size == run.n_impacts > 10
+    assert run.energy.closing_error < 1e-9
+    assert (np.diff(run.energy.elements, axis=0) >= 0.0).all()
+    assert (run.element_energy > 0.0).all()
+
+
+def test_a_friction_damper_takes_its_force_times_the_way_it_slides():
+    (slider,) = sliders = [rf.FrictionDamper(90e3, 0.4)]
+    run = rf.simulate(held(sliders), MOTION, "2DOF-S", free_vibration=3.0)
+    way = np.abs(np.diff(run.element_elongation[:, 0])).sum()
+    assert run.element_energy[0] == pytest.approx(slider.force * way, rel=1e-12)
+    assert np.abs(run.element_force).max() <= slider.force == run.max_element_force[0]
+    assert (np.abs(run.element_force[run.side != 0.0]) > 0.999 * slider.force).mean() > 0.9
+    assert run.element_yielded.tolist() == [True]
+
+
+def test_what_breaks_gives_away_what_it_stored():
+    bar = rf.YieldingDissipator(20.7e6, 172e3, 0.2, 0.0, rupture_elongation=0.02)
+    run = rf.simulate(held([bar]), MOTION, "2DOF-S")
+    k = int(np.flatnonzero(run.element_elongation[:, 0] >= 0.02 * (1.0 - 1e-12))[0])
+    assert run.element_force[k, 0] == pytest.approx(run.max_element_force[0], rel=1e-9)
+    assert not run.element_force[k + 1 :].any()
+    reach = bar.yield_force / bar.stiffness
+    largest = 0.2 * bar.stiffness * 0.02 + 0.8 * bar.yield_force
+    assert run.max_element_force[0] == pytest.approx(largest, rel=1e-12)
+    assert run.max_element_elongation[0] > 0.02
+    stored = largest**2 / (2.0 * bar.stiffness) + 0.5 * 0.2 * 0.8 * bar.stiffness * (0.02 - reach) ** 2
+    assert run.energy.elements[k + 1, 0] - run.energy.elements[k, 0] == pytest.approx(stored, rel=1e-9)
+    assert run.energy.element_strain[k + 1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_tendon_that_went_slack_gave_its_energy_back():
@@ -121,5 +163,4 @@ def test_the_friction_demand_knows_the_branches():
     structure = held(SETS["fuses"] + SETS["hooks"])
     run = rf.simulate(structure, MOTION, "2DOF-S")
     fine = rf.simulate(structure, MOTION.refined(40), "2DOF-S")
-    assert fine.friction_demand.max() <= run.required_friction * (1.0 + 1e-6)
-    assert run.required_friction == pytest.approx(fine.friction_demand.max(), rel=1e-2)
+    assert run.required_friction == pytest.approx(fine.friction_demand.max(), rel=1e-3)

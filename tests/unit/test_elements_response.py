@@ -185,3 +185,17 @@ def test_complete_models_have_the_true_elongation(model):
         np.testing.assert_allclose(run.element_force[:, place], each.initial_force + each.stiffness * chord)
     assert np.abs(theta).max() > 0.005
     assert not run.element_energy.any()
+
+
+def test_peaks_of_dampers_at_large_rotations():
+    structure = held(DAMPERS, 0.3)
+    run = rf.simulate(structure, MOTION, "2DOF-C", output="peaks")
+    fine = rf.simulate(structure, MOTION.refined(20), "2DOF-C")
+    theta, p = fine.rotation, fine.history.model.properties
+    for place, each in enumerate(DAMPERS):
+        right, left = p.pivot(1).arm - each.position, p.pivot(-1).arm + each.position
+        rate = np.where(fine.side < 0.0, left, right) * np.cos(0.5 * theta) * np.abs(fine.rotation_velocity)
+        force = each.coefficient * np.where(fine.side == 0.0, 0.0, rate)
+        np.testing.assert_allclose(np.abs(fine.element_force[:, place]), force, atol=1e-6)
+        assert force.max() <= run.max_element_force[place] * (1.0 + 1e-9)
+        assert run.max_element_force[place] == pytest.approx(force.max(), rel=1e-3)

@@ -43,8 +43,8 @@ def element_forces(model: RockingModel, states: Array) -> Array:
             vector[:, layout.spin] *= np.cos(half)
         found[chosen] = vector @ tensions(model, key).T
     for place, each in enumerate(model.elements):
-        if isinstance(each, Slider):  # where it turns back at once, the force changes its sign in an instant
-            found[:, place] = np.clip(found[:, place], -each.force, each.force)
+        if isinstance(each, Slider):  # where it turns back without a stop, it would take more than F_0 to hold the base
+            np.clip(found[:, place], -each.force, each.force, out=found[:, place])
     return found
 
 

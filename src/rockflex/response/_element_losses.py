@@ -3,12 +3,12 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.modal import FrictionDamper
 from rockflex.models import (
     SIDE,
     Bar,
     Dashpot,
     RockingModel,
+    Slider,
     arms,
     element_energies,
     elongations,
@@ -31,13 +31,13 @@ def element_losses(model: RockingModel, states: Array, swing: Array) -> Array:
     broken = np.isnan(plastic)
     breaks = broken[1:] & ~broken[:-1]
     yielded = np.where(broken[1:], 0.0, np.abs(np.diff(plastic, axis=0)))
-    for place, (each, given) in enumerate(zip(model.elements, model.properties.elements, strict=True)):
+    for place, each in enumerate(model.elements):
         if isinstance(each, Bar):
             found[:, place] = (1.0 - each.ratio) * each.yield_force * yielded[:, place]
             released = stored[:-1, place] - stored[1:, place]
             found[breaks[:, place], place] = released[breaks[:, place]]
         elif isinstance(each, Dashpot):
             found[:, place] = each.coefficient * reach[:, place] ** 2 * swing
-        elif isinstance(given, FrictionDamper):
-            found[:, place] = given.force * moved[:, place]
+        elif isinstance(each, Slider):
+            found[:, place] = each.force * moved[:, place]
     return found

@@ -14,9 +14,8 @@ import numpy as np
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, accelerations, element_energies, stored_energies
+from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, element_energies, stored_energies
 from rockflex.response._element_losses import element_losses
-from rockflex.response._quintic import quintic
 from rockflex.solve import ClosedForm
 
 REACH = 8.0  # radians of the fastest mode covered by one Gauss rule, which then has at most 20 points
@@ -120,6 +119,8 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         counted = np.diff(states[:, HEADER + model.layout.damped : HEADER + model.layout.yielded + 1], axis=0)
         # The counters are not advanced while contact is solved in closed form, and resume when it ends.
         damped, work, yielded = np.where(integrated, counted.T, (damped, work, yielded))
+        if model.layout.swept >= 0:
+            swing = np.where(integrated, np.diff(model.layout.of(states, model.layout.swept)), swing)
     return EnergyLedger(
         kinetic=kinetic,
         strain=strain,
@@ -155,38 +156,14 @@ def _work(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
     places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
     drag = 2.0 * p.zeta * p.omega * p.effective_mass
     damped, work, swing = (np.zeros(span.size) for _ in range(3))
-    turn = _Turn(model, states)
     for place, weight in zip(places, weights, strict=True):
         inside = motion.between(states, float(place))
         v, spin = inside[:, n : 2 * n], inside[:, layout.spin]
         acceleration = states[:-1, GROUND] + place * np.diff(states[:, GROUND])
         damped += weight * span * (v**2 @ drag)
         work -= weight * span * acceleration * (p.l0r * spin + v @ p.effective_mass)
-        swing += weight * span * turn.swing(inside, float(place)) ** 2
+        swing += weight * span * spin**2
     return damped, work, swing
-
-
-class _Turn:
-    """The rotation of the base between adjacent states: exact where the motion is solved in closed form."""
-
-    def __init__(self, model: RockingModel, states: Array) -> None:
-        self._model = model
-        self._states = states
-        self._bend = accelerations(model, states)[:, -1:] if model.integrated else None
-
-    def swing(self, inside: Array, place: float) -> Array:
-        """Return δ'/r at a place of every interval, with the states `inside` of the closed form."""
-        layout = self._model.layout
-        rotation, spin = inside[:, layout.rotation], inside[:, layout.spin]
-        if self._bend is None:
-            return spin
-        known, rate = (layout.of(self._states, each)[:, None] for each in (layout.rotation, layout.spin))
-        value, slope, _ = quintic(known, rate, self._bend, np.diff(self._states[:, TIME]), place)
-        rocking = self._states[:-1, SIDE] != 0.0
-        spin = np.where(rocking, slope[:, 0], spin)
-        if not self._model.complete:
-            return spin
-        return spin * np.cos(0.5 * np.where(rocking, value[:, 0], rotation))
 
 
 def _rule(label: str, fastest: float, longest: float) -> tuple[Array, Array]:
