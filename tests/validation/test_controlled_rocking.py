@@ -6,7 +6,8 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import SIDE, phases_at
-from rockflex.models._elements import BROKEN, DOWN, INWARD, OUTWARD, SLACK, UP
+from rockflex.models._element import BROKEN, DOWN, SLACK, UP
+from rockflex.models._slider import INWARD, OUTWARD
 from twins.controlled import Bar, ControlledTwin, Dashpot, Slider
 
 FRAME = make_frame(n_stories=3, stiffness_ratio=0.125, period=0.6, aspect_ratio=7.0, damping_ratio=0.03)

@@ -1,6 +1,8 @@
 """Models of a structure on a base that may uplift."""
 
+from rockflex.models._bar import Bar
 from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._element import BROKEN, Dashpot, Element, Spring
 from rockflex.models._element_states import (
     arms,
     element_energies,
@@ -9,19 +11,7 @@ from rockflex.models._element_states import (
     plastic_stretches,
     stretch_per_arm,
 )
-from rockflex.models._elements import (
-    BROKEN,
-    CLOSED,
-    LEFT,
-    RIGHT,
-    Bar,
-    Dashpot,
-    Element,
-    Slider,
-    Spring,
-    arm_of,
-    elements_of,
-)
+from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of
 from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at
 from rockflex.models._impact import (
     ForgottenLaw,
@@ -68,6 +58,7 @@ from rockflex.models._phase import (
 from rockflex.models._pulls import SUMS, pulls_of
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
 from rockflex.models._reactions import Reactions, printed_reactions, reactions
+from rockflex.models._slider import Slider
 from rockflex.models._stored import floor_accelerations, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 

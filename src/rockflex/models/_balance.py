@@ -6,7 +6,8 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.modal import RockingProperties
-from rockflex.models._elements import Element, arm_of
+from rockflex.models._element import Element
+from rockflex.models._elements import arm_of
 
 FINE = 1e-3  # of the margin: sums this close to each other count as one
 

@@ -3,10 +3,13 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models._elements import BROKEN, DOWN, LEFT, RIGHT, UP, Bar, Slider, Spring, arm_of
+from rockflex.models._bar import Bar
+from rockflex.models._element import BROKEN, DOWN, UP, Spring
+from rockflex.models._elements import LEFT, RIGHT, arm_of
 from rockflex.models._kept import acting_side, by_phase
 from rockflex.models._label import RockingModel
 from rockflex.models._quantities import tensions
+from rockflex.models._slider import Slider
 
 
 def stretch_per_arm(model: RockingModel, turn: Array) -> Array:

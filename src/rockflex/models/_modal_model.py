@@ -9,12 +9,11 @@ from rockflex._constants import GRAVITY
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._element import Dashpot, Element
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
     RIGHT,
-    Dashpot,
-    Element,
     arm_of,
     border_of,
     changes_of,

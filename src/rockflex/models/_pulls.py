@@ -10,7 +10,8 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.modal import RockingProperties
-from rockflex.models._elements import CLOSED, Element, arm_of, is_held, memories
+from rockflex.models._element import Element
+from rockflex.models._elements import CLOSED, arm_of, is_held, memories
 from rockflex.models._phase import Key
 
 # Indices in the sums: Σ f r, Σ k r², Σ c r² for the moment; Σ f, Σ k r, Σ c r for the force. Those with f also have a

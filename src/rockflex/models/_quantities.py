@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex.models._elements import CLOSED, RIGHT, Slider, arm_of, border_of, is_held, memories
+from rockflex.models._elements import CLOSED, RIGHT, arm_of, border_of, is_held, memories
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
+from rockflex.models._slider import Slider
 
 Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by name
 

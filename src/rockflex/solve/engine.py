@@ -16,19 +16,18 @@ from rockflex._shown import shown
 from rockflex.models import (
     FREEDOMS,
     HEADER,
-    LINEAR,
     PULLS,
-    VERTICAL,
     Key,
     NonlinearModel,
     Quantities,
     RockingModel,
     impact_of,
 )
+from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
-from rockflex.solve.adaptive.layout import Flow, Integrator, stages_of
+from rockflex.solve.adaptive.layout import Integrator, stages_of
 from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import (
@@ -53,7 +52,6 @@ MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
 EVENTS = 512  # initial room in a history for states between samples
 SLICE = 0.1  # of work in s, between checks whether to stop the run
 TOLERANCE = 1e-10  # relative, of a step
-TREMOR = 0.01  # m/s²
 
 # Separate entries, because their argument types differ: the first has no vector field and is compiled without
 # integrator.
@@ -99,7 +97,7 @@ class Engine:
             # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
             for side in model.sides if model.integrated else (0,):
                 self._phases.place(model.start(side))
-            self._flow = _flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
+            self._flow = flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
 
     @cached_property
     def pace(self) -> Pace:
@@ -281,26 +279,3 @@ class Engine:
 def _samples(at: Progress) -> int:
     """Return the number of completed samples."""
     return int(at.offset + at.index)
-
-
-def _flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) -> Flow:
-    """Return the parameters of the integrated phases of a model."""
-    own = VERTICAL if model.complete else LINEAR
-    kinds = quantities.kinds if model.complete else np.full(len(quantities), LINEAR, dtype=np.int64)
-    turning = [LINEAR] * (model.layout.remembered > 0)  # the row of θ'
-    return Flow(
-        field=model.field(),
-        kinds=np.concatenate(([LINEAR], kinds, turning, [own])).astype(np.int64),
-        levers=np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1 + len(turning), 2)))),
-        rest=model.properties.resting_reaction,
-        scale=_scale(model),
-        tolerance=tolerance,
-    )
-
-
-def _scale(model: RockingModel) -> Array:
-    """Return the sizes of D, D', θ, θ' and z due to an acceleration of `TREMOR`; smaller errors do not matter."""
-    p = model.properties
-    rotation = TREMOR / GRAVITY * p.m_tot * p.half_width / p.l0r
-    fall = math.sqrt(p.l0r * GRAVITY / p.i_theta)
-    return np.concatenate((TREMOR / p.omega**2, TREMOR / p.omega, [rotation, rotation * fall, TREMOR / GRAVITY]))
