@@ -136,3 +136,29 @@ def test_an_interrupted_run_continues_to_the_bit(slice_of_work):
     parts = engine_of(elements).run(MOTION.acceleration, MOTION.dt, history=True, slice_of_work=slice_of_work)
     assert (whole.peaks == parts.peaks).all()
     assert (whole.states == parts.states).all()
+
+
+def test_friction_of_a_yielding_structure_that_never_yields_is_that_of_an_elastic_one():
+    dampers = [rf.FrictionDamper(FORCE, x) for x in SIDES]
+    held = rf.Restrained(FRAME, dampers)
+    elastic = rf.simulate(held, MOTION, "2DOF-S", output="peaks")
+    yielding = rf.simulate(held, MOTION, "2DOF-S-BW", output="peaks", bouc_wen=rf.BoucWen(1e3))
+    assert yielding.n_uplifts == elastic.n_uplifts > 5
+    for name in PEAKS[:4]:
+        assert getattr(yielding, name) == pytest.approx(getattr(elastic, name), rel=1e-8)
+
+
+def test_complete_models_take_no_friction_dampers():
+    with pytest.raises(rf.InputError, match=r"2DOF-C does not take friction dampers: .* Use 2DOF-S, or") as e:
+        rf.simulate(rf.Restrained(FRAME, rf.FrictionDamper(FORCE)), MOTION, "2DOF-C")
+    assert e.value.field == "elements"
+    rf.simulate(rf.Restrained(FRAME, rf.FrictionDamper(0.0)), MOTION, "2DOF-C", output="peaks")
+
+
+def test_a_complete_model_settles_where_its_fuses_hold_it_open():
+    strong = rf.Restrained(FRAME, [rf.YieldingDissipator(K, 1.2 * WEIGHT, 0.02, x) for x in (-B, B)])
+    motion = MOTION.scaled(2.0)
+    settled = rf.simulate(strong, motion, "2DOF-C", output="peaks", free_vibration="settle")
+    longer = rf.simulate(strong, motion, "2DOF-C", output="peaks", free_vibration=300.0)
+    assert abs(settled.residual_rotation) > 1e-4
+    assert settled.residual_rotation == pytest.approx(longer.residual_rotation, rel=1e-3)

@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import minimize
 
 import rockflex as rf
+from builders import make_frame
 from design_case import HAZARD, HEIGHT, WIDTHS
 from rockflex.fragility import resample_weights, resampled_exceedance
 from rockflex.fragility._regression import Scoring, fit_curves
@@ -194,3 +195,13 @@ def test_damaged_arguments_of_the_table(runs, change, arguments, message):
     with pytest.raises(rf.InputError) as caught:
         rf.design_table(runs.drop(**change or {"columns": []}), 0.02, **arguments)
     assert str(caught.value).startswith(message)
+
+
+def test_a_level_of_tendons_leaves_fuses_where_they_are():
+    frame = make_frame(n_stories=3, stiffness_ratio=0.125, period=0.6, aspect_ratio=7.0, damping_ratio=0.03)
+    fuse = rf.YieldingDissipator(1e8, 1e5, position=0.5)
+    own = rf.Restrained(frame, [fuse, rf.Tendon(1e5, 1e6)]).rocking()
+    held = rf.TendonLevel(prestress_ratio=0.2, stiffness_ratio=0.5).held(own)
+    assert held.elements[1:] == (fuse,)
+    assert held.prestress == pytest.approx(0.2 * own.m_tot * 9.81)
+    assert rf.TendonLevel().held(own).elements == (fuse,)

@@ -74,13 +74,15 @@ class TendonLevel:
                 )
 
     def held(self, properties: RockingProperties) -> RockingProperties:
-        """The structure with this tendon in place of any other; without a tendon if both ratios are zero."""
+        """The structure with this tendon in place of any other; without one if both ratios are zero."""
+        others = tuple(each for each in properties.elements if not isinstance(each, Tendon))
         if not (self.prestress_ratio or self.stiffness_ratio):
-            return replace(properties, elements=())
+            return replace(properties, elements=others)
         weight = properties.m_tot * GRAVITY
         stiffness = self.stiffness_ratio * properties.l0r * GRAVITY / properties.half_width**2
         limit = None if self.yield_ratio is None else self.yield_ratio * weight
-        return replace(properties, elements=Tendon(self.prestress_ratio * weight, stiffness, yield_force=limit))
+        tendon = Tendon(self.prestress_ratio * weight, stiffness, yield_force=limit)
+        return replace(properties, elements=(tendon, *others))
 
 
 class Design(NamedTuple):

@@ -121,7 +121,7 @@ class DesignStudy(StructuresSpec):
         if self.tendons:
             raise InputError(
                 "A search varies the elements of the structure itself by factors. Leave out the levels [[tendons]], "
-                "and give the structure its tendons as [[structures.tendons]]."
+                "and give the structure its tendons as [[structures.elements]]."
             )
         search_of(self.document())
         self._space(self.search)
