@@ -13,16 +13,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
-from rockflex.models import (
-    FREEDOMS,
-    HEADER,
-    PULLS,
-    Key,
-    NonlinearModel,
-    Quantities,
-    RockingModel,
-    impact_of,
-)
+from rockflex.models import FREEDOMS, HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
 from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
@@ -221,7 +212,7 @@ class Engine:
     def _integrator(self, motion: Motion, log: Log, at: Progress) -> Integrator | None:
         if self._flow is None:
             return None
-        motion.pivots[:, :PULLS] = self._flow.field.pivots[:, :PULLS]
+        motion.pivots[:] = self._flow.field.pivots
         flow = self._flow._replace(field=self._flow.field._replace(pivots=motion.pivots))
         return Integrator(flow, stages_of(motion.state, self.model.layout.core + 1, self._n_rows, log.work, at))
 
