@@ -44,6 +44,11 @@ def sensitivity(structure, motion, model, **options):
     )
 
 
+def turned(response):
+    """The one peak with a sign, of the mirror image."""
+    return {"residual_rotation": pytest.approx(-response.residual_rotation, rel=0.0, abs=0.0, nan_ok=True)}
+
+
 def assert_same_peaks(one, other, rtol, forces=1.0):
     if rtol > 1e-4:  # such a motion tells rounding from nothing
         return
@@ -59,7 +64,7 @@ def mirrored(structure, motion, model, **options):
 
 def assert_mirrored(one, other):
     """To the last bit."""
-    assert one.peaks() == other.peaks()
+    assert one.peaks() == other.peaks() | turned(other)
     nodes, opposite = one.history.states, other.history.states
     n = one.history.model.properties.n_modes
     assert np.array_equal(nodes[:, 0], opposite[:, 0])

@@ -39,6 +39,11 @@ def sensitivity(structure, motion, model="MDOF-S"):
     )
 
 
+def turned(response):
+    """The one peak with a sign, of the mirror image."""
+    return {"residual_rotation": pytest.approx(-response.residual_rotation, rel=0.0, abs=0.0, nan_ok=True)}
+
+
 def assert_same_peaks(one, other, rtol, *, later=0.0, forces=1.0):
     assert (one.status, one.nominal_overturning) == (other.status, other.nominal_overturning)
     for name in VALUES:
@@ -55,7 +60,7 @@ def assert_same_peaks(one, other, rtol, *, later=0.0, forces=1.0):
 def test_a_mirrored_record_mirrors_the_response(given_, motion, model):
     structure = Frame(**given_)
     one, other = simulate(structure, motion, model), simulate(structure, motion.scaled(-1.0), model)
-    assert one.peaks() == other.peaks()
+    assert one.peaks() == other.peaks() | turned(other)
     assert np.array_equal(one.history.states[:, 0], other.history.states[:, 0])
     assert np.array_equal(one.history.states[:, 1:], -other.history.states[:, 1:])
 

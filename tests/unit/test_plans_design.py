@@ -145,8 +145,8 @@ def test_the_example_is_a_study():
         (
             {"limits": ["half"]},
             "limits: limit must be a rotation from 0.0001 rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
-            '"nominal" or "0.5 nominal" in the same range, a limit state (uplift, rocking, nominal, overturning), or a '
-            "result with its bound, such as \"max_base_moment > 5e6\", but 'half' was given.",
+            '"nominal" or "0.5 nominal" in the same range, a limit state (uplift, rocking, nominal, tendon_yield, '
+            "overturning), or a result with its bound, such as \"max_base_moment > 5e6\", but 'half' was given.",
         ),
         ({"measure": "relative_pgv"}, "measure: measure must not depend on the base, as a level of relative_pgv does."),
         ({"measure": "pgw"}, "measure: measure must be one of pga, pgv,"),

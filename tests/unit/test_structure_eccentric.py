@@ -65,10 +65,6 @@ def test_the_outer_eccentricity_holds():
             lambda: rf.Eccentric(FRAME, -1.2),
             "eccentricity must be smaller than half_width, 1.1955 m, to either side, but -1.2 m was given.",
         ),
-        (
-            lambda: rf.Eccentric(rf.Restrained(FRAME, rf.Tendon(1e5, 1e6, 1.1)), 0.3),
-            "Tendons must pass through the base, from -1.4955 to 0.895497 m, but one is at 1.1 m.",
-        ),
     ],
 )
 def test_errors(call, says):

@@ -118,6 +118,7 @@ VALUES = {
     rf.OutcomeProbabilities: lambda: rf.fit_outcomes(*RUNS).probabilities([0.5, 1.5]),
     rf.OverturningScales: lambda: rf.overturning_scales(frame(), motion(), [0.01, 0.02]),
     rf.PinnedBeam: lambda: rf.pinned_beam("flexure", 0.5),
+    rf.MomentRotation: lambda: rf.moment_rotation(frame(), [0.01, -0.01]),
     rf.Pivot: lambda: rf.Eccentric(frame(), 0.1).rocking().pivot(-1),
     rf.PopulationStatistics: statistics,
     rf.Progress: lambda: rf.Progress(3, 2, 1, 64),

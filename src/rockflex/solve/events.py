@@ -199,7 +199,8 @@ def cross(
             else:
                 remember(system, p, motion)
                 enter(system, at, int(system.links[p, CHANGED + int(owner)]), motion)
-            keep(log, now, side, here, motion.state)
+            if at.onset == INSIDE:
+                keep(log, now, side, here, motion.state)
             at.resume = 0.0
             at.fresh_rows = True
             if steps is not None:

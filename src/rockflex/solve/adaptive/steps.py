@@ -26,11 +26,13 @@ def step_through(
             if log.work[LEFT] < 0.0 or room_left(log) < 0:
                 return False
             here, longest = piece[i] + slope * at.begun, dt - at.begun
+            proposed = at.step
             step = take_step(flow, side, Span(time + at.begun, until, here, slope, longest), stages)
             if step == FAILED:
                 return True
             span = Span(time + at.begun, until, here, slope, step)
             if not nothing_hides(system, flow, at.phase, span, limits, log, stages):
+                at.step = proposed  # the closer look repeats this step, so that the motion does not depend on the rows
                 return True
             step_over(stages)
             at.begun = dt if step == longest else at.begun + step
