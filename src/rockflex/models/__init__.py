@@ -11,7 +11,7 @@ from rockflex.models._element_states import (
     plastic_stretches,
     stretch_per_arm,
 )
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of
+from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of, stiffness_of_fuses
 from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at
 from rockflex.models._impact import (
     ForgottenLaw,
@@ -150,6 +150,7 @@ __all__ = [
     "rotation_by_side",
     "rows_of",
     "stick",
+    "stiffness_of_fuses",
     "stored_energies",
     "stretch_per_arm",
     "strike",

@@ -110,6 +110,13 @@ def marks_of(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float]
     return tuple((index, mark) for index, mark in marks if mark is not None)
 
 
+def stiffness_of_fuses(properties: RockingProperties, side: int) -> float:
+    """Return Σ k r² of the fuses about a pivot before they yield, in N m/rad; tendons belong to `rocking_stiffness`."""
+    fuses = [each for each in properties.elements if isinstance(each, YieldingDissipator)]
+    arm = properties.pivot(side).arm
+    return sum((each.stiffness * (arm - side * each.position) ** 2 for each in fuses), 0.0)
+
+
 def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
     """Return the elements of a structure, in its order."""
     return tuple(_element_of(each) for each in properties.elements)

@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.modal import Pivot, RockingProperties, YieldingDissipator
-from rockflex.models import RockingModel
+from rockflex.models import RockingModel, stiffness_of_fuses
 
 LOOKS = 0.8  # into a sample, per radian beyond the first by which the phase of the fastest vibration advances
 SEARCH = 0.1  # looks into a sample in any case
@@ -120,16 +119,10 @@ def pace_of(model: RockingModel, rows: int) -> Pace:
     squares = p.omega**2
     moments = p.effective_mass * p.effective_height**2
     bounds = (
-        _highest_square(squares, moments, pivot.i_theta, pivot.rocking_stiffness + _fuses(p, pivot))
+        _highest_square(squares, moments, pivot.i_theta, pivot.rocking_stiffness + stiffness_of_fuses(p, pivot.side))
         for pivot in (p.pivots if model.lifts else ())
     )
     return _pace(model, rows, math.sqrt(max(bounds, default=0.0)))
-
-
-def _fuses(properties: RockingProperties, pivot: Pivot) -> float:
-    """Return Σ k r² of the fuses about a pivot before they yield, in N m/rad."""
-    fuses = [each for each in properties.elements if isinstance(each, YieldingDissipator)]
-    return sum((each.stiffness * (pivot.arm - pivot.side * each.position) ** 2 for each in fuses), 0.0)
 
 
 def _highest_square(squares: Array, moments: Array, inertia: float, stiffness: float) -> float:
