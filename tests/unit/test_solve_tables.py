@@ -215,7 +215,7 @@ def test_states_between_nodes(side, fraction, dense):
     with pytest.MonkeyPatch.context() as patch:
         if dense:
             patch.setattr(basis, "WORST_CONDITION", 0.0)
-        found = ClosedForm(engine.model).between(nodes, fraction)
+        found = ClosedForm(engine.model).intervals(nodes).at(fraction)
     assert found.shape == (1, 2 * n + 2)
     np.testing.assert_allclose(found[0], expected[: 2 * n + 2], rtol=1e-9, atol=1e-12)
 
@@ -227,7 +227,9 @@ def test_between_the_two_sides_of_an_event_nothing_moves():
     nodes[:, 0], nodes[:, 2] = 3.0, (1.0, 0.0)  # a jump of the acceleration
     nodes[:, 3:] = 0.01
     nodes[:, -2:] = 0.0
-    np.testing.assert_allclose(ClosedForm(engine.model).between(nodes, 0.5)[0], nodes[0, 3:], rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(
+        ClosedForm(engine.model).intervals(nodes).at(0.5)[0], nodes[0, 3:], rtol=1e-12, atol=1e-15
+    )
 
 
 def test_systems_are_made_once_a_step():

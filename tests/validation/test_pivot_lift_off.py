@@ -37,7 +37,7 @@ def by_equation_22(run):
         if place > 0.0 and least > 0.5 * weight and run.min_vertical_reaction > 0.25 * weight:
             break
         rows = nodes[:-1].copy()
-        rows[:, 3:] = motion.between(nodes, place)
+        rows[:, 3:] = motion.intervals(nodes).at(place)
         rows[:, :3:2] += place * np.diff(nodes[:, :3:2], axis=0)
         rows = rows[lasting]
         vertical = printed_reactions(model, rows, accelerations(model, rows)).vertical

@@ -9,7 +9,7 @@ from rockflex.models._element_states import (
     element_forces,
     elongations,
     plastic_stretches,
-    stretch_per_arm,
+    stored_energy,
 )
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of, stiffness_of_fuses
 from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at
@@ -152,7 +152,7 @@ __all__ = [
     "stick",
     "stiffness_of_fuses",
     "stored_energies",
-    "stretch_per_arm",
+    "stored_energy",
     "strike",
     "swing_by_side",
     "turning_row",

@@ -4,17 +4,12 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.models._bar import Bar
-from rockflex.models._element import BROKEN, DOWN, UP, Spring
+from rockflex.models._element import BROKEN, Element, Spring
 from rockflex.models._elements import LEFT, RIGHT, arm_of
 from rockflex.models._kept import acting_side, by_phase
 from rockflex.models._label import RockingModel
 from rockflex.models._quantities import tensions
 from rockflex.models._slider import Slider
-
-
-def stretch_per_arm(model: RockingModel, turn: Array) -> Array:
-    """Return the elongation of an element per unit distance from the pivot at |θ| in rad: 2 sin(|θ|/2), or |θ|."""
-    return 2.0 * np.sin(0.5 * turn) if model.complete else turn
 
 
 def arms(model: RockingModel, side: Array) -> Array:
@@ -28,7 +23,7 @@ def arms(model: RockingModel, side: Array) -> Array:
 def elongations(model: RockingModel, states: Array) -> Array:
     """Return δ = r |θ|, in complete models 2 r sin(|θ|/2), of every element at the states of a history, (n, E) in m."""
     rotation = model.layout.of(states, model.layout.rotation)
-    return arms(model, rotation) * stretch_per_arm(model, np.abs(rotation))[:, None]
+    return arms(model, rotation) * model.stretch_per_arm(np.abs(rotation))[:, None]
 
 
 def element_forces(model: RockingModel, states: Array) -> Array:
@@ -65,30 +60,35 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
         memory = layout.memory
         for place, (each, branch) in enumerate(zip(model.elements, key[1:], strict=True)):
             if isinstance(each, Bar):
-                reach, e = each.yield_force / each.stiffness, delta[chosen, place] + each.stretched
-                if branch in (UP, DOWN):
-                    found[chosen, place] = e - reach if branch == UP else e + reach
-                else:
-                    found[chosen, place] = np.nan if branch == BROKEN else vector[:, memory]
+                offset = each.turning(branch)
+                kept = np.nan if branch == BROKEN else vector[:, memory]
+                found[chosen, place] = kept if offset is None else delta[chosen, place] - offset
             memory += each.remembers
     return found
 
 
 def element_energies(model: RockingModel, states: Array) -> Array:
-    """Return the energy stored in every element, relative to the base in contact before it yields, in J, (n, E).
-
-    A bar with the plastic stretch m stores F²/2k + α (1 - α) k m²/2: two springs in parallel, of which one slides. The
-    second term stays locked in while the bar is slack. A broken bar stores nothing.
-    """
+    """Return the energy stored in every element at the states of a history in J, (n, E): see `stored_energy`."""
     delta, forces = elongations(model, states), element_forces(model, states)
     plastic = plastic_stretches(model, states)
-    found = np.zeros(delta.shape)
-    for place, each in enumerate(model.elements):
-        if isinstance(each, Spring):
-            found[:, place] = (each.initial_force + 0.5 * each.stiffness * delta[:, place]) * delta[:, place]
-        elif isinstance(each, Bar):
-            k, first = each.stiffness, each.stiffness * each.stretched
-            locked = 0.5 * each.ratio * (1.0 - each.ratio) * k * plastic[:, place] ** 2
-            stored = (forces[:, place] - first) * (forces[:, place] + first) / (2.0 * k) + locked
-            found[:, place] = np.where(np.isnan(plastic[:, place]), -(first**2) / (2.0 * k), stored)
-    return found
+    found = [
+        stored_energy(each, delta[:, place], forces[:, place], plastic[:, place])
+        for place, each in enumerate(model.elements)
+    ]
+    return np.stack(found, axis=1) if found else np.zeros(delta.shape)
+
+
+def stored_energy(element: Element, elongation: Array, force: Array, plastic: Array) -> Array:
+    """Return the energy stored in an element, relative to the base in contact before it yields, in J.
+
+    A bar with the plastic stretch m stores F²/2k + α (1 - α) k m²/2: two springs in parallel, of which one slides. The
+    second term stays locked in while the bar is slack. A broken bar, whose m is NaN, stores nothing.
+    """
+    if isinstance(element, Spring):
+        return (element.initial_force + 0.5 * element.stiffness * elongation) * elongation
+    if not isinstance(element, Bar):
+        return np.zeros(elongation.shape)
+    k, first = element.stiffness, element.stiffness * element.stretched
+    locked = 0.5 * element.ratio * (1.0 - element.ratio) * k * plastic**2
+    stored = (force - first) * (force + first) / (2.0 * k) + locked
+    return np.where(np.isnan(plastic), -(first**2) / (2.0 * k), stored)

@@ -93,7 +93,7 @@ def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) 
 
 
 def pulls_at(model: RockingModel, states: Array) -> Array:
-    """Return the sums over the elements at every state, with their memories, shape (n, 6): see `pulls_of`."""
+    """Return the sums over the elements at every state, with their memories, shape (n, 7): see `pulls_of`."""
     layout, side = model.layout, acting_side(states)
     found = np.zeros((side.size, SUMS))
     memory = states[:, HEADER + layout.memory : HEADER + layout.memory + layout.remembered]

@@ -104,8 +104,11 @@ class ModalModel(Value):
 
     def elongations(self, element: Element, side: int, rotation: Array) -> Array:
         """Return the elongations δ of an element in m at rotations |θ| about a pivot, shape (n,)."""
-        stretch = 2.0 * np.sin(0.5 * rotation) if self.complete else rotation
-        return arm_of(self.properties, element, side) * stretch
+        return arm_of(self.properties, element, side) * self.stretch_per_arm(rotation)
+
+    def stretch_per_arm(self, rotation: Array) -> Array:
+        """Return the elongations of an element per unit distance from the pivot at |θ|: 2 sin(|θ|/2), or |θ|."""
+        return 2.0 * np.sin(0.5 * rotation) if self.complete else rotation
 
     @property
     def sides(self) -> tuple[int, ...]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.modal import RockingProperties
-from rockflex.models import CLOSED, LEFT, RIGHT, Element, arm_of, elements_of
+from rockflex.models import CLOSED, LEFT, RIGHT, Element, arm_of, elements_of, stored_energy
 from rockflex.response._element_path import (
     Place,
     at_rest,
@@ -15,7 +15,6 @@ from rockflex.response._element_path import (
     passed,
     plastic_stretch,
     set_off,
-    stored_energy,
     tension,
 )
 from rockflex.response._moment_rotation import MomentRotation
@@ -33,12 +32,15 @@ def base_path(properties: RockingProperties, rotations: Array) -> MomentRotation
     shape = len(points), len(elements)
     values = np.array(
         [
-            (tension(each, place), place.elongation, plastic_stretch(each, place), stored_energy(each, place))
+            (tension(each, place), place.elongation, plastic_stretch(each, place))
             for *_, places in points
             for each, place in zip(elements, places, strict=True)
         ]
     )
-    force, elongation, plastic, stored = values.reshape(*shape, 4).transpose(2, 0, 1)
+    force, elongation, plastic = values.reshape(*shape, 3).transpose(2, 0, 1)
+    stored = np.zeros(shape)
+    for k, each in enumerate(elements):
+        stored[:, k] = stored_energy(each, elongation[:, k], force[:, k], plastic[:, k])
     work = np.zeros(shape)
     np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(elongation, axis=0), axis=0, out=work[1:])
     return MomentRotation(
@@ -49,7 +51,7 @@ def base_path(properties: RockingProperties, rotations: Array) -> MomentRotation
         element_force=force,
         element_elongation=elongation,
         plastic_stretch=plastic,
-        element_losses=work - (stored - stored[0]),
+        element_losses=work - stored,
     )
 
 

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from rockflex.models import BROKEN, Bar, Element, Slider, Spring
+from rockflex.models import BROKEN, Bar, Element, Slider
 
 
 class Place(NamedTuple):
@@ -67,16 +67,3 @@ def plastic_stretch(element: Element, place: Place) -> float:
     if not isinstance(element, Bar):
         return 0.0
     return math.nan if place.branch == BROKEN else memory_at(element, place)
-
-
-def stored_energy(element: Element, place: Place) -> float:
-    """Return the energy in J that the element has taken and not dissipated, up to a constant.
-
-    A bar is two springs in parallel, of which one slides: F²/2k + α (1 - α) k m²/2 with the plastic stretch m.
-    """
-    if isinstance(element, Spring):
-        return (element.initial_force + 0.5 * element.stiffness * place.elongation) * place.elongation
-    if not isinstance(element, Bar) or place.branch == BROKEN:
-        return 0.0
-    k, a, m = element.stiffness, element.ratio, memory_at(element, place)
-    return 0.5 * tension(element, place) ** 2 / k + 0.5 * a * (1.0 - a) * k * m**2

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex.modal import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
-from rockflex.models import HEADER, SIDE, RockingModel, plastic_stretches, stretch_per_arm
+from rockflex.models import HEADER, SIDE, RockingModel, plastic_stretches
 
 
 class Reach(NamedTuple):
@@ -52,7 +52,7 @@ def element_peaks(model: RockingModel, reach: Reach, final_state: Array) -> Elem
     given = model.properties.elements
     if not given:
         return NONE
-    stretch = stretch_per_arm(model, np.array(reach.rotation)).tolist()
+    stretch = model.stretch_per_arm(np.array(reach.rotation)).tolist()
     moves = [_moves(model, each, stretch, reach.swing) for each in given]
     forces = [_largest_force(each, move) for each, move in zip(given, moves, strict=True)]
     yielded = [_yields(each, move) for each, move in zip(given, moves, strict=True)]

@@ -152,12 +152,13 @@ def _work(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
     p, layout = model.properties, model.layout
     n = p.n_modes
     motion = ClosedForm(model)
+    intervals = motion.intervals(states)
     span = np.diff(states[:, TIME])
     places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
     drag = 2.0 * p.zeta * p.omega * p.effective_mass
     damped, work, swing = (np.zeros(span.size) for _ in range(3))
     for place, weight in zip(places, weights, strict=True):
-        inside = motion.between(states, float(place))
+        inside = intervals.at(float(place))
         v, spin = inside[:, n : 2 * n], inside[:, layout.spin]
         acceleration = states[:-1, GROUND] + place * np.diff(states[:, GROUND])
         damped += weight * span * (v**2 @ drag)

@@ -210,7 +210,7 @@ class Friction:
         rows[:, TIME] += place * np.diff(states[:, TIME])
         rows[:, GROUND] += place * np.diff(states[:, GROUND])
         if self._linear:
-            rows[:, HEADER:] = self._linear.between(states, place)
+            rows[:, HEADER:] = self._linear.intervals(states).at(place)
             if not self._model.integrated:
                 return rows, None
         turn, spin = HEADER + layout.rotation, HEADER + layout.spin

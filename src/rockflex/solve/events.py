@@ -188,33 +188,23 @@ def cross(
             continue
         here = sample.ground + sample.slope * at.begun
         now = min(sample.time + at.begun, sample.until)
-        if event in (CHANGES, TURNS) and not turns:
+        if event in (CHANGES, TURNS):
             if at.onset == INSIDE:  # otherwise an uplift is yet to be recorded
                 keep(log, now, side, here, motion.state)
             log.tally[EVENTS] += 1
+            remember(system, p, motion)
             if event == TURNS:
                 motion.state[system.layout.spin] = 0.0
-                remember(system, p, motion)
-                enter(system, at, system.links[p, TURNED], motion)
-            else:
-                remember(system, p, motion)
-                enter(system, at, int(system.links[p, CHANGED + int(owner)]), motion)
+            enter(system, at, system.links[p, TURNED if event == TURNS else CHANGED + owner], motion)
             if at.onset == INSIDE:
                 keep(log, now, side, here, motion.state)
-            at.resume = 0.0
-            at.fresh_rows = True
-            if steps is not None:
-                forget(steps.room)
-            if log.tally[EVENTS] > MOST_EVENTS:
-                return CHATTER
-            continue
-        if tipped:
+        elif tipped:
             limit = motion.limits[HIGH] if side > 0.0 else motion.limits[LOW]
             log.peaks[GUARD], log.times[GUARD] = abs(limit), now
             motion.state[system.layout.rotation] = limit
             keep(log, now, side, here, motion.state)
             return OVERTURNED
-        if event == LANDS:
+        elif event == LANDS:
             motion.state[system.layout.rotation] = 0.0
             keep(log, now, side, here, motion.state)
             remember(system, p, motion)

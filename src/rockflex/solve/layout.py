@@ -165,7 +165,7 @@ class Motion(NamedTuple):
     load: Array  # (b,): constant forces on the base
     still: Array  # (S,): constant part of the forced motion
     offset: Array  # (F,): constant part of the rows
-    pivots: Array  # (2, 8): `Field.pivots`, with the sums over the elements
+    pivots: Array  # (2, 9): `Field.pivots`, with the sums over the elements
 
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.

@@ -2,8 +2,10 @@
 
 import math
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex.models import GROUND, HEADER, SIDE, TIME, Key, LinearModel, RockingModel, phases_at
@@ -50,34 +52,57 @@ class ClosedForm:
         integrated = [side for side in self._model.sides if side not in self._bases]
         return max([*of_bases, *(_fastest(self._model.linear, side) for side in integrated)])
 
-    def between(self, states: Array, fraction: float) -> Array:
-        """Return states at a fraction of the interval between adjacent nodes, shape (n - 1, 2N + 2).
-
-        In phases that are not linear these are the states at the start of the interval.
-        """
+    def intervals(self, states: Array) -> "Intervals":
+        """Return the motion over the intervals between adjacent nodes."""
         steps = np.diff(states[:, TIME])
         # The steps differ by rounding of the times; once rounded to equal values, they share one propagator.
         steps = np.round(steps, 12 - math.ceil(math.log10(max(float(states[-1, TIME]), 1.0))))
         safe = np.where(steps > 0.0, steps, 1.0)
         slopes = np.where(steps > 0.0, np.diff(states[:, GROUND]) / safe, 0.0)
-        start = np.column_stack((states[:-1, GROUND], slopes, np.ones(steps.size)))
-        end = start.copy()
-        end[:, 0] += fraction * steps * slopes
-        layout = self._model.layout
-        moved = states[:-1, HEADER:].copy()
-        memories = moved[:, layout.memory : layout.memory + layout.remembered]
-        start, end = np.column_stack((start, memories)), np.column_stack((end, memories))
+        layout, before = self._model.layout, states[:-1, HEADER:]
+        memories = before[:, layout.memory : layout.memory + layout.remembered]
+        start = np.column_stack((states[:-1, GROUND], slopes, np.ones(steps.size), memories))
         # The branch of an element over an interval is that in its middle, with the memory at its start.
         rotation = layout.of(states, layout.rotation)
         middle = 0.5 * (rotation[:-1] + rotation[1:])
+        parts = list[Part]()
         for chosen, key in phases_at(self._model, states[:-1, SIDE], middle, states[:-1]):
             basis = self._basis(key)
-            if basis is None:
-                continue
-            forced = basis.steady @ basis.inverse.T
-            w = moved[chosen][:, : layout.core] @ basis.inverse.T - start[chosen] @ forced
-            carried = propagate(basis, w, fraction * steps[chosen]) + end[chosen] @ forced
-            moved[np.flatnonzero(chosen)[:, None], np.arange(layout.core)] = carried @ basis.basis.T
+            if basis is not None:
+                forced = basis.steady @ basis.inverse.T
+                w = before[chosen][:, : layout.core] @ basis.inverse.T - start[chosen] @ forced
+                parts.append(Part(np.flatnonzero(chosen), basis, forced, w, start[chosen], steps[chosen]))
+        return Intervals(before, parts)
+
+
+class Part(NamedTuple):
+    """The intervals of one linear phase."""
+
+    rows: NDArray[np.intp]  # (n,)
+    basis: Basis
+    forced: Array  # (3 + M, S): coefficients of a, a', 1 and the memories in the forced part
+    w: Array  # (n, S): coordinates at the start
+    start: Array  # (n, 3 + M): a, a', 1 and the memories at the start
+    steps: Array  # (n,): lengths, s
+
+
+class Intervals(NamedTuple):
+    """The motion between adjacent nodes, each linear phase in its own coordinates."""
+
+    before: Array  # (n - 1, S'): states at the start
+    parts: list[Part]
+
+    def at(self, fraction: float) -> Array:
+        """Return the states at a fraction of every interval, shape (n - 1, S').
+
+        In phases that are not linear these are the states at the start of the interval.
+        """
+        moved = self.before.copy()
+        for rows, basis, forced, w, start, steps in self.parts:
+            end = start.copy()
+            end[:, 0] += fraction * steps * start[:, 1]
+            carried = propagate(basis, w, fraction * steps) + end @ forced
+            moved[rows, : carried.shape[1]] = carried @ basis.basis.T
         return moved
 
 
