@@ -24,7 +24,7 @@ from rockflex.models._impact import (
 )
 from rockflex.models._kept import accelerations, acting_side, phases_at, pulls_at, rates_of, values_of
 from rockflex.models._label import Model, RockingModel, parse_model
-from rockflex.models._layout import GROUND, HEADER, SIDE, TIME, StateLayout, layout_of
+from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
 from rockflex.models._named import floor_quantities, modal_displacement, quantities, rotation_by_side, swing_by_side
 from rockflex.models._nonlinear import NonlinearModel
@@ -42,15 +42,19 @@ from rockflex.models._observe import (
 )
 from rockflex.models._phase import (
     CHANGES,
-    FREEDOMS,
+    CLOSES,
     LANDS,
     LIFTS,
+    OPENS,
     OVERTURNS,
     RELEASES,
+    SLIPS,
+    STICKS,
     TURNS,
     Arrow,
     Border,
     Exit,
+    Fence,
     Guard,
     Key,
     Phase,
@@ -66,8 +70,8 @@ __all__ = [
     "BROKEN",
     "CHANGES",
     "CLOSED",
+    "CLOSES",
     "EXTRA",
-    "FREEDOMS",
     "GROUND",
     "HEADER",
     "HORIZONTAL",
@@ -76,11 +80,15 @@ __all__ = [
     "LEFT_OUT",
     "LIFTS",
     "LINEAR",
+    "OPENS",
     "OVERTURNS",
     "PULLS",
     "RELEASES",
     "RIGHT",
+    "RISE",
     "SIDE",
+    "SLIPS",
+    "STICKS",
     "SUMS",
     "SWAY",
     "SWING",
@@ -94,6 +102,7 @@ __all__ = [
     "Dashpot",
     "Element",
     "Exit",
+    "Fence",
     "Field",
     "ForgottenLaw",
     "Guard",

@@ -12,13 +12,13 @@ from rockflex.models._slider import HELD, Slider
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
 
 
-def base_border(properties: RockingProperties, side: int, memories: int) -> Border:
+def base_border(properties: RockingProperties, side: int, memories: int, gravity: float = GRAVITY) -> Border:
     """Return the inertia about the pivot and the weight, -s m_tot g B + L_0^r (g θ - a): Eq. 23 without the modes."""
     pivot = properties.pivot(side)
     return Border.on_rotation(
         inertia=pivot.i_theta,
-        stiffness=-properties.l0r * GRAVITY,
-        constant=-side * pivot.weight_moment,
+        stiffness=-properties.l0r * gravity,
+        constant=-side * (properties.m_tot * gravity * pivot.arm),
         ground=-properties.l0r,
         recall=np.zeros(memories),
     )
@@ -57,13 +57,15 @@ def memories(elements: tuple[Element, ...]) -> dict[int, int]:
     return {place: index for index, place in enumerate(k for k, each in enumerate(elements) if each.remembers)}
 
 
-def border_of(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> Border:
+def border_of(
+    properties: RockingProperties, elements: tuple[Element, ...], key: Key, gravity: float = GRAVITY
+) -> Border:
     """Return the sum of the borders of the base and of all elements on their branches, about a pivot.
 
     An element adds the moment -s F r: -k r² θ - c r² θ' - s r (force + recall m).
     """
     side, known = key[0], memories(elements)
-    total = base_border(properties, side, len(known))
+    total = base_border(properties, side, len(known), gravity)
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
         r, pull = arm_of(properties, each, side), each.pull(branch)
         recall = np.zeros(len(known))

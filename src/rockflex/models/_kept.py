@@ -1,13 +1,16 @@
 """Accelerations and values of quantities at the states of a history."""
 
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import python_kernel
-from rockflex.models._elements import LEFT, RIGHT, memories
 from rockflex.models._field import Field, field_rates, take_pulls
 from rockflex.models._label import RockingModel
-from rockflex.models._layout import GROUND, HEADER, SIDE, TIME
+from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import LINEAR, observe_all
 from rockflex.models._phase import Key
@@ -29,7 +32,7 @@ def acting_side(states: Array) -> Array:
 
 
 def accelerations(model: RockingModel, states: Array) -> Array:
-    """Return D''_1..D''_N in m/s² and θ'' in rad/s² at every state, shape (n, N + 1)."""
+    """Return D''_1..D''_N in m/s² and q'' of the base, θ'' in rad/s² first, at every state, shape (n, N + b)."""
     side, layout = acting_side(states), model.layout
     n = layout.modes
     if isinstance(model, NonlinearModel):
@@ -37,24 +40,43 @@ def accelerations(model: RockingModel, states: Array) -> Array:
         motion = np.ascontiguousarray(states[:, HEADER:])
         _rates_at(model.field(), pulls_at(model, states), side, states[:, GROUND].copy(), motion, rates)
         return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
-    found = np.zeros((states.shape[0], n + 1))
+    heavier = under_more_gravity(model)
+    found = np.zeros((states.shape[0], n + layout.freedoms))
     for chosen, key, vector in by_phase(model, states, side):
-        found[chosen] = vector @ model.accelerations(key).T
+        found[chosen] = at_gravity(states[chosen], vector, model.accelerations(key), lambda: heavier().accelerations(key))
     return found
+
+
+def under_more_gravity(model: RockingModel) -> Callable[[], RockingModel]:
+    """Return a function that returns the model under a gravity greater by 1 m/s²."""
+    return cache(lambda: replace(model, gravity=model.gravity + 1.0))
+
+
+def at_gravity(states: Array, vector: Array, rows: Array, heavier: Callable[[], Array]) -> Array:
+    """Return the values of rows, shape (n, F), which vary linearly with the vertical acceleration of the ground.
+
+    `heavier` returns the rows under a gravity greater by 1 m/s².
+    """
+    values = vector @ rows.T
+    if states[:, RISE].any():
+        values += states[:, RISE, None] * (vector @ (heavier() - rows).T)
+    return values
 
 
 def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
     """Return D', D'', θ' and θ'' in the order of the state, shape (n, 2N + 2), from the accelerations."""
     layout = model.layout
-    return np.column_stack((layout.velocities(states), found[:, :-1], layout.of(states, layout.spin), found[:, -1]))
+    n = layout.modes
+    return np.column_stack((layout.velocities(states), found[:, :n], layout.of(states, layout.spin), found[:, n]))
 
 
 def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
     """Return the values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
     side = acting_side(states)
-    values = np.zeros((states.shape[0], len(quantities)))
+    values, heavier = np.zeros((states.shape[0], len(quantities))), under_more_gravity(model)
     for chosen, key, vector in by_phase(model, states, side):
-        values[chosen] = vector @ rows_of(model, quantities, key).T
+        rows = rows_of(model, quantities, key)
+        values[chosen] = at_gravity(states[chosen], vector, rows, lambda: rows_of(heavier(), quantities, key))
     curved = np.flatnonzero(quantities.kinds != LINEAR)
     rocking = side != 0.0
     if curved.size and rocking.any() and isinstance(model, NonlinearModel) and model.complete:
@@ -78,17 +100,7 @@ def by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bool
 
 def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Bools, Key]]:
     """Return for each phase a mask of its states, by sides and rotations, and by the memories of the states."""
-    branches = np.empty((side.size, 1 + len(model.elements)), dtype=np.int64)
-    branches[:, 0] = side
-    known = memories(model.elements)
-    for place, each in enumerate(model.elements):
-        right, left = (model.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
-        elongation = np.where(side < 0.0, left, right)
-        index = model.layout.memory + known[place] if place in known else 0
-        found = each.branch_at(elongation, model.layout.of(states, index))
-        at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
-        branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
-    found, which = np.unique(branches, axis=0, return_inverse=True)
+    found, which = np.unique(model.branches_at(side, rotation, states), axis=0, return_inverse=True)
     return [(which.ravel() == k, tuple(int(branch) for branch in key)) for k, key in enumerate(found)]
 
 

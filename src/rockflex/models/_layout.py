@@ -4,12 +4,15 @@ from typing import NamedTuple
 
 from rockflex._arrays import Array
 
-TIME, SIDE, GROUND, HEADER = 0, 1, 2, 3  # columns that precede the state vector in a history, and their number
+# Columns that precede the state vector in a history, and their number; GROUND and RISE are the horizontal and the
+# vertical acceleration of the ground.
+TIME, SIDE, GROUND, RISE, HEADER = 0, 1, 2, 3, 4
 
 
 class StateLayout(NamedTuple):
     """Indices in the state vector [D_1..D_N, D'_1..D'_N, θ, θ'], for integrated models [.., z, E_d, E_i, E_h].
 
+    A base that may slide adds its slip and the rate of it after θ', one on springs its heave and the rate of that.
     ∫ (δ'/r)² dt follows if an integrated model has viscous dampers, and then the memories of all elements.
 
     A *row* is a linear functional of the first `moving` entries, the ground acceleration and the constant 1.
@@ -21,6 +24,8 @@ class StateLayout(NamedTuple):
         Number N of modes; D_n has the index n, and D'_n the index N + n.
     rotation, spin
         θ and θ'.
+    slip, heave
+        Displacement of the base to the right and upwards, each followed by its velocity.
     hysteresis
         z of Eq. 38.
     damped, put_in, yielded
@@ -39,6 +44,8 @@ class StateLayout(NamedTuple):
     modes: int
     rotation: int
     spin: int
+    slip: int
+    heave: int
     hysteresis: int
     damped: int
     put_in: int
@@ -56,8 +63,13 @@ class StateLayout(NamedTuple):
 
     @property
     def core(self) -> int:
-        """Number of entries [D.., D'.., θ, θ'], which all models have."""
-        return 2 * self.modes + 2
+        """Number of entries [D.., D'.., θ, θ'] with the slip and the heave, which follow from equations of motion."""
+        return 2 * (self.modes + self.freedoms)
+
+    @property
+    def freedoms(self) -> int:
+        """Number b of the degrees of freedom of the base."""
+        return 1 + (self.slip >= 0) + (self.heave >= 0)
 
     def displacements(self, states: Array) -> Array:
         """Return D at the states of a history, shape (n, N)."""
@@ -72,16 +84,26 @@ class StateLayout(NamedTuple):
         return states[:, HEADER + place]
 
 
-def layout_of(modes: int, *, integrated: bool, viscous: bool = False, remembered: int = 0) -> StateLayout:
+def layout_of(
+    modes: int,
+    *,
+    integrated: bool = False,
+    viscous: bool = False,
+    remembered: int = 0,
+    slides: bool = False,
+    heaves: bool = False,
+) -> StateLayout:
     """Return the layout of a model; integrated models also integrate their energies. The memories come last."""
-    core = 2 * modes + 2
+    rotation = 2 * modes
+    slip = rotation + 2 if slides else -1
+    heave = rotation + 2 * (1 + slides) if heaves else -1
+    core = rotation + 2 * (1 + slides + heaves)
+    base = rotation, rotation + 1, slip, heave
     if not integrated:
         size = core + remembered
-        return StateLayout(modes, core - 2, core - 1, -1, -1, -1, -1, -1, core, remembered, size, size)
+        return StateLayout(modes, *base, -1, -1, -1, -1, -1, core, remembered, size, size)
     memory = core + 4 + viscous
     size = memory + remembered
     moving = size if remembered else core + 1
     swept = core + 4 if viscous else -1
-    return StateLayout(
-        modes, core - 2, core - 1, core, core + 1, core + 2, core + 3, swept, memory, remembered, moving, size
-    )
+    return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, swept, memory, remembered, moving, size)

@@ -29,6 +29,8 @@ class LinearModel(ModalModel):
         Impact law.
     missing_mass
         Whether base shear and base moment include the mass that the modes leave out, as if it moved with the base.
+    gravity
+        Gravitational acceleration in m/s².
     """
 
     label: str
@@ -36,6 +38,7 @@ class LinearModel(ModalModel):
     lifts: bool = True
     law: ImpactLaw = field(default_factory=VVELSimplified)
     missing_mass: bool = False
+    gravity: float = GRAVITY
 
     @property
     def neutral(self) -> bool:

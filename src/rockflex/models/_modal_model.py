@@ -3,9 +3,9 @@
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
@@ -27,7 +27,7 @@ from rockflex.models._elements import (
 )
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
-from rockflex.models._phase import FREEDOMS, LANDS, LIFTS, OVERTURNS, RELEASES, Arrow, Border, Exit, Guard, Key, Phase
+from rockflex.models._phase import LANDS, LIFTS, OVERTURNS, RELEASES, Arrow, Border, Exit, Guard, Key, Phase
 from rockflex.models._pulls import pulls_of
 
 QUARTER_TURN = 0.5 * np.pi
@@ -44,6 +44,7 @@ class ModalModel(Value):
     lifts: bool
     law: ImpactLaw
     missing_mass: bool
+    gravity: float
 
     @property
     def complete(self) -> bool:
@@ -76,6 +77,16 @@ class ModalModel(Value):
         return elements_of(self.properties)
 
     @property
+    def turning(self) -> bool:
+        """Whether some phase may end where the rotation turns back."""
+        return self.layout.remembered > 0
+
+    @property
+    def most_fences(self) -> int:
+        """Largest number of fences of a phase."""
+        return 0
+
+    @property
     def most_changes(self) -> int:
         """Largest number of rotations at which elements change their branches, in any phase."""
         return sum(max(len(each.stops(branch)) for branch in each.branches) for each in self.elements)
@@ -83,6 +94,16 @@ class ModalModel(Value):
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
         return first_key(self.properties, self.elements, side)
+
+    def initial(self, state: Array | None) -> tuple[Key, Array]:
+        """Return the branches and the state at the start of a run, from [D.., D'.., θ, θ'] or at rest."""
+        layout = self.layout
+        start = np.zeros(layout.size)
+        if state is not None:
+            start[: state.size] = state
+        key, memory = self.begin(float(start[layout.rotation]), float(start[layout.spin]))
+        start[layout.memory : layout.memory + layout.remembered] = memory
+        return key, start
 
     def begin(self, rotation: float, spin: float) -> tuple[Key, Array]:
         """Return the branches and the memories at the start of a run with a rotation in rad and θ' in rad/s.
@@ -101,6 +122,24 @@ class ModalModel(Value):
         if side != CLOSED and spin != 0.0:
             key = set_off(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
         return key, np.array(kept)
+
+    def element_key(self, key: Key) -> Key:
+        """Return the branches of the base and of the elements, without those that a kind of ground adds."""
+        return key
+
+    def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:
+        """Return the branches at the states of a history, by its sides, rotations and memories, shape (n, K)."""
+        branches = np.empty((side.size, 1 + len(self.elements)), dtype=np.int64)
+        branches[:, 0] = side
+        known = memories(self.elements)
+        for place, each in enumerate(self.elements):
+            right, left = (self.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
+            elongation = np.where(side < 0.0, left, right)
+            index = self.layout.memory + known[place] if place in known else 0
+            found = each.branch_at(elongation, self.layout.of(states, index))
+            at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
+            branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
+        return branches
 
     def elongations(self, element: Element, side: int, rotation: Array) -> Array:
         """Return the elongations δ of an element in m at rotations |θ| about a pivot, shape (n,)."""
@@ -128,12 +167,11 @@ class ModalModel(Value):
 
     def _new_arrow(self, key: Key) -> Arrow:
         p = self.properties
-        b = len(FREEDOMS)
         leverage = (p.effective_mass * p.effective_height)[None]
         coupling = p.effective_height[None]
         free = self.is_free(key)
-        border = border_of(p, self.elements, key) if free else Border.on_rotation()
-        flexibility: Array = np.zeros((b, b))
+        border = border_of(p, self.elements, key, self.gravity) if free else Border.on_rotation()
+        flexibility: Array = np.zeros((1, 1))
         if free:
             flexibility[:] = np.linalg.inv(border.inertia - leverage @ coupling.T)
         return Arrow(
@@ -144,8 +182,8 @@ class ModalModel(Value):
             stiffness=border.stiffness,
             constant=border.constant,
             drive=border.ground + leverage.sum(axis=1) if free else border.ground,
-            recall=border.recall if free else np.zeros((b, self.layout.remembered)),
-            free=free,
+            recall=border.recall if free else np.zeros((1, self.layout.remembered)),
+            freed=np.array([free]),
         )
 
     def free_inertia(self, side: int) -> float:
@@ -171,7 +209,7 @@ class ModalModel(Value):
         p = self.properties
         row = self._moment.copy()
         if self.complete:
-            row[: p.n_modes] -= p.effective_mass * GRAVITY
+            row[: p.n_modes] -= p.effective_mass * self.gravity
         return row
 
     @cached_property
@@ -186,14 +224,14 @@ class ModalModel(Value):
 
     def angular_acceleration(self, key: Key) -> Array:
         """Return θ'' in a phase of a simplified model, Eq. 23 with D'' eliminated, in rad/s²: a row, shape (C,)."""
-        return self.accelerations(key)[-1]
+        return self.accelerations(key)[self.properties.n_modes]
 
     def modal_accelerations(self, key: Key) -> Array:
         """Return D'' of every mode in a phase, Eq. 15 or 23, in m/s²: rows, shape (N, C)."""
-        return self.accelerations(key)[:-1]
+        return self.accelerations(key)[: self.properties.n_modes]
 
     def accelerations(self, key: Key) -> Array:
-        """Return D'' of every mode and θ'' in a phase: read-only rows, shape (N + 1, C)."""
+        """Return D'' of every mode and q'' of the base, θ'' first, in a phase: read-only rows, shape (N + b, C)."""
         known = self._accelerations.get(key)
         if known is None:
             known = self._accelerations[key] = self._new_accelerations(key)
@@ -260,7 +298,7 @@ class ModalModel(Value):
         # The base starts to rotate when the forces of the following phase would turn it.
         p, (side, *rest) = self.properties, key
         following = [set_off(p, self.elements, (side or turn, *rest), turn) for turn in (1, -1)]
-        borders = [border_of(p, self.elements, each) for each in following]
+        borders = [border_of(p, self.elements, each, self.gravity) for each in following]
         low, high = (float(each.constant[0]) for each in borders)
         recall = np.stack([each.recall[0] for each in borders])
         below, above = (Exit(LIFTS if side == CLOSED else RELEASES, each) for each in following)

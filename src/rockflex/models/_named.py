@@ -46,7 +46,7 @@ def _total_top_displacement(model: ModalModel) -> Share:
     p = model.properties
     if not p.top_height:
         return LINEAR, {}
-    return SWAY, {"displacement": p.top_ordinate, "rotation": p.top_height}
+    return SWAY, {"displacement": p.top_ordinate, "rotation": p.top_height, "slip": 1.0}
 
 
 def _horizontal_reaction(model: ModalModel) -> Share:
@@ -55,12 +55,17 @@ def _horizontal_reaction(model: ModalModel) -> Share:
     return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.m_tot}
 
 
+def _slip(_model: ModalModel) -> Share:
+    return LINEAR, {"slip": 1.0}
+
+
 _WHOLE: dict[str, Callable[[ModalModel], Share]] = {
     "top_displacement": _top_displacement,
     "base_moment": _base_moment,
     "base_shear": _base_shear,
     "total_top_displacement": _total_top_displacement,
     "horizontal_reaction": _horizontal_reaction,
+    "slip": _slip,
 }
 
 
@@ -76,7 +81,7 @@ def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]
     shapes = {
         "story_drift": {"displacement": np.diff(floors.displacement, axis=0, prepend=0.0)},
         "story_shear": {"restoring": np.cumsum((floors.force / p.omega**2)[::-1], axis=0)[::-1]},
-        "total_floor_displacement": {"displacement": floors.displacement, "rotation": floors.heights},
+        "total_floor_displacement": {"displacement": floors.displacement, "rotation": floors.heights, "slip": 1.0},
         "floor_acceleration": {"acceleration": floors.displacement, "turn": floors.heights, "ground": 1.0},
     }
     kinds = {"total_floor_displacement": SWAY}

@@ -34,7 +34,7 @@ class NonlinearModel(ModalModel):
         Whether to use Eqs. 13, 14 and 16 with all trigonometric, centrifugal and P-Δ terms, or Eqs. 23 and 24.
     bouc_wen
         Hysteresis of the one mode, or None for an elastic superstructure.
-    missing_mass
+    missing_mass, gravity
         As in `LinearModel`.
     """
 
@@ -45,6 +45,7 @@ class NonlinearModel(ModalModel):
     complete: bool = True  # pyright: ignore[reportIncompatibleMethodOverride]
     bouc_wen: BoucWen | None = None  # pyright: ignore[reportIncompatibleMethodOverride]
     missing_mass: bool = False
+    gravity: float = GRAVITY
 
     @property
     def integrated(self) -> bool:
@@ -54,7 +55,7 @@ class NonlinearModel(ModalModel):
     @property
     def linear(self) -> LinearModel:
         """The simplified, elastic model of the same modes."""
-        return LinearModel(self.label, self.properties, self.lifts, self.law, self.missing_mass)
+        return LinearModel(self.label, self.properties, self.lifts, self.law, self.missing_mass, self.gravity)
 
     def phase(self, key: Key) -> Phase:
         """Return one phase; it is linear only in contact with an elastic superstructure."""
@@ -76,7 +77,7 @@ class NonlinearModel(ModalModel):
             ),
             weight_arm=p.l0r,
             total_mass=p.m_tot,
-            gravity=GRAVITY,
+            gravity=self.gravity,
             yield_displacement=b.yield_displacement,
             post_yield_ratio=b.post_yield_ratio,
             gamma=b.gamma,

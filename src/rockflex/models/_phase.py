@@ -5,15 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array
-
-FREEDOMS = ("rotation",)  # of the base, in the order of the borders
+from rockflex._arrays import Array, Bools
 
 Key = tuple[int, ...]  # the branch of every element, the base first
 
 # Events that end a phase. RELEASES: a base that friction dampers held begins to rotate. CHANGES: an element takes
-# another branch. TURNS: the rotation turns back while an element yields or slides.
-LIFTS, LANDS, OVERTURNS, RELEASES, CHANGES, TURNS = range(6)
+# another branch. TURNS: the rotation turns back while an element yields or slides. SLIPS and STICKS: the base begins
+# and ends to slide. OPENS and CLOSES: an edge of a base on springs leaves its spring and comes back to it.
+LIFTS, LANDS, OVERTURNS, RELEASES, CHANGES, TURNS, SLIPS, STICKS, OPENS, CLOSES = range(10)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +48,10 @@ class Border:
         recall: Array | None = None,
     ) -> "Border":
         """Return the border of an element that acts only on the rotation."""
-        b = len(FREEDOMS)
-        squares, columns = np.zeros((3, b, b)), np.zeros((2, b))
+        squares, columns = np.zeros((3, 1, 1)), np.zeros((2, 1))
         squares[:, 0, 0] = inertia, damping, stiffness
         columns[:, 0] = constant, ground
-        factors = np.zeros((b, 0 if recall is None else recall.size))
+        factors = np.zeros((1, 0 if recall is None else recall.size))
         if recall is not None:
             factors[0] = recall
         return cls(squares[0], squares[1], squares[2], columns[0], columns[1], factors)
@@ -92,8 +90,8 @@ class Arrow:
         f, and g + Σ m* c.
     recall : ndarray, shape (b, M)
         H, the factor of the memories m of the elements, which are constant during a phase.
-    free
-        Whether any degree of freedom of the base is free.
+    freed : ndarray of bool, shape (b,)
+        Which are free.
     """
 
     coupling: Array
@@ -104,11 +102,21 @@ class Arrow:
     constant: Array
     drive: Array
     recall: Array
-    free: bool
+    freed: Bools
+
+    @property
+    def free(self) -> bool:
+        """Whether any degree of freedom of the base is free."""
+        return bool(self.freed.any())
+
+    @property
+    def drifts(self) -> bool:
+        """Whether some free degree of freedom of the base has neither stiffness nor damping: a slip, or free flight."""
+        return bool((self.freed & ~self.stiffness.any(axis=0) & ~self.damping.any(axis=0)).any())
 
     def alike(self, other: "Arrow") -> bool:
         """Return whether both have the same eigenvectors, that is, differ at most in the constant forces."""
-        return self.free == other.free and all(
+        return bool((self.freed == other.freed).all()) and all(
             bool((getattr(self, name) == getattr(other, name)).all())
             for name in ("flexibility", "stiffness", "damping", "drive", "coupling")
         )
@@ -164,6 +172,20 @@ class Change(NamedTuple):
     key: Key
 
 
+class Fence(NamedTuple):
+    """A row that is not negative during a phase. Where it falls below zero, an event leads to the next phase.
+
+    `row` multiplies the moving entries of the state, the horizontal acceleration of the ground and 1, shape (C,). A
+    memory with an index not below zero then becomes `value`, a row too.
+    """
+
+    row: Array
+    event: int
+    key: Key
+    memory: int = -1
+    value: Array | None = None
+
+
 class Turning(NamedTuple):
     """A memory that is set where the rotation turns back: m = arm δ/r - offset, with the index `memory`."""
 
@@ -190,6 +212,8 @@ class Phase:
         Rotations at which an element changes its branch.
     free
         Whether the base rotates: it neither rests on the ground nor is held by friction dampers.
+    fences
+        Further rows that end the phase where they become negative.
     turns
         Sign of the velocity |θ|' while an element yields or slides, whose branch ends at zero velocity; 0 if none does.
     turnings
@@ -213,6 +237,7 @@ class Phase:
     turned: Key
     beside: tuple[Key, Key, Key]
     free: bool = False
+    fences: tuple[Fence, ...] = ()
     turns: int = 0
     turnings: tuple[Turning, ...] = ()
     marks: tuple[tuple[int, float], ...] = ()

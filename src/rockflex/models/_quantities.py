@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
 from rockflex.models._elements import CLOSED, RIGHT, arm_of, border_of, is_held, memories
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
@@ -19,6 +20,7 @@ Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by 
 OF_MODES = ("displacement", "restoring", "acceleration")
 OF_BASE = ("rotation", "right", "turn", "ground")
 OF_SWING = ("swing", "right_swing")
+OF_SHIFT = ("slip", "heave")
 ROTATION, RIGHT_ROTATION, TURN, GROUND = -4, -3, -2, -1  # columns of `Quantities.shares`
 
 
@@ -31,28 +33,33 @@ class Quantities:
     shares : ndarray, shape (F, 3 N + 4)
         Weights of D_n (`displacement`), of the restoring acceleration of each mode (`restoring`: ω_n² D_n, or that of
         Eq. 37), of D''_n (`acceleration`), of θ (`rotation`), of θ while the base rotates about its right pivot
-        (`right`), of θ'' (`turn`) and of the ground acceleration (`ground`).
+        (`right`), of θ'' (`turn`) and of the acceleration of the base (`ground`).
     swings : ndarray, shape (F, 2)
         Weights of θ' (`swing`), and of θ' while the base rotates about its right pivot (`right_swing`).
+    shifts : ndarray, shape (F, 2)
+        Weights of the `slip` and the `heave` of the base, in models that have them.
     kinds : ndarray, shape (F,)
         Kind of the quantity for large rotations; see `rockflex.models.observe`.
     """
 
     shares: Array
     swings: Array
+    shifts: Array
     kinds: NDArray[np.int64]
 
     @classmethod
     def of(cls, count: int, modes: int, kind: int = LINEAR, **shares: ArrayLike) -> "Quantities":
         """Return `count` quantities of a model with the given number of modes; shares not given are zero."""
         values = np.zeros((count, 3 * modes + len(OF_BASE)))
-        swings = np.zeros((count, len(OF_SWING)))
+        swings, shifts = np.zeros((count, len(OF_SWING))), np.zeros((count, len(OF_SHIFT)))
         for name, share in shares.items():
             if name in OF_SWING:
                 swings[:, OF_SWING.index(name)] = share
+            elif name in OF_SHIFT:
+                shifts[:, OF_SHIFT.index(name)] = share
             else:
                 values[:, _column(name, modes)] = share
-        return cls(values, swings, np.full(count, kind, dtype=np.int64))
+        return cls(values, swings, shifts, np.full(count, kind, dtype=np.int64))
 
     @classmethod
     def none(cls, modes: int) -> "Quantities":
@@ -86,14 +93,17 @@ def collected(modes: int, shares: Sequence[Share]) -> Quantities:
     for k, (kind, values) in enumerate(shares):
         total.kinds[k] = kind
         for name, share in values.items():
-            total.shares[k, _column(name, modes)] = share
+            if name in OF_SHIFT:
+                total.shifts[k, OF_SHIFT.index(name)] = share
+            else:
+                total.shares[k, _column(name, modes)] = share
     return total
 
 
 def joined(parts: Sequence[Quantities]) -> Quantities:
     """Return all quantities of the parts, in their order."""
-    shares, swings, kinds = zip(*((part.shares, part.swings, part.kinds) for part in parts), strict=True)
-    return Quantities(np.concatenate(shares), np.concatenate(swings), np.concatenate(kinds))
+    names = ("shares", "swings", "shifts", "kinds")
+    return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
@@ -112,6 +122,9 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     rows = shares @ _moving(model, key, large=large)
     if key[0] != CLOSED and quantities.swings.any():
         rows[:, model.layout.spin] += quantities.swings @ (1.0, float(key[0] == RIGHT))
+    for place, weights in zip((model.layout.slip, model.layout.heave), quantities.shifts.T, strict=True):
+        if place >= 0:
+            rows[:, place] += weights
     return rows
 
 
@@ -125,6 +138,8 @@ def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
     rows[ROTATION, layout.rotation] = 1.0
     rows[RIGHT_ROTATION, layout.rotation] = key[0] == RIGHT
     rows[GROUND, -2] = 1.0
+    if layout.slip >= 0:  # the base moves with the ground and slides on it
+        rows[GROUND] += model.accelerations(key)[n + 1]
     if not large:
         rows[2 * n : 3 * n] = model.modal_accelerations(key)
         if model.is_free(key):
@@ -146,17 +161,18 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
         row -= side * p.m_tot * p.pivot(side).arm * model.angular_acceleration(key)
     row -= tensions(model, key).sum(axis=0)
     row[-1] += sum(each.pull(each.branches[0]).force for each in model.elements)
+    row[-1] -= p.m_tot * (model.gravity - GRAVITY)
     return row
 
 
 def tensions(model: ModalModel, key: Key) -> Array:
     """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
     rows = np.zeros((len(model.elements), model.layout.columns))
-    if is_held(model.properties, model.elements, key):
+    if is_held(model.properties, model.elements, model.element_key(key)):
         hold(model, key, rows)
     side, layout = key[0], model.layout
     known = memories(model.elements)
-    for place, (each, branch) in enumerate(zip(model.elements, key[1:], strict=True)):
+    for place, (each, branch) in enumerate(zip(model.elements, model.element_key(key)[1:], strict=True)):
         pull = each.pull(branch)
         rows[place, -1] += pull.force
         if place in known:
@@ -174,7 +190,7 @@ def hold(model: ModalModel, key: Key, rows: Array) -> None:
     """
     side, layout, p = key[0], model.layout, model.properties
     moment = -model.overturning_moment()
-    others = border_of(p, model.elements, key)
+    others = border_of(p, model.elements, key, model.gravity)
     moment[layout.rotation] -= others.stiffness[0, 0]
     moment[-1] += others.constant[0]
     moment[layout.memory : layout.memory + layout.remembered] += others.recall[0]

@@ -34,7 +34,8 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     if model.complete:
         return _of_large_rotations(model, states, rates)
     p, side = model.properties, acting_side(states)
-    turn, push = rates[:, -1], rates[:, :-1] @ p.effective_mass
+    n = p.n_modes
+    turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
     vertical = p.m_tot * GRAVITY + element_forces(model, states).sum(axis=1)
     for each in (1, -1):
         on = side == each

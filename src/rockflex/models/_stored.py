@@ -41,8 +41,9 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
     layout = model.layout
     rates = accelerations(model, states)
     ground = states[:, GROUND, None]
-    bend = rates[:, :-1] @ floors.displacement.T  # u''
-    angular = rates[:, -1:]
+    n = layout.modes
+    bend = rates[:, :n] @ floors.displacement.T  # u''
+    angular = rates[:, n : n + 1]
     if not model.complete:
         return ground + bend + floors.heights * angular
     rotation, spin = layout.of(states, layout.rotation)[:, None], layout.of(states, layout.spin)[:, None]

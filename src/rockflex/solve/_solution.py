@@ -17,6 +17,8 @@ class Solution:
         Time of the last state, s.
     peaks, peak_times
         Largest magnitude of each row and its time (s), shape (F,); row 0 is the rotation.
+    extremes, extreme_times
+        Largest values of the quantities of which only these matter, and their times (s).
     lost_support, time_of_lost_support
         Largest decrease of the vertical reaction below its value at rest in N (negative if it was always above), and
         its time in s.
@@ -35,6 +37,8 @@ class Solution:
     end_time: float
     peaks: Array
     peak_times: Array
+    extremes: Array
+    extreme_times: Array
     lost_support: float
     time_of_lost_support: float
     n_uplifts: int

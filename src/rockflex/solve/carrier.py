@@ -17,7 +17,7 @@ from rockflex.solve.adaptive.layout import Flow, Integrator, Stages
 from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.turning import BARELY
 from rockflex.solve.exact.series import advance, expand, row_series
-from rockflex.solve.exits import phase_exit, turn_back
+from rockflex.solve.exits import fence_exit, phase_exit, turn_back
 from rockflex.solve.layout import (
     DAMPING,
     DOUBT,
@@ -32,6 +32,7 @@ from rockflex.solve.layout import (
     Progress,
     Span,
     System,
+    rows_in,
 )
 from rockflex.solve.memory import gather, load_in
 from rockflex.solve.peaks import raise_peak, raise_to
@@ -65,9 +66,9 @@ def first_exit(
 @inlined_kernel
 def exit_of_series(system: System, at: Progress, span: Span, motion: Motion) -> tuple[float, int, float]:
     """Return where a linear phase ends, from the power series of its guard."""
-    expand(system, at.phase, motion, span, at.lift)
+    expand(system, at.phase, motion, span, at.lift, at.slide)
     row_series(system, at.phase, GUARD, motion, span)
-    return phase_exit(system, at, motion, motion.polys)
+    return phase_exit(system, at, span, motion, motion.polys)
 
 
 @inlined_kernel
@@ -82,7 +83,7 @@ def exit_of_step(
         # θ' starts exactly from zero, θ from zero or where it was held, and θ'' from the value given by the guard.
         polys[GUARD, 0], polys[GUARD, 1] = motion.state[system.layout.rotation], 0.0
         polys[GUARD, 2] = 0.5 * at.lift * span.length * span.length
-    return phase_exit(system, at, motion, polys)
+    return phase_exit(system, at, span, motion, polys)
 
 
 @inlined_kernel
@@ -97,6 +98,23 @@ def turning_exit(system: System, steps: Integrator | None, at: Progress, span: S
         return turn_back(motion.polys, row, sign, zeros)
     row_poly(system, at.phase, row, span, steps.room)
     return turn_back(steps.room.polys, row, sign, zeros)
+
+
+@inlined_kernel
+def first_fence(
+    system: System, steps: Integrator | None, at: Progress, span: Span, motion: Motion, stop: float
+) -> tuple[float, int]:
+    """Return where a fence of the phase first falls to zero before `stop`, and which one; see `fence_exit`."""
+    p = at.phase
+    if system.phases[p].fences == 0:
+        return stop, -1
+    if steps is None or system.phases[p].linear:
+        for row in range(system.fences, rows_in(system, p)):
+            row_series(system, p, row, motion, span)
+        return fence_exit(system, at, span, motion, motion.polys, stop)
+    for row in range(system.fences, rows_in(system, p)):
+        row_poly(system, p, row, span, steps.room)
+    return fence_exit(system, at, span, motion, steps.room.polys, stop)
 
 
 @inlined_kernel
@@ -130,12 +148,13 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
         raise_peak(motion.polys, GUARD, stop, span, log)
     advance(system, motion, stop, span.length)
     time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop
+    rise = span.rise + span.rise_slope * span.length * stop
     for f in range(1, log.peaks.size):
         if at.fresh_rows or motion.flags[DOUBT, f]:
             row_series(system, p, f, motion, span)
             raise_peak(motion.polys, f, stop, span, log)
         else:
-            raise_to(system, p, f, ground, time, log, motion)
+            raise_to(system, p, f, ground, rise, time, log, motion)
 
 
 @inlined_kernel
@@ -166,16 +185,22 @@ def free_inertia(system: System, steps: Integrator | None, phase: int, state: Ar
 
 
 @kernel
-def turning_rate(system: System, steps: Integrator | None, phase: int, ground: float, motion: Motion) -> float:
+def turning_rate(
+    system: System, steps: Integrator | None, phase: int, ground: float, rise: float, motion: Motion
+) -> float:
     """Return θ'' at θ = 0 in a phase in which the motion may continue."""
     if steps is None:
-        n = system.layout.modes
-        moment = load_in(system, phase, 0, motion.state) + system.push[phase, DRIVE, 0] * ground
-        moment -= system.base[phase, DAMPING, 0, 0] * motion.state[system.layout.spin]
-        for i in range(n):
-            restoring = system.modes[DRAG, i] * motion.state[n + i] + system.modes[OMEGA2, i] * motion.state[i]
-            moment += system.border[phase, 0, LEVERAGE, i] * restoring
-        return moment * system.base[phase, FLEXIBILITY, 0, 0]
+        n, rate = system.layout.modes, 0.0
+        for j in range(motion.push.size):
+            force = load_in(system, phase, j, motion.state) + system.push[phase, DRIVE, j] * ground
+            force -= system.base[phase, DAMPING, j, 0] * motion.state[system.layout.spin]
+            if rise != 0.0:
+                force += system.heavier_push[phase, j] * rise
+            for i in range(n):
+                restoring = system.modes[DRAG, i] * motion.state[n + i] + system.modes[OMEGA2, i] * motion.state[i]
+                force += system.border[phase, j, LEVERAGE, i] * restoring
+            rate += force * system.base[phase, FLEXIBILITY, 0, j]
+        return rate
     forget(steps.room)
     gather(system, phase, motion)
     field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0])

@@ -13,7 +13,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
-from rockflex.models import FREEDOMS, HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
+from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
 from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
@@ -72,19 +72,29 @@ class Engine:
         The model.
     quantities
         Quantities whose peaks are computed.
+    extremes
+        Quantities of which only the largest value matters, not the magnitude.
     tolerance
         Relative error tolerance per step of integrated phases.
     """
 
-    def __init__(self, model: RockingModel, quantities: Quantities, tolerance: float = TOLERANCE) -> None:
+    def __init__(
+        self,
+        model: RockingModel,
+        quantities: Quantities,
+        extremes: Quantities | None = None,
+        tolerance: float = TOLERANCE,
+    ) -> None:
         self.model = model
-        self._n_rows = (
-            2 + len(quantities) + (model.layout.remembered > 0)
-        )  # plus the guard, which is the rotation, and the loss of support
+        most = Quantities.none(model.layout.modes) if extremes is None else extremes
+        # The guard, which is the rotation, the quantities, those of which only the largest value matters, and the loss
+        # of support.
+        self._n_rows = 2 + len(quantities) + model.turning + len(most)
         self._n_peaks = 1 + len(quantities)
+        self._signed = self._n_peaks + model.turning
         self._impact, self._failures = impact_of(model.law, model.properties)
         with preparing(model):
-            self._phases = CompiledPhases(model, quantities)
+            self._phases = CompiledPhases(model, quantities, most)
             # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
             for side in model.sides if model.integrated else (0,):
                 self._phases.place(model.start(side))
@@ -111,9 +121,11 @@ class Engine:
         history: bool = False,
         work_limit: float | None = None,
         slice_of_work: float = SLICE,
+        vertical: Array | None = None,
     ) -> Solution:
         """Run one record, then `free_vibration` seconds (None: until settled), from a state [D.., D'.., θ, θ'].
 
+        `vertical` is the vertical acceleration of the ground, as long as the record; None if there is none.
         `work_limit` is the limit of the estimated and the actual work in s, see `Pace`; None means no limit. After
         every `slice_of_work`, in s, the run can be interrupted by Ctrl-C or `stopping_when`.
 
@@ -132,14 +144,10 @@ class Engine:
         task = self.task(acceleration, dt, free_vibration, history=history)
         task.check(work_limit)
         layout = self.model.layout
-        start = np.zeros(layout.size)
-        if state is not None:
-            start[: layout.core] = state
-        key, start[layout.memory : layout.memory + layout.remembered] = self.model.begin(
-            float(start[layout.rotation]), float(start[layout.spin])
-        )
+        key, start = self.model.initial(state)
+        shaken = vertical is not None
         at = progress_at_start(self._place(key), stated=True)
-        course = self._course(acceleration, dt, free_vibration)
+        course = self._course(acceleration, vertical, dt, free_vibration)
         room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
         log = Log(
             np.zeros(self._n_rows),
@@ -147,17 +155,18 @@ class Engine:
             np.zeros(4, dtype=np.int64),
             np.concatenate(([0.0], self.pace.prices(history=history))),
             np.zeros((room_for, HEADER + layout.size)),
+            self._signed,
         )
-        log.peaks[-1] = -np.inf
-        if layout.remembered:
-            log.peaks[-2] = np.inf  # of the row of θ', whose peak nobody asks for
+        log.peaks[self._signed :] = -np.inf
+        if self.model.turning:
+            log.peaks[self._n_peaks] = np.inf  # of the row of θ', whose peak nobody asks for
         left = math.inf if work_limit is None else work_limit
         motion, steps = None, None
         while True:
-            system = self._phases.known_system(dt)
+            system = self._phases.known_system(dt, shaken=shaken)
             if system is None:
                 with preparing(self.model):
-                    system = self._phases.system(dt, self.pace.fastest)
+                    system = self._phases.system(dt, self.pace.fastest, shaken=shaken)
             motion = self._room(system, start, motion)
             steps = steps or self._integrator(motion, log, at)
             given = min(slice_of_work, left)
@@ -188,10 +197,14 @@ class Engine:
         with preparing(self.model):
             return self._phases.place(key)
 
-    def _course(self, acceleration: Array, dt: float, free_vibration: float | None) -> Course:
+    def _course(
+        self, acceleration: Array, vertical: Array | None, dt: float, free_vibration: float | None
+    ) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
         return Course(
-            record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),  # the compiled type
+            # The compiled type is that of a writable array.
+            record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),
+            vertical=np.require([] if vertical is None else vertical, dtype=np.float64, requirements=("C", "W")),
             quiet=QUIET,
             dt=dt,
             free=math.ceil(min(after / dt, MOST_SAMPLES) - 1e-9),
@@ -202,7 +215,7 @@ class Engine:
         """Return the work arrays of the motion, enlarged to the number of terms that the phases need."""
         terms = int(system.phases["terms"].max(initial=4))
         if motion is None:
-            return motion_of(state, self.model.layout.core, self._n_rows, terms, len(FREEDOMS))
+            return motion_of(state, self.model.layout, self._n_rows + self.model.most_fences, terms)
         if motion.series.shape[1] >= terms:
             return motion
         return motion._replace(
@@ -236,6 +249,8 @@ class Engine:
             end_time=float(log.times[0]) if overturned else _samples(at) * dt,
             peaks=log.peaks[: self._n_peaks],
             peak_times=log.times[: self._n_peaks],
+            extremes=log.peaks[self._signed : -1],
+            extreme_times=log.times[self._signed : -1],
             lost_support=float(log.peaks[-1]),
             time_of_lost_support=float(log.times[-1]),
             n_uplifts=int(log.tally[UPLIFTS]),

@@ -3,12 +3,27 @@
 import numpy as np
 
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex.models import CHANGES, LANDS, OVERTURNS, RELEASES, TURNS, Impact, kinetic_energy, may_pass, stick, strike
+from rockflex.models import (
+    CHANGES,
+    CLOSES,
+    LANDS,
+    OPENS,
+    OVERTURNS,
+    RELEASES,
+    SLIPS,
+    STICKS,
+    TURNS,
+    Impact, 
+    kinetic_energy,
+    may_pass,
+    stick,
+    strike,
+)
 from rockflex.solve.adaptive.check import nothing_hides
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.adaptive.step import FAILED, forget, step_over
 from rockflex.solve.adaptive.turning import turning
-from rockflex.solve.carrier import begin, first_exit, free_inertia, move, turning_exit, turning_rate
+from rockflex.solve.carrier import begin, first_exit, first_fence, free_inertia, move, turning_exit, turning_rate
 from rockflex.solve.exits import INSIDE, LIFTED, PASSING, TOUCHED
 from rockflex.solve.history import keep, room_left
 from rockflex.solve.layout import (
@@ -21,9 +36,11 @@ from rockflex.solve.layout import (
     GUARD,
     HIGH,
     IMPACTS,
+    KIND,
     LEFT,
     LOW,
     SERIES,
+    SETS,
     TURNED,
     TURNING,
     UPLIFTS,
@@ -32,9 +49,11 @@ from rockflex.solve.layout import (
     Progress,
     Span,
     System,
+    part_of,
     unit_of,
 )
 from rockflex.solve.memory import recollect, remember
+from rockflex.solve.peaks import row_at
 from rockflex.solve.status import Status
 
 CROSSED = int(Status.ENDED)
@@ -70,6 +89,23 @@ def set_off(system: System, steps: Integrator | None, at: Progress, bound: int, 
 def start_crossing(at: Progress, fresh_rows: bool) -> None:
     """Start advancing event by event; with `fresh_rows` it is not known which rows may have a peak."""
     at.crossing, at.fresh_rows, at.onset, at.lift, at.resume = True, fresh_rows, INSIDE, np.nan, 0.0
+    at.slip_onset, at.slide = INSIDE, np.nan
+
+
+@inlined_kernel
+def pass_fence(system: System, at: Progress, fence: int, stop: float, motion: Motion) -> None:
+    """Continue in the phase beyond a fence."""
+    p, layout = at.phase, system.layout
+    event, memory = system.fence_kinds[p, fence, KIND], system.fence_kinds[p, fence, SETS]
+    if memory >= 0:
+        value = row_at(system.fence_values, p, fence, 0.0, motion.state)
+        motion.state[layout.memory + memory] = value
+    if event == STICKS:
+        motion.state[layout.slip + 1] = 0.0
+    # A slip grows like t³ from the instant at which the friction is just used up, like t² if it never sufficed.
+    at.slip_onset = (TOUCHED if stop > 0.0 else LIFTED) if event == SLIPS else INSIDE
+    at.slide = 0.0 if event == SLIPS and stop > 0.0 else np.nan
+    enter(system, at, system.links[p, system.fenced + fence], motion)
 
 
 @kernel
@@ -79,9 +115,12 @@ def beside(side: float) -> int:
 
 
 @kernel
-def lacks(system: System, at: Progress, event: int, bound: int, owner: int, impact: Impact) -> int:
+def lacks(system: System, at: Progress, event: int, bound: int, owner: int, fence: int, impact: Impact) -> int:
     """Return the place of a phase needed after an event but not yet compiled; -1 if there is none."""
     p = at.phase
+    if fence >= 0:
+        place = system.fenced + fence
+        return TURNING + 1 + place - CHANGED if system.links[p, place] < 0 else -1
     if event == TURNS:
         return TURNING if system.links[p, TURNED] < 0 else -1
     if event == CHANGES:
@@ -117,10 +156,10 @@ def cross(
         if linear:
             unit = float(unit_of(system, system.phases[p].levels))
             longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
-        length = begin(system, steps, at, Span(now, sample.until, here, sample.slope, longest))
+        length = begin(system, steps, at, part_of(sample, now, at.begun, longest))
         if length == FAILED:
             return STALLED
-        span = Span(now, sample.until, here, sample.slope, length)
+        span = part_of(sample, now, at.begun, length)
         whole = length == longest
         if (
             steps is not None
@@ -137,8 +176,13 @@ def cross(
         back = turning_exit(system, steps, at, span, motion)
         if back < stop:
             stop, event = back, TURNS
+        fence = -1
+        if stop >= 0.0:
+            stop, fence = first_fence(system, steps, at, span, motion, stop)
+            if fence >= 0:
+                event = system.fence_kinds[p, fence, KIND]
         if stop < 0.0:
-            at.lacking = lacks(system, at, event, bound, owner, impact)
+            at.lacking = lacks(system, at, event, bound, owner, fence, impact)
             if at.lacking >= 0:
                 return LACKS_PHASE
             if system.phases[p].free:
@@ -149,7 +193,8 @@ def cross(
                 set_off(system, steps, at, bound, excess, motion)
                 at.onset = LIFTED
                 if event == RELEASES:
-                    keep(log, now, side, here, motion.state)
+                    keep(log, now, side, here, span.rise, motion.state)
+            at.slip_onset, at.slide = INSIDE, np.nan
             at.fresh_rows = True
             if steps is not None:
                 forget(steps.room)
@@ -165,19 +210,21 @@ def cross(
             if turns:
                 stop, ends, tipped = turn, True, False
         if not ends:
-            at.lacking = lacks(system, at, event, bound, owner, impact)
+            at.lacking = lacks(system, at, event, bound, owner, fence, impact)
             if at.lacking >= 0:
                 return LACKS_PHASE
         lifted = at.onset >= LIFTED and motion.state[system.layout.rotation] == 0.0
-        if lifted and not (event == CHANGES and stop == 0.0):
+        at_once = stop == 0.0 and (event == CHANGES or fence >= 0)
+        if lifted and not at_once:
             log.tally[UPLIFTS] += 1
             log.tally[EVENTS] += 1
-            keep(log, now, 0.0, here, motion.state)
-            keep(log, now, side, here, motion.state)
+            keep(log, now, 0.0, here, span.rise, motion.state)
+            keep(log, now, side, here, span.rise, motion.state)
         move(system, steps, at, span, stop, turns, log, motion)
         at.begun = sample.length if whole and stop == 1.0 and not linear else at.begun + stop * length
-        if not (event == CHANGES and stop == 0.0):
+        if not at_once:
             at.onset, at.lift = INSIDE, np.nan
+            at.slip_onset, at.slide = INSIDE, np.nan
         if ends:
             at.resume = 0.0
             if linear:
@@ -188,40 +235,50 @@ def cross(
             continue
         here = sample.ground + sample.slope * at.begun
         now = min(sample.time + at.begun, sample.until)
-        if event in (CHANGES, TURNS):
+        rise = sample.rise + sample.rise_slope * at.begun
+        if fence >= 0:
             if at.onset == INSIDE:  # otherwise an uplift is yet to be recorded
-                keep(log, now, side, here, motion.state)
+                keep(log, now, side, here, rise, motion.state)
+            log.tally[EVENTS] += 1
+            log.tally[UPLIFTS] += event == OPENS
+            log.tally[IMPACTS] += event == CLOSES
+            pass_fence(system, at, fence, stop, motion)
+            if at.onset == INSIDE:
+                keep(log, now, side, here, rise, motion.state)
+        elif event in (CHANGES, TURNS):
+            if at.onset == INSIDE:  # otherwise an uplift is yet to be recorded
+                keep(log, now, side, here, rise, motion.state)
             log.tally[EVENTS] += 1
             remember(system, p, motion)
             if event == TURNS:
                 motion.state[system.layout.spin] = 0.0
             enter(system, at, system.links[p, TURNED if event == TURNS else CHANGED + owner], motion)
             if at.onset == INSIDE:
-                keep(log, now, side, here, motion.state)
+                keep(log, now, side, here, rise, motion.state)
         elif tipped:
-            limit = motion.limits[HIGH] if side > 0.0 else motion.limits[LOW]
+            limit = motion.limits[bound]
             log.peaks[GUARD], log.times[GUARD] = abs(limit), now
             motion.state[system.layout.rotation] = limit
-            keep(log, now, side, here, motion.state)
+            keep(log, now, side, here, rise, motion.state)
             return OVERTURNED
         elif event == LANDS:
             motion.state[system.layout.rotation] = 0.0
-            keep(log, now, side, here, motion.state)
+            keep(log, now, side, here, rise, motion.state)
             remember(system, p, motion)
-            status, next_side = land(system, steps, impact, p, here, motion)
+            status, next_side = land(system, steps, impact, p, here, rise, motion)
             if status != CROSSED:
                 return status
             log.tally[EVENTS] += 1
             log.tally[IMPACTS] += 1
             enter(system, at, system.links[p, BESIDE + beside(next_side)], motion)
-            keep(log, now, next_side, here, motion.state)
+            keep(log, now, next_side, here, rise, motion.state)
             at.onset = PASSING if next_side != 0.0 else INSIDE
         else:
             motion.state[system.layout.spin] = 0.0
             set_off(system, steps, at, bound, excess, motion)
             at.onset = LIFTED if excess > 0.0 else TOUCHED
             if event == RELEASES:
-                keep(log, now, side, here, motion.state)
+                keep(log, now, side, here, rise, motion.state)
         at.resume = 0.0
         at.fresh_rows = True
         if steps is not None:
@@ -234,7 +291,7 @@ def cross(
 
 @kernel
 def land(
-    system: System, steps: Integrator | None, impact: Impact, phase: int, ground: float, motion: Motion
+    system: System, steps: Integrator | None, impact: Impact, phase: int, ground: float, rise: float, motion: Motion
 ) -> tuple[int, float]:
     """Apply the impact law; return the status and the side on which the rotation continues, 0 for contact.
 
@@ -253,7 +310,7 @@ def land(
     after = kinetic_energy(impact, free_inertia(system, steps, following, state), state)
     if after > before * (1.0 + GAIN):
         return GAINED, next_side
-    back = -next_side * turning_rate(system, steps, following, ground, motion)
+    back = -next_side * turning_rate(system, steps, following, ground, rise, motion)
     if 2.0 * abs(spin) < back * impact.shortest:
         stick(impact, state)
         if kinetic_energy(impact, 0.0, state) > before * (1.0 + GAIN):

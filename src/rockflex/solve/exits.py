@@ -4,24 +4,28 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.solve.layout import GUARD, HIGH, LOW, Motion, Progress, System
+from rockflex.models import STICKS
+from rockflex.solve.layout import GUARD, HIGH, KIND, LOW, Motion, Progress, Span, System, is_shaken
 from rockflex.solve.polynomials import evaluate, first_descent
 
 BEFORE = -1.0  # the phase ended before it started
+NOUGHT = 1e-12  # of the terms of a fence: this close to zero at the start, it is zero
 
 # How a rotation leaves zero at the start of the stretch: the order of its first nonzero term.
 INSIDE, PASSING, LIFTED, TOUCHED = 0, 1, 2, 3
 
 
 @kernel
-def phase_exit(system: System, at: Progress, motion: Motion, polys: Array) -> tuple[float, int, float]:
+def phase_exit(
+    system: System, at: Progress, span: Span, motion: Motion, polys: Array
+) -> tuple[float, int, float]:
     """Return where the guard first passes a limit, which limit, and by how much it then exceeds it.
 
     The place is inf if no limit is passed. It is `BEFORE` if the moment on a base at rest exceeds a limit from the
     start, or if a rotation never left zero.
     """
     side, low, high = system.phases[at.phase].side, motion.limits[LOW], motion.limits[HIGH]
-    if system.phases[at.phase].free:
+    if system.phases[at.phase].free and side != 0.0:
         inner = LOW if side > 0.0 else HIGH
         if motion.owners[inner] < 0:
             lands = landing(polys, side, at.onset if motion.state[system.layout.rotation] == 0.0 else INSIDE)
@@ -33,24 +37,31 @@ def phase_exit(system: System, at: Progress, motion: Motion, polys: Array) -> tu
         if tips < lands and tips < 1.0:
             return tips, 1 - inner, 0.0
         return lands, inner, 0.0
+    low_rate = high_rate = 0.0
+    if is_shaken(span):
+        below, above = system.heavier_limits[at.phase, LOW], system.heavier_limits[at.phase, HIGH]
+        low, high = low + span.rise * below, high + span.rise * above
+        low_rate, high_rate = span.rise_slope * span.length * below, span.rise_slope * span.length * above
     if at.resume == 0.0:
         excess = max(polys[GUARD, 0] - high, low - polys[GUARD, 0])
         if excess > 0.0:
             return BEFORE, (HIGH if polys[GUARD, 0] > high else LOW), excess
-    stop, bound = band_exit(polys, low, high, at.resume)
+    stop, bound = band_exit(polys, low, low_rate, high, high_rate, at.resume)
     excess = 0.0
     if at.resume > 0.0 and stop == at.resume:
         value = evaluate(polys, GUARD, stop)[0]
-        excess = max(value - high, low - value, 0.0)
+        excess = max(value - (high + high_rate * stop), low + low_rate * stop - value, 0.0)
     return stop, bound, excess
 
 
 @kernel
-def band_exit(polys: Array, low: float, high: float, start: float) -> tuple[float, int]:
-    """Return where the guard reaches one of two limits (Eq. 24), and which one."""
+def band_exit(
+    polys: Array, low: float, low_rate: float, high: float, high_rate: float, start: float
+) -> tuple[float, int]:
+    """Return where the guard reaches one of two limits (Eq. 24), and which one; they may change at constant rates."""
     work = polys.shape[0] - 1
     exit_at, exit_bound = np.inf, LOW
-    play = 0.0
+    play = max(abs(low_rate), abs(high_rate))
     for k in range(1, polys.shape[1]):
         play += abs(polys[GUARD, k])
     for bound in range(2):
@@ -61,6 +72,7 @@ def band_exit(polys: Array, low: float, high: float, start: float) -> tuple[floa
         for k in range(polys.shape[1]):
             polys[work, k] = sign * polys[GUARD, k]
         polys[work, 0] -= sign * limit
+        polys[work, 1] -= sign * (low_rate if bound == LOW else high_rate)
         u = first_descent(polys, work, start, 1.0)
         if u < exit_at:
             exit_at, exit_bound = u, bound
@@ -115,3 +127,48 @@ def overturning(polys: Array, side: float, limit: float) -> float:
         return np.inf
     polys[work, 0] += limit
     return first_descent(polys, work, 0.0, 1.0)
+
+
+@kernel
+def fence_exit(
+    system: System, at: Progress, span: Span, motion: Motion, polys: Array, stop: float
+) -> tuple[float, int]:
+    """Return where a fence first falls to zero before `stop`, and which one; `stop` and -1 if none does.
+
+    A fence may be zero at the start, since the previous phase ended there: then the sign of its first derivative that is
+    not zero decides. Its place is 0 if it is negative from the start.
+    """
+    found = -1
+    for e in range(system.phases[at.phase].fences):
+        row, work = system.fences + e, polys.shape[0] - 1
+        reach = 0.0
+        for k in range(1, polys.shape[1]):
+            reach += abs(polys[row, k])
+        if polys[row, 0] > reach:
+            continue
+        zeros = 0
+        if system.fence_kinds[at.phase, e, KIND] == STICKS:
+            zeros = max(at.slip_onset - 1, 0)  # a slip that has just begun grows like t² or t³
+        elif polys[row, 0] <= NOUGHT * reach:
+            size = NOUGHT * size_at(system, at.phase, row, span, motion)
+            if polys[row, 0] < -size:
+                return 0.0, e
+            zeros = 1 if polys[row, 0] <= size else 0
+        for k in range(polys.shape[1]):
+            polys[work, k] = polys[row, k + zeros] if k + zeros < polys.shape[1] else 0.0
+        if polys[work, 0] < 0.0 or (zeros > 0 and polys[work, 0] == 0.0 and polys[work, 1] < 0.0):
+            return 0.0, e
+        u = first_descent(polys, work, 0.0, 1.0)
+        if u < stop:
+            stop, found = u, e
+    return stop, found
+
+
+@kernel
+def size_at(system: System, phase: int, row: int, span: Span, motion: Motion) -> float:
+    """Return the sum of the magnitudes of the terms of a row at the start of a stretch."""
+    rows, moving = system.plain_rows, system.plain_rows.shape[2] - 2
+    size = abs(rows[phase, row, moving] * span.ground) + abs(rows[phase, row, moving + 1])
+    for i in range(moving):
+        size += abs(rows[phase, row, i] * motion.state[i])
+    return size

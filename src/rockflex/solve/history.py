@@ -2,14 +2,14 @@
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.models import GROUND, HEADER, SIDE, TIME
+from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.solve.layout import KEPT, Log
 
 MARGIN = 8  # largest number of states added between two pauses
 
 
 @kernel
-def keep(log: Log, time: float, side: float, ground: float, state: Array) -> None:
+def keep(log: Log, time: float, side: float, ground: float, rise: float, state: Array) -> None:
     """Add a state to the history, if there is one."""
     if log.history.shape[0] == 0:
         return
@@ -17,6 +17,7 @@ def keep(log: Log, time: float, side: float, ground: float, state: Array) -> Non
     log.history[k, TIME] = time
     log.history[k, SIDE] = side
     log.history[k, GROUND] = ground
+    log.history[k, RISE] = rise
     for i in range(state.size):
         log.history[k, HEADER + i] = state[i]
     log.tally[KEPT] = k + 1

@@ -2,8 +2,9 @@
 
 The state is that of `rockflex.models.StateLayout`. A *row* is a linear functional of its moving entries, the ground
 acceleration and 1; each phase has its own rows. Row 0 of each phase is its guard; while the base rocks it is also the
-rotation. The last row is the loss of support of the base, for which only the largest value matters. The rows between
-are the quantities whose peaks are computed.
+rotation. Then come the quantities whose peaks are computed. Of the last of them, from `Log.signed` on, only the largest
+value matters, not the magnitude; the very last is the loss of support of the base. The fences of the phase follow:
+rows that end it where they become negative.
 
 Each linear phase is uncoupled into K pairs of coordinates w, where state = basis · (w + forced part); pair k is
 ``(w[k], w[K + k])``. Under an acceleration that is linear in time, w moves without forcing, ``w(t + h) = exp(B h)
@@ -35,7 +36,8 @@ CONSTANT, DRIVE = 0, 1
 
 # Indices in `System.links`, for two limits each: the event there, and the phase that follows; -1 for none, or for a
 # phase not yet compiled. Then the same branches with the base in contact, on its right pivot and on its left pivot.
-# Next the phase that follows where an element that yields turns back, and those that follow the `System.changes`.
+# Next the phase that follows where an element that yields turns back, and those that follow the `System.changes`; from
+# `System.fenced` on, those that follow the fences.
 EVENT, FOLLOWS, BESIDE, TURNED, CHANGED = 0, 2, 4, 7, 8
 
 # `Progress.lacking`: first the offsets from `BESIDE`, then those from `FOLLOWS`, then those from `TURNED`.
@@ -46,6 +48,9 @@ LOW, HIGH = 0, 1
 PLACE, RECALL = 0, 1
 OUTER, MEMORY = 0, 1
 ARM, OFFSET = 0, 1
+
+# Indices in `System.fence_kinds`: the event, and the memory that is set; -1 for none
+KIND, SETS = 0, 1
 
 # Indices in `System.basis` and `System.rows`
 OUT, INTO = 0, 1
@@ -72,6 +77,9 @@ PHASE = _record(
         ("free", np.bool_),  # whether it rotates: it neither rests on the ground nor is held at a rotation
         ("decays", np.bool_),  # whether free vibration comes to rest
         ("turns", np.int64),  # sign of |θ|' while an element yields or slides; 0 if none does
+        ("active", np.int64),  # number of pairs of coordinates that may move
+        ("fences", np.int64),
+        ("marches", np.bool_),  # whether it is advanced over whole samples, rather than by power series
         ("levels", np.int64),  # of the grid
         ("terms", np.int64),  # of the power series that converge over the finest step
         ("linear", np.bool_),  # solved in closed form
@@ -93,7 +101,11 @@ class System(NamedTuple):
     phases: Any  # (P,): records of `PHASE`
     turning_row: int  # index of the row of θ', which guards elements that yield; -1 if no element can
     chords: bool  # whether an element is stretched by 2 r sin(|θ|/2), rather than r |θ|
-    links: NDArray[np.int64]  # (P, CHANGED + X): what follows each phase
+    fences: int  # index of the row of the first fence
+    fenced: int  # index in `links` of the phase after the first fence
+    links: NDArray[np.int64]  # (P, CHANGED + X + E): what follows each phase
+    fence_kinds: NDArray[np.int64]  # (P, E, 2): the event at each fence, and the memory that is set there
+    fence_values: Array  # (P, E, C): the row of the value that this memory takes
     limits: Array  # (P, 2, 2 + M): limits of the guard, and what the rotation and each memory add to them
     changes: Array  # (P, X, 2): limits of δ/r at which an element changes its branch: place, and factor of its memory
     change_kinds: NDArray[np.int64]  # (P, X, 2): 1 if reached from below, 0 from above, -1 for none; memory's index
@@ -104,21 +116,27 @@ class System(NamedTuple):
     base: Array  # (P, 3, b, b): flexibility, damping and stiffness of the base
     push: Array  # (P, 2, b): constant forces on the base, and the factor of the ground acceleration
     pulls: Array  # (P, 7, 1 + M): sums over the elements, and what the memories add: see `rockflex.models.pulls_of`
+    # Increase for each m/s² of the vertical acceleration of the ground; no entries unless it moves vertically.
+    heavier_push: Array  # (P, b): of the constant forces on the base
+    heavier_base: Array  # (P, b, b): of its stiffness
+    heavier_limits: Array  # (P, 2): of the limits of the guard
+    heavier_rows: Array  # (P, F + E, C): of the rows
     # For the motion
-    plain_rows: Array  # (P, F, C): the rows over the state, a and 1
+    plain_rows: Array  # (P, F + E, C): the rows over the state, a and 1
     basis: Array  # (P, 2, S, S), S = 2 N + 2 b: from coordinates to states and back, both transposed
     forced: Array  # (P, 3 + M, S): coefficients of a, a', 1 and the memories in the forced part
-    rows: Array  # (P, 2, F, S): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
-    row_forcing: Array  # (P, F, 3 + M): coefficients of a, a', 1 and the memories in the rows
+    rows: Array  # (P, 2, F + E, S): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
+    row_forcing: Array  # (P, F + E, 3 + M): coefficients of a, a', 1 and the memories in the rows
     blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
     propagator: Array  # (P, J + 1, S, S): exp(B h) if some phase is dense; otherwise (0, 0, 0, 0)
-    bounds: Array  # (P, 3, J + 1, F, K): sag, swing and ripple of each row over a step, times |w| of the pair
+    bounds: Array  # (P, 3, J + 1, F + E, K): sag, swing and ripple of each row over a step, times |w| of the pair
 
 
 class Course(NamedTuple):
     """The course of a run."""
 
-    record: Array  # (n,): ground acceleration
+    record: Array  # (n,): horizontal acceleration of the ground
+    vertical: Array  # (n,): its vertical acceleration; (0,) if there is none
     quiet: Array  # zeros, one stretch of free vibration
     dt: float
     free: int  # samples after the record
@@ -133,16 +151,19 @@ class Span(NamedTuple):
     ground: float  # acceleration at its start
     slope: float  # of the acceleration
     length: float
+    rise: float  # vertical acceleration at its start
+    rise_slope: float  # of the vertical acceleration
 
 
 class Log(NamedTuple):
     """The results of a run: the peak of each row (row 0: rotation) and its time, counts, work, and the history."""
 
-    peaks: Array  # (F,): largest magnitudes; for the last row the largest value
+    peaks: Array  # (F,): largest magnitudes, or largest values
     times: Array  # (F,)
     tally: NDArray[np.int64]  # (4,): uplifts, impacts, events within the present sample, states stored
     work: Array  # (5,): work left, and that of a sample, a look into one, a power series, an attempted step
-    history: Array  # (n, 3 + S'): time, side, acceleration and state; (0, ..) without history
+    history: Array  # (n, 4 + S'): time, side, accelerations and state; (0, ..) without history
+    signed: int  # of the rows from this one on only the largest value matters, not the magnitude
 
 
 class Motion(NamedTuple):
@@ -152,19 +173,19 @@ class Motion(NamedTuple):
     w: Array  # (3, S): now, after the step under examination, and the same while peaks are searched inside that step
     norms: Array  # (K,)
     values: (
-        Array  # (4, F): lower and upper limits of the rows, and their values at the start and at the end of the step
+        Array  # (4, F + E): lower and upper limits of the rows, and their values at the start and at the end of the step
     )
-    flags: Bools  # (2, F): rows that may leave their limits inside the step, and rows to examine
-    clear: NDArray[np.int64]  # (F,): point of the grid up to which the search for peaks is done
+    flags: Bools  # (2, F + E): rows that may leave their limits inside the step, and rows to examine
+    clear: NDArray[np.int64]  # (F + E,): point of the grid up to which the search for peaks is done
     series: Array  # (N + b, terms)
-    polys: Array  # (F + 1, terms): polynomials of the rows, and one for work
+    polys: Array  # (F + E + 1, terms): polynomials of the rows, and one for work
     push: Array  # (b,): forces on the base, coefficient by coefficient
     # Of the present phase, with the memories as they are: see `memory.recollect`
     limits: Array  # (2,): of the guard
     owners: NDArray[np.int64]  # (2,): the change of an element at each limit; -1 if it is the base's own
     load: Array  # (b,): constant forces on the base
     still: Array  # (S,): constant part of the forced motion
-    offset: Array  # (F,): constant part of the rows
+    offset: Array  # (F + E,): constant part of the rows
     pivots: Array  # (2, 9): `Field.pivots`, with the sums over the elements
 
 
@@ -193,6 +214,8 @@ _PROGRESS = _record(
         ("crossing", np.bool_),  # advancing event by event, up to the next point of the grid
         ("onset", np.int64),  # how the rotation leaves zero
         ("lift", np.float64),  # θ'' at the instant of uplift, if known
+        ("slip_onset", np.int64),  # how the slip leaves zero
+        ("slide", np.float64),  # acceleration of the slip at its onset, if known
         ("resume", np.float64),  # where the search in contact resumes after a guard that was touched but not passed
         ("fresh_rows", np.bool_),  # whether `DOUBT` does not apply to the motion ahead
         ("step", np.float64),  # length proposed by the error control
@@ -213,7 +236,7 @@ def progress_at_start(phase: int, *, stated: bool) -> Progress:
 
 def _at_start() -> bytes:
     at = np.zeros(1, dtype=_PROGRESS)
-    at["last"] = at["lift"] = np.nan
+    at["last"] = at["lift"] = at["slide"] = np.nan
     at["lacking"], at["step"], at["branch"] = -1, np.inf, 1.0
     return at.tobytes()
 
@@ -221,8 +244,9 @@ def _at_start() -> bytes:
 _AT_START = _at_start()
 
 
-def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> Motion:
-    """Return the motion that starts from `state`; its first `core` entries are those of closed-form phases."""
+def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motion:
+    """Return the motion that starts from `state`; `rows` counts the fences too."""
+    core, freedoms = layout.core, layout.freedoms
     pairs = core // 2
     flags = np.zeros((2, rows), dtype=np.bool_)
     flags[ASKED] = True
@@ -243,6 +267,31 @@ def motion_of(state: Array, core: int, rows: int, terms: int, freedoms: int) -> 
         offset=np.zeros(rows),
         pivots=np.zeros((2, PULLS + SUMS)),
     )
+
+
+@kernel
+def part_of(span: Span, time: float, begun: float, length: float) -> Span:
+    """Return a part of a stretch, from `begun` s after its start at a given time."""
+    ground, rise = span.ground + span.slope * begun, span.rise + span.rise_slope * begun
+    return Span(time, span.until, ground, span.slope, length, rise, span.rise_slope)
+
+
+@kernel
+def is_shaken(span: Span) -> bool:
+    """Return whether the ground moves vertically."""
+    return span.rise != 0.0 or span.rise_slope != 0.0
+
+
+@kernel
+def rows_in(system: System, phase: int) -> int:
+    """Return the number of rows of a phase, with its fences."""
+    return int(system.fences + system.phases[phase].fences)
+
+
+@kernel
+def slip_in(system: System) -> int:
+    """Return the number of the slip among the degrees of freedom of the base; -1 if it cannot slide."""
+    return system.layout.slip // 2 - system.layout.modes if system.layout.slip >= 0 else -1
 
 
 @kernel

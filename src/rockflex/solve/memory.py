@@ -9,6 +9,7 @@ from rockflex.models import PULLS, pivot_at
 from rockflex.solve.layout import (
     ARM,
     CONSTANT,
+    FLEXIBILITY,
     HIGH,
     LOW,
     MEMORY,
@@ -19,6 +20,7 @@ from rockflex.solve.layout import (
     Array,
     Motion,
     System,
+    slip_in,
 )
 
 CLOSE = 1e-13  # of the terms of a limit: this close to the rotation, it is the one at which the phase was entered
@@ -45,6 +47,11 @@ def recollect(system: System, phase: int, motion: Motion) -> None:
         motion.offset[f] = system.row_forcing[phase, f, 2]
         for m in range(count):
             motion.offset[f] += system.row_forcing[phase, f, 3 + m] * motion.state[first + m]
+    slip = slip_in(system)
+    if slip >= 0 and system.base[phase, FLEXIBILITY, slip, slip] == 0.0:  # held where it is
+        place = system.layout.slip
+        for f in range(motion.offset.size):
+            motion.offset[f] += system.plain_rows[phase, f, place] * motion.state[place]
     for j in range(motion.load.size):
         motion.load[j] = load_in(system, phase, j, motion.state)
     gather(system, phase, motion)

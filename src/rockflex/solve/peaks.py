@@ -11,8 +11,8 @@ MOST_TURNS = 64  # extremes of a row within a unit, in which the phase of no mod
 
 @kernel
 def size_of(value: float, row: int, log: Log) -> float:
-    """Return the size whose largest value is the peak: the magnitude; for the last row the loss of support."""
-    return value if row == log.peaks.size - 1 else abs(value)
+    """Return the size whose largest value is the peak: the magnitude, or the value itself."""
+    return value if row >= log.signed else abs(value)
 
 
 @kernel
@@ -27,7 +27,7 @@ def raise_row(row: int, value: float, time: float, log: Log) -> None:
 @kernel
 def raise_peaks(values: Array, free: bool, time: float, log: Log) -> None:
     """Update the peaks with the values at the end of a step without hidden peaks."""
-    for f in range(0 if free else 1, values.size):
+    for f in range(0 if free else 1, log.peaks.size):
         raise_row(f, values[f], time, log)
 
 
@@ -65,17 +65,30 @@ def raise_peak(polys: Array, row: int, stop: float, span: Span, log: Log) -> Non
 
 
 @kernel
-def raise_to(system: System, phase: int, row: int, ground: float, time: float, log: Log, motion: Motion) -> None:
+def raise_to(
+    system: System, phase: int, row: int, ground: float, rise: float, time: float, log: Log, motion: Motion
+) -> None:
     """Update the peak of a row with the present state, which is sufficient without a peak inside the stretch."""
-    rows, moving = system.plain_rows, system.plain_rows.shape[2] - 2
-    value = rows[phase, row, moving] * ground + rows[phase, row, moving + 1]
-    for i in range(moving):
-        value += rows[phase, row, i] * motion.state[i]
+    value = row_at(system.plain_rows, phase, row, ground, motion.state)
+    if rise != 0.0:
+        value += rise * row_at(system.heavier_rows, phase, row, ground, motion.state)
     raise_row(row, value, time, log)
 
 
 @kernel
-def raise_to_state(system: System, phase: int, ground: float, time: float, log: Log, motion: Motion) -> None:
+def row_at(rows: Array, phase: int, row: int, ground: float, state: Array) -> float:
+    """Return the value of a row at a state."""
+    moving = rows.shape[2] - 2
+    value = rows[phase, row, moving] * ground + rows[phase, row, moving + 1]
+    for i in range(moving):
+        value += rows[phase, row, i] * state[i]
+    return value
+
+
+@kernel
+def raise_to_state(
+    system: System, phase: int, ground: float, rise: float, time: float, log: Log, motion: Motion
+) -> None:
     """Update all peaks with the present state."""
     for f in range(GUARD if system.phases[phase].free else 1, log.peaks.size):
-        raise_to(system, phase, f, ground, time, log, motion)
+        raise_to(system, phase, f, ground, rise, time, log, motion)

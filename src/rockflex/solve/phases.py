@@ -1,5 +1,7 @@
 """The phases of a model, compiled as they are needed, and their tables for a time step."""
 
+from dataclasses import replace
+from functools import cached_property
 from threading import RLock
 
 import numpy as np
@@ -7,8 +9,8 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of, turning_row
-from rockflex.solve.exact.basis import Basis, basis_of, with_constant
-from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_phase
+from rockflex.solve.exact.basis import Basis, Drift, basis_of, drift_of, with_constant
+from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWING, FOLLOWS, TURNED, TURNING, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance
@@ -27,18 +29,22 @@ class CompiledPhases:
         The model.
     quantities
         Quantities whose peaks are computed.
+    extremes
+        Quantities of which only the largest value matters.
     """
 
-    def __init__(self, model: RockingModel, quantities: Quantities) -> None:
+    def __init__(self, model: RockingModel, quantities: Quantities, extremes: Quantities) -> None:
         self._lock = RLock()
         self._model = model
         self._quantities = quantities
+        self._extremes = extremes
         self._phases: list[Phase] = []
-        self._bases: list[Basis | None] = []
+        self._bases: list[Basis | Drift | None] = []
         self._rows: list[Array] = []
         self._twins: list[int] = []  # index of a phase that differs only in constant forces; -1
         self._places: dict[Key, int] = {}
-        self._systems: dict[float, tuple[System, int]] = {}  # by time step, with the number of phases entered
+        # By time step, and whether the ground moves vertically; with the number of phases entered.
+        self._systems: dict[tuple[float, bool], tuple[System, int]] = {}
 
     def place(self, key: Key) -> int:
         """Return the index of a phase in the tables; it is compiled if necessary."""
@@ -51,15 +57,14 @@ class CompiledPhases:
     def _compiled(self, key: Key) -> int:
         model = self._model
         phase = model.phase(key)
-        parts = [phase.guard.row, rows_of(model, self._quantities, key), lost_support_row(model, key)]
-        if model.layout.remembered:
-            parts.insert(2, turning_row(model))
-        rows = np.vstack(parts)
+        rows = self._rows_of(model, phase)
         basis, twin = None, -1
-        if phase.arrow is not None:
+        if phase.arrow is not None and phase.arrow.drifts:
+            basis = drift_of(model, phase.arrow, model.accelerations(key))
+        elif phase.arrow is not None:
             twin = self._alike(phase.arrow)
             known = None if twin < 0 else self._bases[twin]
-            if known is None:
+            if not isinstance(known, Basis):
                 known = basis_of(model, phase.arrow, model.accelerations(key))
             # All phases include constant forces in the same way, so that the order of compilation does not affect bits.
             basis = with_constant(known, phase.arrow)
@@ -69,6 +74,17 @@ class CompiledPhases:
         self._twins.append(twin)
         self._places[key] = len(self._phases) - 1
         return self._places[key]
+
+    def _rows_of(self, model: RockingModel, phase: Phase) -> Array:
+        """Return all rows of a phase; the missing fences are zero."""
+        key = phase.key
+        parts = [phase.guard.row, rows_of(model, self._quantities, key)]
+        if model.turning:
+            parts.append(turning_row(model))
+        parts += [rows_of(model, self._extremes, key), lost_support_row(model, key)]
+        parts += [fence.row for fence in phase.fences]
+        parts.append(np.zeros((model.most_fences - len(phase.fences), model.layout.columns)))
+        return np.vstack(parts)
 
     def knows(self, key: Key) -> bool:
         """Return whether a phase is already compiled."""
@@ -84,49 +100,60 @@ class CompiledPhases:
             self.place(known.beside[lacking])
             return
         if lacking >= TURNING:
-            self.place(known.turned if lacking == TURNING else known.changes[lacking - TURNING - 1].key)
+            self.place(known.turned if lacking == TURNING else self._beyond(known, lacking - TURNING - 1))
             return
         for leads in (known.guard.below, known.guard.above):
             if leads is not None:
                 self.place(leads.key)
 
-    def known_system(self, dt: float) -> System | None:
-        """Return the tables of all phases compiled so far, for one time step; None if they are not ready."""
-        system, entered = self._systems.get(dt, (None, 0))
+    def _beyond(self, phase: Phase, place: int) -> Key:
+        """Return the phase after a change of an element or, counted on from there, beyond a fence."""
+        changes = self._model.most_changes
+        return phase.changes[place].key if place < changes else phase.fences[place - changes].key
+
+    def known_system(self, dt: float, *, shaken: bool) -> System | None:
+        """Return the tables of all phases compiled so far, for one time step; None if they are not ready.
+
+        `shaken` means that the ground moves vertically as well.
+        """
+        system, entered = self._systems.get((dt, shaken), (None, 0))
         return system if entered == len(self._phases) else None
 
-    def system(self, dt: float, fastest: float) -> System:
+    def system(self, dt: float, fastest: float, *, shaken: bool) -> System:
         """Return the tables of all phases compiled so far, for one time step.
 
         `fastest` is a bound for the frequencies of later phases in rad/s; if it is too low, the tables are enlarged.
         """
         with self._lock:
-            known = self.known_system(dt)
-            return self._entered(dt, fastest) if known is None else known
+            known = self.known_system(dt, shaken=shaken)
+            return self._entered(dt, fastest, shaken) if known is None else known
 
-    def _entered(self, dt: float, fastest: float) -> System:
-        system, entered = self._systems.get(dt, (None, 0))
+    def _entered(self, dt: float, fastest: float, shaken: bool) -> System:
+        system, entered = self._systems.get((dt, shaken), (None, 0))
         count = len(self._phases)
         levels = max((levels_of(basis.fastest, dt) for basis in self._bases if basis is not None), default=0)
-        dense = any(basis is not None and basis.dense for basis in self._bases)
+        dense = self.dense
         rows = self._rows[0].shape[0]
         if system is None:
             levels = max(levels, min(levels_of(fastest, dt), MOST_LEVELS))
-            system = empty_system(self._model, rows, dt, max(CAPACITY, count), levels, dense=dense)
+            system = empty_system(self._model, rows, dt, max(CAPACITY, count), levels, dense=dense, shaken=shaken)
         else:
             capacity, had = system.links.shape[0], system.blocks.shape[1] - 1
             if count > capacity or levels > had or dense > (system.propagator.size > 0):
                 capacity = capacity if count <= capacity else 2 * count
-                larger = empty_system(self._model, rows, dt, capacity, max(levels, had), dense=dense)
+                larger = empty_system(self._model, rows, dt, capacity, max(levels, had), dense=dense, shaken=shaken)
                 system = grown(system, larger)
         for p in range(entered, count):
             basis = self._bases[p]
-            if basis is not None:
+            if isinstance(basis, Basis):
                 check_step(basis, dt)
             put_phase(system, p, self._phases[p], basis, self._rows[p], self._twins[p])
+            if shaken:
+                heavier = self._heavier.phase(self._phases[p].key)
+                put_heavier(system, p, self._phases[p], heavier, self._rows_of(self._heavier, heavier))
         # Runs that continue with the previous tables must not reach a phase for which they have no room.
         system = system._replace(links=self._links(system.links.shape[0]))
-        self._systems[dt] = system, count
+        self._systems[dt, shaken] = system, count
         return system
 
     def _alike(self, arrow: Arrow) -> int:
@@ -136,10 +163,15 @@ class CompiledPhases:
                 return place
         return -1
 
+    @cached_property
+    def _heavier(self) -> RockingModel:
+        """The model under a gravity that is greater by 1 m/s²; all forces are linear in gravity."""
+        return replace(self._model, gravity=self._model.gravity + 1.0)
+
     @property
     def dense(self) -> bool:
         """Whether some phase so far cannot be uncoupled, so that its bounds are computed point by point."""
-        return any(basis.dense for basis in self._bases if basis is not None)
+        return any(basis.dense for basis in self._bases if isinstance(basis, Basis))
 
     @property
     def fastest(self) -> float:
@@ -148,7 +180,8 @@ class CompiledPhases:
 
     def _links(self, capacity: int) -> NDArray[np.int64]:
         """Return the events at the limits of every phase, and the phases that follow, as far as they are compiled."""
-        links = np.full((capacity, CHANGED + self._model.most_changes), -1, dtype=np.int64)
+        model = self._model
+        links = np.full((capacity, CHANGED + model.most_changes + model.most_fences), -1, dtype=np.int64)
         for p, phase in enumerate(self._phases):
             for place in range(3):
                 links[p, BESIDE + place] = self._places.get(phase.beside[place], -1)
@@ -158,4 +191,6 @@ class CompiledPhases:
             links[p, TURNED] = self._places.get(phase.turned, -1)
             for x, change in enumerate(phase.changes):
                 links[p, CHANGED + x] = self._places.get(change.key, -1)
+            for e, fence in enumerate(phase.fences):
+                links[p, CHANGED + model.most_changes + e] = self._places.get(fence.key, -1)
         return links

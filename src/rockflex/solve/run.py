@@ -33,6 +33,7 @@ from rockflex.solve.layout import (
     Progress,
     Span,
     System,
+    rows_in,
 )
 from rockflex.solve.memory import recollect
 from rockflex.solve.peaks import raise_row, raise_to_state
@@ -58,13 +59,13 @@ def run(
         at.entered = True
     while True:
         remaining = course.free + course.record.size - 1 - at.offset
-        piece = course.record
+        piece, vertical = course.record, course.vertical[: course.vertical.size if at.offset == 0 else 0]
         if at.offset > 0:
             if remaining == 0:
                 return UNSETTLED if course.settle else ENDED
             piece = course.quiet[: min(course.quiet.size - 1, remaining) + 1]
         if at.stage == BEGINNING:
-            if begin_piece(system, steps, course, piece[0], at, log, motion):
+            if begin_piece(system, steps, course, piece[0], rise_at(vertical, 0), at, log, motion):
                 return SETTLED
             at.stage = CARRYING
         last = piece.size - 1
@@ -72,21 +73,23 @@ def run(
             if at.stage == CARRYING:
                 if log.work[LEFT] < 0.0 or room_left(log) < 0:
                     return PAUSED
-                if not carry(system, steps, piece, course.dt, at, log, motion):
+                if not carry(system, steps, piece, vertical, course.dt, at, log, motion):
                     continue
-                # In a linear phase the whole sample has been examined.
-                at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, system.phases[at.phase].linear
+                # A phase in closed form has examined the whole sample.
+                at.stage, at.place, at.level = LOOKING, 0, 0
+                at.probed = system.phases[at.phase].marches and vertical.size == 0
                 at.slope = (piece[at.index + 1] - piece[at.index]) * rate
                 log.tally[EVENTS] = 0
             i = at.index
             time, until = (at.offset + i) * course.dt, (at.offset + i + 1) * course.dt
-            sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, course.dt)
+            rise, risen = rise_at(vertical, i), rise_at(vertical, i + 1)
+            sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, course.dt, rise, (risen - rise) * rate)
             status = cross_sample(system, steps, impact, sample, piece[i + 1], at, log, motion)
             if status != CROSSED:
                 return status
             log.work[LEFT] -= log.work[CARRY]
             at.index, at.stage, at.begun, at.started = i + 1, CARRYING, 0.0, False
-        if system.phases[at.phase].linear and not at.stated:
+        if system.phases[at.phase].marches and not at.stated:
             to_state(system, at, piece[piece.size - 1], motion)
             at.stated = True
         at.last = piece[piece.size - 1]
@@ -96,12 +99,19 @@ def run(
 
 @kernel
 def begin_piece(
-    system: System, steps: Integrator | None, course: Course, ground: float, at: Progress, log: Log, motion: Motion
+    system: System,
+    steps: Integrator | None,
+    course: Course,
+    ground: float,
+    rise: float,
+    at: Progress,
+    log: Log,
+    motion: Motion,
 ) -> bool:
     """Prepare for a stretch of acceleration; return True if a run until settled has settled."""
     time, side = at.offset * course.dt, system.phases[at.phase].side
     at.started = False
-    if system.phases[at.phase].linear:
+    if system.phases[at.phase].marches:
         at.slope = 0.0
         to_coordinates(system, at, ground, motion)
         at.tuned = True
@@ -109,13 +119,14 @@ def begin_piece(
             if system.phases[at.phase].free:
                 motion.state[system.layout.rotation] = motion.offset[GUARD]
             return True
-    elif steps is not None and at.offset > 0 and course.settle and still(system, steps.flow, at, steps.room):
+    elif steps is not None and not system.phases[at.phase].linear and at.offset > 0 and course.settle and still(system, steps.flow, at, steps.room):
         return True
-    if ground != at.last:  # the start, or a jump of the acceleration at the end of the record
-        keep(log, time, side, ground, motion.state)
+    falls = at.offset == course.record.size - 1 and rise_at(course.vertical, at.offset) != 0.0
+    if ground != at.last or falls:  # the start, or a jump of the acceleration at the end of the record
+        keep(log, time, side, ground, rise, motion.state)
         raise_row(GUARD, motion.state[system.layout.rotation], time, log)
         if steps is None:
-            raise_to_state(system, at.phase, ground, time, log, motion)
+            raise_to_state(system, at.phase, ground, rise, time, log, motion)
         else:
             forget(steps.room)
             values_of_rows(system, steps.flow, at.phase, ground, steps.room)
@@ -134,14 +145,15 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     p, pairs = at.phase, motion.norms.size
     if not system.phases[p].decays:
         return False
-    moving = pairs if system.phases[p].free else system.layout.modes
+    held = system.phases[p].side != 0.0 and not system.phases[p].free
+    moving = system.phases[p].active if system.phases[p].free else system.layout.modes
     place = 0.0
     for f in range(log.peaks.size):
         rest, stray = motion.offset[f], 0.0
         for k in range(moving):
             size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
             stray += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
-        for k in range(moving, pairs):  # of a base that is held
+        for k in range(moving, pairs if held else moving):
             rest += system.rows[p, VALUES, f, k] * motion.w[NOW, k]
         if f == GUARD:
             place = abs(rest)
@@ -152,7 +164,14 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
         if f == system.turning_row:
             if system.phases[p].turns != 0 and stray > STILL * place:
                 return False
-        elif (rest if f == log.peaks.size - 1 else abs(rest)) + stray > log.peaks[f] and stray > STILL * abs(rest):
+        elif (rest if f >= log.signed else abs(rest)) + stray > log.peaks[f] and stray > STILL * abs(rest):
+            return False
+    for f in range(log.peaks.size, rows_in(system, p)):
+        stray = 0.0
+        for k in range(moving):
+            size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
+            stray += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
+        if motion.offset[f] < stray:
             return False
     return True
 
@@ -170,13 +189,29 @@ def still(system: System, flow: Flow, at: Progress, room: Stages) -> bool:
     return worst <= 0.0
 
 
+@kernel
+def rise_at(vertical: Array, index: int) -> float:
+    """Return the vertical acceleration of the ground at a sample."""
+    return vertical[index] if vertical.size > 0 else 0.0
+
+
 @inlined_kernel
 def carry(
-    system: System, steps: Integrator | None, piece: Array, dt: float, at: Progress, log: Log, motion: Motion
+    system: System,
+    steps: Integrator | None,
+    piece: Array,
+    vertical: Array,
+    dt: float,
+    at: Progress,
+    log: Log,
+    motion: Motion,
 ) -> bool:
     """Advance the motion over whole samples; return True if the next one needs a closer look."""
-    if steps is not None and not system.phases[at.phase].linear:
-        return step_through(system, steps.flow, piece, dt, motion.limits, at, log, steps.room)
+    p = at.phase
+    if steps is not None and not system.phases[p].linear:
+        return step_through(system, steps.flow, piece, vertical, dt, motion.limits, at, log, steps.room)
+    if not system.phases[p].marches or vertical.size > 0:
+        return True
     first = at.index
     most = BLOCK
     if log.history.shape[0] > 0:

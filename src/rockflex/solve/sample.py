@@ -1,6 +1,6 @@
 """The closer look: one sample traversed on a dyadic grid, in the largest steps without hidden events or peaks."""
 
-from rockflex._kernel import inlined_kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.events import CROSSED, PAUSED, cross, start_crossing
@@ -9,7 +9,7 @@ from rockflex.solve.exact.march import to_coordinates, to_state
 from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe, set_limits
 from rockflex.solve.exact.survey import survey
 from rockflex.solve.history import keep
-from rockflex.solve.layout import ENDS, FINAL, LEFT, LOOK, NOW, Log, Motion, Progress, Span, System, unit_of
+from rockflex.solve.layout import ENDS, FINAL, LEFT, LOOK, NOW, Log, Motion, Progress, Span, System, is_shaken, unit_of
 from rockflex.solve.peaks import raise_peaks
 
 
@@ -32,8 +32,12 @@ def cross_sample(
     """
     while at.begun < sample.length:
         p = at.phase
-        if at.crossing or not system.phases[p].linear:
+        if at.crossing or not can_march(system, p, sample):
             if not at.crossing:
+                if system.phases[p].linear and not at.stated:
+                    to_state(system, at, sample.ground + sample.slope * at.begun, motion)
+                    at.stated = True
+                at.tuned = False
                 start_crossing(at, True)
             status = cross(system, steps, impact, sample, at, log, motion)
             if status != CROSSED:
@@ -45,7 +49,7 @@ def cross_sample(
         unit = unit_of(system, levels)
         here = sample.ground + sample.slope * unit * at.place
         now = sample.time + unit * at.place
-        step = Span(now, sample.until, here, sample.slope, unit * stride)
+        step = Span(now, sample.until, here, sample.slope, unit * stride, 0.0, 0.0)
         if not at.searching:
             if log.work[LEFT] < 0.0:
                 return PAUSED
@@ -76,11 +80,18 @@ def cross_sample(
         at.place += stride
         at.begun = sample.length if at.place == grid else unit * at.place
         at.level = largest_step(at.place, levels)
-    if system.phases[at.phase].linear:
+    if can_march(system, at.phase, sample):
         if not at.tuned:
             to_coordinates(system, at, last, motion)
             at.tuned = True
         if not at.stated and log.history.shape[0] > 0:
             to_state(system, at, last, motion)
-    keep(log, sample.until, system.phases[at.phase].side, last, motion.state)
+    rise = sample.rise + sample.rise_slope * sample.length
+    keep(log, sample.until, system.phases[at.phase].side, last, rise, motion.state)
     return CROSSED
+
+
+@kernel
+def can_march(system: System, phase: int, sample: Span) -> bool:
+    """Return whether the motion over a sample has a closed form: its equations have constant coefficients."""
+    return system.phases[phase].marches and not is_shaken(sample)

@@ -24,7 +24,7 @@ from rockflex.solve.adaptive.layout import (
 )
 from rockflex.solve.adaptive.step import choose_branch, place_at
 from rockflex.solve.exact.probe import cubic_range
-from rockflex.solve.layout import Log, Span, System
+from rockflex.solve.layout import Log, Span, System, part_of
 from rockflex.solve.peaks import raise_row, size_of
 
 STRAY = 0.2
@@ -152,7 +152,7 @@ def raise_curves(system: System, flow: Flow, phase: int, span: Span, stop: float
     field_rates(
         flow.field, side, room.at.branch, span.ground + span.slope * length, room.vectors[END], room.vectors[END_RATES]
     )
-    part = Span(span.time, span.until, span.ground, span.slope, length)
+    part = part_of(span, span.time, 0.0, length)
     hidden = curves_hide(system, flow, phase, part, room.vectors[END], room.vectors[END_RATES], log, room)
     for f in range(1, log.peaks.size):
         if is_curved(flow, f, side):

@@ -11,7 +11,15 @@ from rockflex.solve.layout import CARRY, LEFT, Log, Progress, Span, System
 
 @inlined_kernel
 def step_through(
-    system: System, flow: Flow, piece: Array, dt: float, limits: Array, at: Progress, log: Log, stages: Stages
+    system: System,
+    flow: Flow,
+    piece: Array,
+    vertical: Array,
+    dt: float,
+    limits: Array,
+    at: Progress,
+    log: Log,
+    stages: Stages,
 ) -> bool:
     """Integrate the motion over samples, starting `at.begun` s into the sample `at.index`.
 
@@ -20,17 +28,20 @@ def step_through(
     """
     rate, side = 1.0 / dt, system.phases[at.phase].side
     for i in range(at.index, piece.size - 1):
-        slope = (piece[i + 1] - piece[i]) * rate
+        slope, rise, rise_slope = (piece[i + 1] - piece[i]) * rate, 0.0, 0.0
+        if vertical.size > 0:
+            rise, rise_slope = vertical[i], (vertical[i + 1] - vertical[i]) * rate
         time, until = (at.offset + i) * dt, (at.offset + i + 1) * dt
         while at.begun < dt:
             if log.work[LEFT] < 0.0 or room_left(log) < 0:
                 return False
-            here, longest = piece[i] + slope * at.begun, dt - at.begun
+            longest = dt - at.begun
+            rest = Span(time + at.begun, until, piece[i] + slope * at.begun, slope, longest, rise + rise_slope * at.begun, rise_slope)
             proposed = at.step
-            step = take_step(flow, side, Span(time + at.begun, until, here, slope, longest), stages)
+            step = take_step(flow, side, rest, stages)
             if step == FAILED:
                 return True
-            span = Span(time + at.begun, until, here, slope, step)
+            span = Span(rest.time, until, rest.ground, slope, step, rest.rise, rise_slope)
             if not nothing_hides(system, flow, at.phase, span, limits, log, stages):
                 at.step = proposed  # the closer look repeats this step, so that the motion does not depend on the rows
                 return True
@@ -38,5 +49,5 @@ def step_through(
             at.begun = dt if step == longest else at.begun + step
         log.work[LEFT] -= log.work[CARRY]
         at.index, at.begun = i + 1, 0.0
-        keep(log, until, side, piece[i + 1], stages.motion)
+        keep(log, until, side, piece[i + 1], rise + rise_slope * dt, stages.motion)
     return False

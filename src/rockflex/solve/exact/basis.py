@@ -9,12 +9,13 @@ slope a' would give two displacements of a'/p³ in opposite directions, whose ca
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import FREEDOMS, Arrow, RockingModel
+from rockflex.models import Arrow, RockingModel
 
 WORST_CONDITION = 1e5  # of the eigenvectors in energy scale: beyond it five digits are lost
 
@@ -33,6 +34,21 @@ class Basis:
     steady: Array  # (3 + M, 2K): coefficients of a, a', 1 and the memories in the forced solution, as states
     dense: bool
     fastest: float  # largest eigenvalue magnitude, rad/s
+    moving: int  # number of pairs that may move; the others come last
+
+
+class Drift(NamedTuple):
+    """A phase in which some freedom of the base has no stiffness: it is carried by power series only."""
+
+    fastest: float  # largest eigenvalue magnitude, rad/s
+
+
+def drift_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Drift:
+    """Return what the power series of a phase need to know; `accelerations` as in `basis_of`."""
+    matrix, _, _ = _first_order(accelerations, model.layout.freedoms)
+    scale = _energy_scale(model.properties.effective_mass, model.properties.omega**2, arrow)
+    scale = scale[_positions_and_speeds(accelerations.shape[0], model.layout.freedoms)]
+    return Drift(float(np.abs(np.linalg.eigvals(matrix * (scale[:, None] / scale))).max()))
 
 
 def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:
@@ -41,7 +57,10 @@ def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:
     omega2, damping = p.omega**2, 2.0 * p.zeta * p.omega
     if not arrow.free:
         return _contact_basis(omega2, damping, accelerations.shape[0])
-    return _rocking_basis(accelerations, _energy_scale(p.effective_mass, omega2, arrow))
+    scale = _energy_scale(p.effective_mass, omega2, arrow)
+    if arrow.freed.all():
+        return _rocking_basis(accelerations, scale, arrow.freed.size)
+    return _with_held(accelerations, scale, arrow)
 
 
 def with_constant(known: Basis, arrow: Arrow) -> Basis:
@@ -50,11 +69,35 @@ def with_constant(known: Basis, arrow: Arrow) -> Basis:
     steady[:2] = known.steady[:2]
     if not arrow.free:
         return replace(known, steady=steady)
-    places = known.steady.shape[1] // 2 - arrow.constant.size
+    modes = known.steady.shape[1] // 2 - arrow.constant.size
     # At rest the modes are zero, and the stiffness of the base balances the constant forces.
-    forces = np.column_stack((arrow.constant, arrow.recall))
-    steady[2:, 2 * places :: 2] = np.linalg.solve(arrow.stiffness, forces).T
+    free = np.flatnonzero(arrow.freed)
+    forces = np.column_stack((arrow.constant, arrow.recall))[free]
+    steady[2:, 2 * (modes + free)] = np.linalg.solve(arrow.stiffness[np.ix_(free, free)], forces).T
     return replace(known, steady=steady)
+
+
+def _with_held(accelerations: Array, energy_scale: Array, arrow: Arrow) -> Basis:
+    """Return the uncoupled coordinates of a base with some freedoms held; their pairs come last and do not move."""
+    count, b = accelerations.shape[0], arrow.freed.size
+    modes, free, held = count - b, np.flatnonzero(arrow.freed), np.flatnonzero(~arrow.freed)
+    kept = np.concatenate((np.arange(2 * modes), np.sort(np.concatenate((2 * (modes + free), 2 * (modes + free) + 1)))))
+    rows = np.concatenate((np.arange(modes), modes + free))
+    part = _rocking_basis(accelerations[np.ix_(rows, [*kept, -2, -1])], energy_scale[kept], free.size)
+    moving = part.moving
+    pairs, roots = np.zeros((count, 2, 2)), np.zeros((count, 2), dtype=np.complex128)
+    pairs[:moving], roots[:moving] = part.pairs, part.roots
+    columns = np.concatenate((np.arange(moving), count + np.arange(moving)))
+    basis, inverse, matrix = (np.zeros((2 * count, 2 * count)) for _ in range(3))
+    basis[np.ix_(kept, columns)], inverse[np.ix_(columns, kept)] = part.basis, part.inverse
+    matrix[np.ix_(columns, columns)] = part.matrix
+    for k, j in enumerate(held):
+        for speed in range(2):
+            place, column = 2 * (modes + j) + speed, moving + k + speed * count
+            basis[place, column] = inverse[column, place] = 1.0
+    steady = np.zeros((3, 2 * count))
+    steady[:, kept] = part.steady
+    return Basis(basis, inverse, matrix, pairs, roots, steady, part.dense, part.fastest, moving)
 
 
 def _contact_basis(omega2: Array, damping: Array, pairs_in_all: int) -> Basis:
@@ -76,27 +119,28 @@ def _contact_basis(omega2: Array, damping: Array, pairs_in_all: int) -> Basis:
     basis[modes, modes] = 1.0
     basis[n + modes, speeds] = omega
     places = np.arange(n, count)
-    basis[n + places, places] = basis[n + places + 1, places + count] = 1.0
+    base = 2 * places  # index of the position in the state
+    basis[base, places] = basis[base + 1, places + count] = 1.0
     inverse = np.zeros((2 * count, 2 * count))
     inverse[modes, modes] = 1.0
     inverse[speeds, n + modes] = 1.0 / omega
-    inverse[places, n + places] = inverse[places + count, n + places + 1] = 1.0
+    inverse[places, base] = inverse[places + count, base + 1] = 1.0
     steady = np.zeros((3, 2 * count))
     steady[0, :n] = -1.0 / omega2
     steady[1, :n] = damping / omega2**2
     steady[1, n : 2 * n] = steady[0, :n]
-    return _basis(basis, inverse, pairs, roots, steady)
+    return replace(_basis(basis, inverse, pairs, roots, steady), moving=n)
 
 
-def _rocking_basis(accelerations: Array, energy_scale: Array) -> Basis:
-    """Return the uncoupled coordinates of rocking (Eq. 23)."""
-    order = _positions_and_speeds(accelerations.shape[0])
-    matrix, by_acceleration, constant = _first_order(accelerations)
+def _rocking_basis(accelerations: Array, energy_scale: Array, freedoms: int) -> Basis:
+    """Return the uncoupled coordinates of rocking (Eq. 23), or of another motion of the base with its freedoms."""
+    order = _positions_and_speeds(accelerations.shape[0], freedoms)
+    matrix, by_acceleration, constant = _first_order(accelerations, freedoms)
     scale = energy_scale[order]
     scaled = matrix * (scale[:, None] / scale)
     values, vectors = np.linalg.eig(scaled)
     columns, pairs, roots = _real_pairs(values, vectors)
-    _to_position_and_speed(columns, pairs, roots)
+    _to_position_and_speed(columns, pairs, roots, accelerations.shape[0] - freedoms)
     try:
         inverse = np.linalg.inv(columns)
         condition = float(np.abs(columns).sum(axis=0).max() * np.abs(inverse).sum(axis=0).max())
@@ -130,13 +174,14 @@ def _basis(
         steady=steady,
         dense=dense is not None,
         fastest=float(np.abs(roots).max()),
+        moving=pairs.shape[0],
     )
 
 
-def _first_order(accelerations: Array) -> tuple[Array, Array, Array]:
-    """Return Eq. 23 as y' = A y + f a + g with y = [D, θ, D', θ'], from the rows of D'' and θ''."""
+def _first_order(accelerations: Array, freedoms: int) -> tuple[Array, Array, Array]:
+    """Return Eq. 23 as y' = A y + f a + g with y = [D, q, D', q'], from the rows of D'' and q''."""
     half = accelerations.shape[0]
-    order = _positions_and_speeds(half)
+    order = _positions_and_speeds(half, freedoms)
     matrix = np.zeros((2 * half, 2 * half))
     matrix[:half, half:] = np.eye(half)
     matrix[half:] = accelerations[:, order]
@@ -145,19 +190,20 @@ def _first_order(accelerations: Array) -> tuple[Array, Array, Array]:
     return matrix, rest[:, 0], rest[:, 1]
 
 
-def _positions_and_speeds(pairs: int) -> NDArray[np.intp]:
+def _positions_and_speeds(pairs: int, freedoms: int) -> NDArray[np.intp]:
     """Return the indices of [D, q, D', q'] in the state [D, D', q_1, q'_1, ..]."""
-    n, freedoms = pairs - len(FREEDOMS), 2 * np.arange(len(FREEDOMS))
+    n, base = pairs - freedoms, 2 * np.arange(freedoms)
     modes = np.arange(n)
-    return np.concatenate((modes, 2 * n + freedoms, n + modes, 2 * n + freedoms + 1)).astype(np.intp)
+    return np.concatenate((modes, 2 * n + base, n + modes, 2 * n + base + 1)).astype(np.intp)
 
 
 def _energy_scale(mass: Array, omega2: Array, arrow: Arrow) -> Array:
     """Return factors that scale the state to square roots of energies, which makes eigenvectors nearly orthogonal."""
     speed, omega = np.sqrt(mass), np.sqrt(omega2)
-    spin = 1.0 / np.sqrt(np.diag(arrow.flexibility))
-    stiffness = np.abs(np.diag(arrow.stiffness))
-    slowest = np.full(spin.size, omega[0]) if omega.size else np.sqrt(stiffness) / spin
+    free = np.diag(arrow.flexibility) > 0.0
+    spin = 1.0 / np.sqrt(np.where(free, np.diag(arrow.flexibility), 1.0))
+    stiffness = np.where(free, np.abs(np.diag(arrow.stiffness)), 1.0)
+    slowest = np.full(spin.size, omega[0]) if omega.size else np.sqrt(np.where(stiffness > 0.0, stiffness, 1.0)) / spin
     return np.concatenate((speed * omega, speed, np.column_stack((spin * slowest, spin)).ravel()))
 
 
@@ -183,7 +229,7 @@ def _real_pairs(values: Complex, vectors: Complex) -> tuple[Array, Array, Comple
     return columns, pairs, roots.astype(np.complex128)
 
 
-def _to_position_and_speed(columns: Array, pairs: Array, roots: Complex) -> None:
+def _to_position_and_speed(columns: Array, pairs: Array, roots: Complex, rotation: int) -> None:
     """Replace the eigenvectors of the roots p₁ > 0 > p₂ by q and y: q' = p y, y' = p q + (p₁ + p₂) y, p² = -p₁ p₂."""
     pair = int(np.argmax(roots[:, 0].real))
     one, two = roots[pair].real
@@ -191,8 +237,7 @@ def _to_position_and_speed(columns: Array, pairs: Array, roots: Complex) -> None
         return
     p = math.sqrt(-one * two)
     count = pairs.shape[0]
-    half = columns.shape[0] // 2 - 1  # index of θ
-    first, second = (columns[:, k] / columns[half, k] for k in (pair, count + pair))
+    first, second = (columns[:, k] / columns[rotation, k] for k in (pair, count + pair))
     place = (one * second - two * first) / (one - two)
     speed = p * (first - second) / (one - two)
     # For θ = 1 the modes of a narrow base are large: scale both to the size of the other columns, by a power of two.

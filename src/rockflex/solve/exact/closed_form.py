@@ -29,7 +29,7 @@ class ClosedForm:
         """Return the uncoupled coordinates of a phase; None if it is not linear."""
         if key not in self._known:
             arrow = self._model.phase(key).arrow
-            if arrow is None:
+            if arrow is None or arrow.drifts:
                 self._known[key] = None
             else:
                 basis = basis_of(self._model, arrow, self._model.accelerations(key))

@@ -22,6 +22,7 @@ from rockflex.solve.layout import (
     Motion,
     Progress,
     System,
+    rows_in,
 )
 from rockflex.solve.peaks import raise_peaks
 
@@ -63,7 +64,7 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
     """
     p = at.phase
     pairs = motion.norms.size
-    active = pairs if system.phases[p].side != 0.0 else system.layout.modes
+    active, count = system.phases[p].active, rows_in(system, p)
     uncoupled = not system.phases[p].dense
     rate = 1.0 / dt
     at.finding = NOTHING
@@ -87,7 +88,7 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
                 motion.norms[k] = math.sqrt(x * x + y * y)
                 ends[k] = blocks[0, k] * x + blocks[1, k] * y
                 ends[pairs + k] = blocks[2, k] * x + blocks[3, k] * y
-            for f in range(begins.size):
+            for f in range(count):
                 value = forcing[f, 0] * there + forcing[f, 1] * slope + motion.offset[f]
                 for k in range(active):
                     value += rows[f, k] * ends[k]
@@ -98,7 +99,7 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
             examine(system, p, WHOLE, here, there, slope, motion)
             started = True
         safe = True
-        for f in range(begins.size):
+        for f in range(count):
             leeway = 0.0
             for k in range(active):
                 leeway += sag[f, k] * motion.norms[k]
@@ -117,6 +118,6 @@ def march(system: System, piece: Array, dt: float, most: int, at: Progress, log:
         if log.history.shape[0] > 0:
             at.slope = slope
             to_state(system, at, there, motion)
-            keep(log, (at.offset + i + 1) * dt, system.phases[p].side, there, motion.state)
+            keep(log, (at.offset + i + 1) * dt, system.phases[p].side, there, 0.0, motion.state)
     at.stated = at.stated and last == first
     at.slope, at.index, at.started = slope, last, started

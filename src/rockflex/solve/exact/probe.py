@@ -25,16 +25,16 @@ from rockflex.solve.layout import (
     Log,
     Motion,
     System,
+    rows_in,
     unit_of,
 )
 
-NOTHING, PEAK, EVENT = 0, 1, 2  # what may occur in a step; events, and the peak of the rotation, in the first row
+NOTHING, PEAK, EVENT = 0, 1, 2  # what may occur in a step
 
 
 @kernel
 def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
-    """Set the limits beyond which a row means an event (row 0) or a new peak (all others, and the rotation)."""
-    support = log.peaks.size - 1
+    """Set the limits beyond which a row means an event (the guard and the fences) or a new peak (all others)."""
     for f in range(log.peaks.size):
         motion.values[LOWER, f] = -log.peaks[f]
         motion.values[UPPER, f] = log.peaks[f]
@@ -44,7 +44,11 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
     else:
         motion.values[LOWER, GUARD] = max(motion.limits[LOW], -log.peaks[GUARD])
         motion.values[UPPER, GUARD] = min(motion.limits[HIGH], log.peaks[GUARD])
-    motion.values[LOWER, support] = -np.inf
+    for f in range(log.signed, log.peaks.size):
+        motion.values[LOWER, f] = -np.inf
+    for f in range(log.peaks.size, rows_in(system, phase)):
+        motion.values[LOWER, f] = 0.0
+        motion.values[UPPER, f] = np.inf
     turning = system.turning_row
     if turning >= 0:
         sign = system.phases[phase].turns * system.phases[phase].side
@@ -56,7 +60,7 @@ def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
 def examine(system: System, phase: int, level: int, here: float, there: float, slope: float, motion: Motion) -> None:
     """Advance `motion.w` over a step, and compute the requested rows at both ends and the norms of the pairs."""
     pairs = motion.norms.size
-    count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
+    count = system.phases[phase].active
     for k in range(count):
         x, y = motion.w[NOW, k], motion.w[NOW, pairs + k]
         motion.norms[k] = math.sqrt(x * x + y * y)
@@ -67,7 +71,7 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
             motion.w[ENDS, i] = 0.0
             for k in range(motion.w.shape[1]):
                 motion.w[ENDS, i] += system.propagator[phase, level, i, k] * motion.w[NOW, k]
-    for f in range(motion.values.shape[1]):
+    for f in range(rows_in(system, phase)):
         if not motion.flags[ASKED, f]:
             continue
         common = system.row_forcing[phase, f, 1] * slope + motion.offset[f]
@@ -91,9 +95,9 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
     Otherwise the row is settled if the cubic through both ends, widened by `ripple`, is within the limits.
     """
     pairs = motion.norms.size
-    count = pairs if system.phases[phase].side != 0.0 else system.layout.modes
+    count = system.phases[phase].active
     finding = NOTHING
-    for f in range(motion.values.shape[1]):
+    for f in range(rows_in(system, phase)):
         motion.flags[DOUBT, f] = False
         if not motion.flags[ASKED, f]:
             continue
@@ -122,11 +126,11 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
             # A rotation may start on its limit, where it has just left the ground, but not end there.
             hidden = first < motion.limits[LOW] or first > motion.limits[HIGH]
             hidden = hidden or last <= motion.limits[LOW] or last >= motion.limits[HIGH]
-        elif f == system.turning_row:
+        elif f == system.turning_row or f >= system.fences:
             hidden = last <= motion.values[LOWER, f] or last >= motion.values[UPPER, f]
         motion.flags[DOUBT, f] = hidden
         if hidden:
-            finding = max(finding, EVENT if f in (GUARD, system.turning_row) else PEAK)
+            finding = max(finding, EVENT if f in (GUARD, system.turning_row) or f >= system.fences else PEAK)
     return finding
 
 

@@ -7,6 +7,7 @@ t² or t³ from zero retains its full relative precision.
 
 import math
 
+from rockflex._arrays import Array
 from rockflex._kernel import kernel
 from rockflex.solve.layout import (
     COUPLING,
@@ -20,17 +21,21 @@ from rockflex.solve.layout import (
     Motion,
     Span,
     System,
+    is_shaken,
+    slip_in,
 )
 from rockflex.solve.polynomials import evaluate
 
 
 @kernel
-def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) -> None:
+def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, slide: float) -> None:
     """Compute the Taylor coefficients of D and q in `motion.series` (N + b, order + 1), with time in units of the span.
 
     `lift` is θ'' at the instant of uplift if it is known more accurately than from the equation of motion (zero for a
-    condition that is satisfied continuously); NaN otherwise.
+    condition that is satisfied continuously); NaN otherwise. `slide` is the same for the acceleration of a slip.
     """
+    shaken = is_shaken(span)
+    slipping = slip_in(system)
     n, freedoms, step, series = system.layout.modes, motion.push.size, span.length, motion.series
     free = system.phases[phase].free
     for i in range(n):
@@ -73,39 +78,73 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float) 
                 force -= system.base[phase, DAMPING, j, m] * step * (k + 1.0) * series[n + m, k + 1]
             if k == 0:
                 force += motion.load[j] * square
+            if shaken:
+                force += heavier(system, phase, j, k, span, series)
             motion.push[j] += force
         for j in range(freedoms):
             turn = 0.0
             for m in range(freedoms):
                 turn += system.base[phase, FLEXIBILITY, j, m] * motion.push[m]
-            if k == 0 and not math.isnan(lift):
+            if k == 0 and j == 0 and not math.isnan(lift):
                 turn = square * lift
+            if k == 0 and j == slipping and not math.isnan(slide):
+                turn = square * slide
             series[n + j, k + 2] = turn * pair
             for i in range(n):
                 series[i, k + 2] -= system.border[phase, j, COUPLING, i] * turn * pair
 
 
 @kernel
+def heavier(system: System, phase: int, freedom: int, k: int, span: Span, series: Array) -> float:
+    """Return the k-th coefficient of the force on a degree of freedom of the base due to vertical acceleration."""
+    n, step = system.layout.modes, span.length
+    force = 0.0
+    if k < 2:
+        force += system.heavier_push[phase, freedom] * (span.rise if k == 0 else span.rise_slope * step)
+    for m in range(system.heavier_push.shape[1]):
+        stiffness = system.heavier_base[phase, freedom, m]
+        if stiffness != 0.0:
+            moved = span.rise * series[n + m, k]
+            if k > 0:
+                moved += span.rise_slope * step * series[n + m, k - 1]
+            force -= stiffness * moved
+    return force * step * step
+
+
+@kernel
 def row_series(system: System, phase: int, row: int, motion: Motion, span: Span) -> None:
     """Compute the Taylor coefficients of one row of a phase in `motion.polys[row]`."""
+    develop_row(system, system.plain_rows, phase, row, row, motion, span)
+    if not is_shaken(span):
+        return
+    polys, work = motion.polys, motion.polys.shape[0] - 1
+    develop_row(system, system.heavier_rows, phase, row, work, motion, span)
+    for k in range(polys.shape[1] - 1, 0, -1):
+        polys[row, k] += span.rise * polys[work, k] + span.rise_slope * span.length * polys[work, k - 1]
+    polys[row, 0] += span.rise * polys[work, 0]
+
+
+@kernel
+def develop_row(system: System, rows: Array, phase: int, row: int, place: int, motion: Motion, span: Span) -> None:
+    """Compute the Taylor coefficients of one of `rows` in `motion.polys[place]`, without vertical acceleration."""
     n, pairs, terms = system.layout.modes, motion.series.shape[0], system.phases[phase].terms
-    rows, polys, series, step = system.plain_rows, motion.polys, motion.series, span.length
+    polys, series, step = motion.polys, motion.series, span.length
     ground = rows.shape[2] - 2
     for k in range(polys.shape[1]):
-        polys[row, k] = 0.0
+        polys[place, k] = 0.0
     for i in range(pairs):
         weight = rows[phase, row, i if i < n else 2 * i]
         if weight != 0.0:
             for k in range(terms):
-                polys[row, k] += weight * series[i, k]
+                polys[place, k] += weight * series[i, k]
         weight = rows[phase, row, n + i if i < n else 2 * i + 1] / step
         if weight != 0.0:
             for k in range(terms - 1):
-                polys[row, k] += weight * (k + 1.0) * series[i, k + 1]
-    polys[row, 0] += rows[phase, row, ground] * span.ground + rows[phase, row, ground + 1]
+                polys[place, k] += weight * (k + 1.0) * series[i, k + 1]
+    polys[place, 0] += rows[phase, row, ground] * span.ground + rows[phase, row, ground + 1]
     for i in range(system.layout.memory, system.layout.memory + system.layout.remembered):
-        polys[row, 0] += rows[phase, row, i] * motion.state[i]
-    polys[row, 1] += rows[phase, row, ground] * span.slope * step
+        polys[place, 0] += rows[phase, row, i] * motion.state[i]
+    polys[place, 1] += rows[phase, row, ground] * span.slope * step
 
 
 @kernel

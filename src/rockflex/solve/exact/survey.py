@@ -22,6 +22,7 @@ from rockflex.solve.layout import (
     Progress,
     Span,
     System,
+    rows_in,
     unit_of,
 )
 from rockflex.solve.peaks import raise_peak, raise_row
@@ -56,13 +57,13 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
         start = span.ground + span.slope * unit * place
         clear = False
         if not probed:
-            for f in range(motion.clear.size):
+            for f in range(rows_in(system, p)):
                 motion.flags[ASKED, f] = motion.clear[f] <= place
             set_limits(system, p, log, motion)
             examine(system, p, depth, start, start + span.slope * unit * stride, span.slope, motion)
             probe(system, p, depth, span.slope, motion)
             clear = True
-            for f in range(motion.clear.size):
+            for f in range(rows_in(system, p)):
                 if motion.flags[DOUBT, f]:
                     clear = False
                 elif motion.flags[ASKED, f]:
@@ -76,7 +77,7 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
             log.work[LEFT] -= log.work[SERIES]
             to_state(system, at, start, motion)
             time = span.time + unit * place
-            survey_unit(system, p, Span(time, time + unit, start, span.slope, unit), log, motion)
+            survey_unit(system, p, Span(time, span.until, start, span.slope, unit, 0.0, 0.0), log, motion)
         for k in range(motion.w.shape[1]):
             motion.w[NOW, k] = motion.w[ENDS, k]
         place += stride
@@ -93,7 +94,7 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
 @kernel
 def survey_unit(system: System, phase: int, span: Span, log: Log, motion: Motion) -> None:
     """Update the peaks of the rows in doubt over a unit without events."""
-    expand(system, phase, motion, span, np.nan)
+    expand(system, phase, motion, span, np.nan, np.nan)
     for f in range(1, log.peaks.size):
         if motion.flags[DOUBT, f]:
             row_series(system, phase, f, motion, span)

@@ -13,8 +13,8 @@ from scipy.linalg import expm
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex.models import FREEDOMS, SUMS, Phase, RockingModel
-from rockflex.solve.exact.basis import Basis
+from rockflex.models import SUMS, Phase, RockingModel
+from rockflex.solve.exact.basis import Basis, Drift
 from rockflex.solve.layout import (
     CHANGED,
     CONSTANT,
@@ -71,21 +71,31 @@ def terms_of(fastest: float, dt: float) -> int:
     return order + 1
 
 
-def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, levels: int, *, dense: bool) -> System:
-    """Return empty tables for the given numbers of phases and halvings of the time step."""
-    p, layout, b = model.properties, model.layout, len(FREEDOMS)
+def empty_system(
+    model: RockingModel, rows: int, dt: float, capacity: int, levels: int, *, dense: bool, shaken: bool
+) -> System:
+    """Return empty tables for the given numbers of phases and halvings of the time step.
+
+    `rows` counts the fences too; `shaken` means that the ground moves vertically as well.
+    """
+    p, layout, b = model.properties, model.layout, model.layout.freedoms
     n, core, pairs, columns = layout.modes, layout.core, layout.core // 2, layout.columns
     whole = (capacity, levels + 1)
-    memories, changes = layout.remembered, model.most_changes
-    links = np.full((capacity, CHANGED + changes), -1, dtype=np.int64)
+    memories, changes, fences = layout.remembered, model.most_changes, model.most_fences
+    moved = capacity if shaken else 0
+    links = np.full((capacity, CHANGED + changes + fences), -1, dtype=np.int64)
     return System(
         layout=layout,
         dt=dt,
         modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
         phases=np.zeros(capacity, dtype=PHASE),
-        turning_row=rows - 2 if memories else -1,
+        turning_row=rows - fences - 2 if model.turning else -1,
         chords=model.complete,
+        fences=rows - fences,
+        fenced=CHANGED + changes,
         links=links,
+        fence_kinds=np.full((capacity, fences, 2), -1, dtype=np.int64),
+        fence_values=np.zeros((capacity, fences, columns)),
         limits=np.zeros((capacity, 2, 2 + memories)),
         changes=np.zeros((capacity, changes, 2)),
         change_kinds=np.full((capacity, changes, 2), -1, dtype=np.int64),
@@ -96,6 +106,10 @@ def empty_system(model: RockingModel, rows: int, dt: float, capacity: int, level
         base=np.zeros((capacity, 3, b, b)),
         push=np.zeros((capacity, 2, b)),
         pulls=np.zeros((capacity, SUMS, 1 + memories)),
+        heavier_push=np.zeros((moved, b)),
+        heavier_base=np.zeros((moved, b, b)),
+        heavier_limits=np.zeros((moved, 2)),
+        heavier_rows=np.zeros((moved, rows, columns)),
         plain_rows=np.zeros((capacity, rows, columns)),
         basis=np.zeros((capacity, 2, core, core)),
         forced=np.zeros((capacity, 3 + memories, core)),
@@ -119,8 +133,10 @@ def grown(system: System, larger: System) -> System:
     return larger
 
 
-def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_rows: Array, twin: int) -> None:
-    """Enter one phase at index `p`; `plain_rows` (F, C). A phase that is not linear has no basis.
+def put_phase(
+    system: System, p: int, phase: Phase, basis: Basis | Drift | None, plain_rows: Array, twin: int
+) -> None:
+    """Enter one phase at index `p`; `plain_rows` (F + E, C). A phase that is not linear has no basis.
 
     `twin` is the index of a phase that differs only in constant forces, or -1; the common tables are copied.
     """
@@ -136,18 +152,30 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
         system.marks[p, memory] = mark
     for turning in phase.turnings:
         system.turnings[p, turning.memory] = turning.arm, turning.offset
+    for e, fence in enumerate(phase.fences):
+        system.fence_kinds[p, e] = fence.event, fence.memory
+        if fence.value is not None:
+            system.fence_values[p, e] = fence.value
+    count = len(phase.fences)
     if basis is None or arrow is None:
-        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, 0, False, False
+        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, count, False, 0, 0, False, False
         return
     levels = levels_of(basis.fastest, dt)
     terms = terms_of(basis.fastest, dt)
-    decays = not phase.free or (not basis.dense and bool((basis.roots.real < 0.0).all()))
-    system.phases[p] = phase.side, phase.free, decays, phase.turns, levels, terms, True, basis.dense
+    marches = isinstance(basis, Basis)
+    decays = marches and (not phase.free or (not basis.dense and bool((basis.roots.real < 0.0).all())))
+    pairs = arrow.coupling.shape[0] + arrow.coupling.shape[1]
+    at_rest = phase.side == 0 and not phase.free  # then the rotation is not only held, but zero
+    active = 0 if not marches else basis.moving if phase.free or at_rest else pairs
+    dense = marches and basis.dense
+    system.phases[p] = phase.side, phase.free, decays, phase.turns, active, count, marches, levels, terms, True, dense
     system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
     system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
     system.recall[p] = arrow.recall
+    if not marches:
+        return
     core, own, memory = basis.basis.shape[0], slice(levels + 1), system.layout.memory
     moving = plain_rows[:, :core]
     rows = moving @ basis.basis
@@ -173,6 +201,21 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | None, plain_r
     else:
         bounds = _bounds(basis, rows, first, steps)
     system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
+
+
+def put_heavier(system: System, p: int, phase: Phase, heavier: Phase, rows: Array) -> None:
+    """Enter what a vertical acceleration of 1 m/s² adds to a phase, from that under as much more gravity.
+
+    `rows` are the rows under that gravity.
+    """
+    system.heavier_rows[p] = rows - system.plain_rows[p]
+    if phase.arrow is not None and heavier.arrow is not None:
+        system.heavier_push[p] = heavier.arrow.constant - phase.arrow.constant
+        system.heavier_base[p] = heavier.arrow.stiffness - phase.arrow.stiffness
+    for bound, (more, limit) in enumerate(
+        ((heavier.guard.low, phase.guard.low), (heavier.guard.high, phase.guard.high))
+    ):
+        system.heavier_limits[p, bound] = more - limit if math.isfinite(limit) else 0.0
 
 
 def _blocks(basis: Basis, steps: Array) -> Array:

@@ -1,0 +1,193 @@
+"""The simplified models on rigid ground on which they may slide, with Coulomb friction."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
+from rockflex.modal import RockingProperties
+from rockflex.models._based import accelerations_of, arrow_of, blank_border, horizontal_reaction
+from rockflex.models._elements import CLOSED, arm_of, border_of, memories
+from rockflex.models._impact import ImpactLaw, VVELSimplified
+from rockflex.models._layout import HEADER, StateLayout, layout_of
+from rockflex.models._linear import LinearModel
+from rockflex.models._phase import CHANGES, SLIPS, STICKS, Arrow, Border, Exit, Fence, Guard, Key, Phase
+
+STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
+LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against
+
+
+@dataclass(frozen=True, eq=False)
+class SlidingModel(LinearModel):
+    """N modes on a base that may uplift and slide: nine phases of contact and rocking, of sticking and slipping.
+
+    An impact keeps all horizontal velocities, also that of the base. The last memory of the state tells whether, and to
+    which side, the base slips.
+
+    Parameters
+    ----------
+    label, properties, lifts, law, missing_mass, gravity
+        As in `LinearModel`.
+    friction
+        Coulomb's coefficient between base and ground.
+    """
+
+    label: str
+    properties: RockingProperties
+    lifts: bool = True
+    law: ImpactLaw = field(default_factory=VVELSimplified)
+    missing_mass: bool = False
+    gravity: float = GRAVITY
+    friction: float = np.inf
+
+    @cached_property
+    def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Layout of the state vector."""
+        return layout_of(self.properties.n_modes, remembered=len(memories(self.elements)) + 1, slides=True)
+
+    @property
+    def turning(self) -> bool:
+        """Whether some phase may end where the rotation turns back."""
+        return len(memories(self.elements)) > 0
+
+    @property
+    def most_fences(self) -> int:
+        """Largest number of fences of a phase."""
+        return 2
+
+    def element_key(self, key: Key) -> Key:
+        """Return the branches of the base and of the elements."""
+        return key[:-1]
+
+    def start(self, side: int) -> Key:
+        """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
+        return (*super().start(side), STICK)
+
+    def begin(self, rotation: float, spin: float) -> tuple[Key, Array]:
+        """Return the branches and the memories at the start of a run, in which the base does not slip."""
+        key, kept = super().begin(rotation, spin)
+        return (*key, STICK), np.append(kept, STICK)
+
+    def is_free(self, key: Key) -> bool:
+        """Return whether the base rotates in a phase."""
+        return key[0] != CLOSED
+
+    def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:
+        """Return the branches at the states of a history, shape (n, K)."""
+        place = HEADER + self.layout.memory + self.layout.remembered - 1
+        return np.column_stack((super().branches_at(side, rotation, states), states[:, place].astype(np.int64)))
+
+    def _new_arrow(self, key: Key) -> Arrow:
+        side, slip = key[0], key[-1]
+        return arrow_of(self, self._border(key), np.array([side != CLOSED, slip != STICK]))
+
+    def _border(self, key: Key) -> Border:
+        """Return the forces on the rotation and the slip; friction is -sign(x') μ N."""
+        p, side, slip, elements = self.properties, key[0], key[-1], self.element_key(key)
+        border = blank_border(2, self.layout.remembered)
+        border.inertia[1, 1], border.ground[1] = p.m_tot, -p.m_tot
+        border.inertia[0, 1] = border.inertia[1, 0] = p.l0r
+        border.ground[0] = -p.l0r
+        if side != CLOSED:
+            turning = border_of(p, self.elements, elements, self.gravity)
+            border.inertia[0, 0] = turning.inertia[0, 0]
+            border.damping[0, 0], border.stiffness[0, 0] = turning.damping[0, 0], turning.stiffness[0, 0]
+            border.constant[0], border.recall[0, :-1] = turning.constant[0], turning.recall[0]
+        if abs(slip) == 1:
+            self._add_friction(border, key)
+        return border
+
+    def _add_friction(self, border: Border, key: Key) -> None:
+        """Add -sign(x') μ N with N = m_tot (g + s B θ'') + the tensions of the elements."""
+        p, side, known = self.properties, key[0], memories(self.elements)
+        drag = key[-1] * self.friction
+        border.constant[1] -= drag * p.m_tot * self.gravity
+        if side != CLOSED:
+            border.inertia[1, 0] += drag * side * p.m_tot * p.pivot(side).arm
+        for place, (each, branch) in enumerate(zip(self.elements, self.element_key(key)[1:], strict=True)):
+            pull = each.pull(branch)
+            border.constant[1] -= drag * pull.force
+            if place in known:
+                border.recall[1, known[place]] -= drag * pull.recall
+            if side != CLOSED:
+                reach = side * arm_of(p, each, side)
+                border.stiffness[1, 0] += drag * pull.stiffness * reach
+                border.damping[1, 0] += drag * pull.damping * reach
+
+    def _new_accelerations(self, key: Key) -> Array:
+        return accelerations_of(self, self.arrow(key))
+
+    def pressure(self, key: Key) -> Array:
+        """Return the vertical force of the ground on the base in N, m_tot (g + s B θ'') + tensions: a row, shape (C,)."""
+        p, side, known, layout = self.properties, key[0], memories(self.elements), self.layout
+        row = np.zeros(layout.columns)
+        row[-1] = p.m_tot * self.gravity
+        if side != CLOSED:
+            row += side * p.m_tot * p.pivot(side).arm * self.angular_acceleration(key)
+        for place, (each, branch) in enumerate(zip(self.elements, self.element_key(key)[1:], strict=True)):
+            pull = each.pull(branch)
+            row[-1] += pull.force
+            if place in known:
+                row[layout.memory + known[place]] += pull.recall
+            if side != CLOSED:
+                reach = side * arm_of(p, each, side)
+                row[layout.rotation] += pull.stiffness * reach
+                row[layout.spin] += pull.damping * reach
+        return row
+
+    def phase(self, key: Key) -> Phase:
+        """Return one phase: the equations of motion on these branches, and the conditions that end it."""
+        slip = key[-1]
+        base = self.phase_of(self.element_key(key), self.arrow(key))
+
+        def along(other: Key) -> Key:
+            return (*other, slip)
+
+        guard = base.guard
+        return replace(
+            base,
+            key=key,
+            guard=replace(
+                guard,
+                row=guard.row if base.free else self._moment_with_slip(key),
+                below=_along(guard.below, slip),
+                above=_along(guard.above, slip),
+                recall=np.column_stack((guard.recall, np.zeros(2))),
+            ),
+            pulls=np.column_stack((base.pulls, np.zeros(base.pulls.shape[0]))),
+            changes=tuple(each._replace(key=along(each.key)) for each in base.changes),
+            fences=self._fences(key),
+            turned=along(base.turned),
+            beside=(along(base.beside[0]), along(base.beside[1]), along(base.beside[2])),
+            marks=(*base.marks, (self.layout.remembered - 1, float(slip))),
+        )
+
+    def _moment_with_slip(self, key: Key) -> Array:
+        """Return the overturning moment in contact, with the acceleration of a base that slides: a row, shape (C,)."""
+        p = self.properties
+        left = p.l0r - float(np.sum(p.effective_mass * p.effective_height))
+        return self.overturning_moment() + left * self.accelerations(key)[-1]
+
+    def _fences(self, key: Key) -> tuple[Fence, ...]:
+        before, slip = key[:-1], key[-1]
+        pressure = self.pressure(key)
+        if slip == STICK:
+            held = horizontal_reaction(self, self.accelerations(key))
+            # The ground pushes to the right on a base that would slide to the left.
+            return (
+                Fence(self.friction * pressure - held, SLIPS, (*before, -1)),
+                Fence(self.friction * pressure + held, SLIPS, (*before, 1)),
+            )
+        way = 1 if slip > 0 else -1
+        going = np.zeros(self.layout.columns)
+        going[self.layout.slip + 1] = way
+        if abs(slip) == LOST:
+            return (Fence(going, CHANGES, (*before, -slip)), Fence(-pressure, CHANGES, (*before, way)))
+        return (Fence(going, STICKS, (*before, STICK)), Fence(pressure, CHANGES, (*before, LOST * way)))
+
+
+def _along(leads: Exit | None, slip: int) -> Exit | None:
+    return None if leads is None else Exit(leads.event, (*leads.key, slip))
