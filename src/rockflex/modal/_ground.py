@@ -181,6 +181,11 @@ class Ground(Value):
         vars(self).update(friction=coefficient, springs=springs, base_inertia=inertia)
 
     @property
+    def rigid(self) -> bool:
+        """Whether it is rigid ground on which the base cannot slide."""
+        return self.springs is None and not self.slides
+
+    @property
     def slides(self) -> bool:
         """Whether the base can slide: some coefficient of friction is given and finite."""
         return self.friction is not None and bool(np.isfinite(self.friction).any())
