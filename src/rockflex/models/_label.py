@@ -9,8 +9,10 @@ import numpy as np
 from rockflex._checks import one_of, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import FrictionDamper, RockingProperties
+from rockflex.modal import FrictionDamper, Ground, RockingProperties
 from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._ground_checks import check_base
+from rockflex.models._grounded import grounded
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
 from rockflex.models._linear import LinearModel
 from rockflex.models._nonlinear import NonlinearModel
@@ -123,9 +125,24 @@ class Model:
         return f"{self.n_modes + 1}DOF-{kind}{end}" if self.lifts else f"{self.n_modes}DOF-fixed{end}"
 
     def of(
-        self, properties: RockingProperties, impact: ImpactLaw | None = None, bouc_wen: BoucWen | None = None
+        self,
+        properties: RockingProperties,
+        impact: ImpactLaw | None = None,
+        bouc_wen: BoucWen | None = None,
+        ground: Ground | None = None,
     ) -> RockingModel:
-        """Return the model applied to a structure, optionally with another impact law and a Bouc-Wen superstructure.
+        """Return the model applied to a structure.
+
+        Parameters
+        ----------
+        properties
+            The parameters of the structure, with at least the modes of the model.
+        impact
+            An impact law in place of the model's own.
+        bouc_wen
+            Hysteresis of a superstructure with one mode.
+        ground
+            Springs under the base, or friction. Default: rigid ground on which the base cannot slide.
 
         Raises
         ------
@@ -146,6 +163,11 @@ class Model:
         self._check_missing_mass(kept)
         self._check_friction(kept)
         label = self._check_yielding(kept, bouc_wen)
+        if ground is not None and not ground.rigid:
+            self._check_ground(label, ground, impact, bouc_wen)
+            check_base(kept, ground)
+            own = None if ground.springs is not None else self._law(kept)
+            return grounded(label, kept, ground, impact if impact is not None else own, self.missing_mass)
         law = impact if impact is not None else self._law(kept)
         linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
         if self.complete or bouc_wen is not None or linear.neutral:
@@ -166,6 +188,22 @@ class Model:
                 f"is not linear in the motion. Use {replace(self, complete=False, closure=None).label}, or a "
                 "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
                 field="elements",
+            )
+
+    def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None, bouc_wen: BoucWen | None) -> None:
+        what = "Springs need" if ground.springs is not None else "Friction needs"
+        if not self.lifts or self.complete or bouc_wen is not None:
+            simple = replace(self, lifts=True, complete=False, closure=None, yields=False).label
+            raise InputError(
+                f"{what} a simplified model whose superstructure is elastic and whose base can lift, but {label} was "
+                f"given. Use {simple}, or leave the ground out.",
+                field="ground",
+            )
+        if ground.springs is not None and impact is not None:
+            raise InputError(
+                "No impact law acts on springs: what a landing dissipates, their dashpots take. Leave impact out, and "
+                "choose the damping of the springs.",
+                field="impact",
             )
 
     def _check_yielding(self, kept: RockingProperties, bouc_wen: BoucWen | None) -> str:

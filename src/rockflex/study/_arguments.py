@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable, Sequence
 from numbers import Real
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Literal, Protocol, TypeAlias, get_args
 
 from rockflex._checks import finite_vector, one_of, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import RockingProperties
+from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion, check_horizontal
 from rockflex.study._initial import InitialState
@@ -16,6 +16,9 @@ from rockflex.study._initial import InitialState
 Output = Literal["history", "peaks"]
 
 LONGEST = 1e9  # s of free vibration
+
+GroundChoice: TypeAlias = Ground | Callable[[RockingProperties], Ground] | None
+"""The ground of all structures, or a function that returns the ground of each; None: rigid, without sliding."""
 
 WORK_LIMIT = 30.0
 """Default limit of the work of one run, in s of computing on one core."""
@@ -97,8 +100,8 @@ def work_limit_of(value: float | Literal["none"] | None) -> float | None:
     return seconds if math.isfinite(seconds) else None
 
 
-def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
-    """Raise an InputError unless `bouc_wen` is a BoucWen and `impact` an impact law, or None."""
+def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground: GroundChoice = None) -> None:
+    """Raise an InputError unless `bouc_wen` is a BoucWen, `impact` an impact law and `ground` a ground, or None."""
     if not isinstance(bouc_wen, BoucWen | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
             f"bouc_wen must be a BoucWen or None, but {shown(bouc_wen)} was given. "
@@ -110,6 +113,31 @@ def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None) -> None:
             "Restitution(e), or an object with `keeps`, `loses` and `after(properties, modal_velocity, "
             "rotation_velocity)`."
         )
+    if ground is not None and (isinstance(ground, type) or not (isinstance(ground, Ground) or callable(ground))):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(
+            f"ground must be a Ground, a function of RockingProperties that returns one, or None, but "
+            f"{described(ground)} was given. Write Ground(friction=0.4), for example.",
+            field="ground",
+        )
+
+
+def ground_under(properties: RockingProperties, ground: GroundChoice) -> Ground | None:
+    """Return the ground under a structure.
+
+    Raises
+    ------
+    InputError
+        If the function does not return a ground, or as that function.
+    """
+    if ground is None or isinstance(ground, Ground):
+        return ground
+    found = ground(properties)
+    if not isinstance(found, Ground):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(
+            f"ground must return a Ground for the properties of a structure, but it returned {described(found)}.",
+            field="ground",
+        )
+    return found
 
 
 def case_options(

@@ -19,10 +19,12 @@ from rockflex.motion import GroundMotion
 from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
+    GroundChoice,
     RockingStructure,
     check_motion,
     check_options,
     described,
+    ground_under,
     positive_numbers,
     properties_of,
     work_limit_of,
@@ -73,6 +75,7 @@ def overturning_scales(
     impact: ImpactLaw | None = None,
     tolerance: float = 1e-6,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> OverturningScales:
     """Find the scales at which a motion starts to overturn a structure.
 
@@ -83,7 +86,7 @@ def overturning_scales(
 
     Parameters
     ----------
-    structure, model, impact
+    structure, model, impact, ground
         As in `simulate`; a rigid block from `rigid_block`, for instance.
     motion
         The ground motion at the scale 1.
@@ -113,7 +116,7 @@ def overturning_scales(
     tried = _scan("scales", scales)
     width = in_range("tolerance", tolerance, 1e-12, 0.1)
     check_motion(motion)
-    return _search(_runner(structure, model, impact, work_limit), motion, tried, width)
+    return _search(_runner(structure, model, impact, work_limit, ground), motion, tried, width)
 
 
 def overturning_spectrum(
@@ -126,6 +129,7 @@ def overturning_spectrum(
     tolerance: float = 1e-6,
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> "pd.DataFrame":
     """Smallest amplitude at which a pulse overturns a structure, as a function of the frequency of the pulse.
 
@@ -134,7 +138,7 @@ def overturning_spectrum(
 
     Parameters
     ----------
-    structure, model, impact
+    structure, model, impact, ground
         As in `simulate`.
     pulse
         Function that returns a pulse for an amplitude in m/s² and a period 2π/ω_g in s, such as `one_sine_pulse`; for
@@ -179,7 +183,7 @@ def overturning_spectrum(
     properties = properties_of(structure)
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
     unit = properties.resisting_moment / properties.l0r  # g α
-    run = _runner(properties, model, impact, work_limit)
+    run = _runner(properties, model, impact, work_limit, ground)
     periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
     if not callable(pulse):
         raise InputError(f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given.")
@@ -206,10 +210,12 @@ def _runner(
     model: str | Model,
     impact: ImpactLaw | None,
     work_limit: float | None,
+    ground: GroundChoice,
 ) -> Run:
-    check_options(None, impact)
+    check_options(None, impact, ground)
     limit = work_limit_of(work_limit)
-    tied = parse_model(model).of(properties_of(structure), impact)
+    properties = properties_of(structure)
+    tied = parse_model(model).of(properties, impact, ground=ground_under(properties, ground))
     if not tied.lifts:
         raise InputError(f"{tied.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks.")
     return Case(tied, None, work_limit=limit).run

@@ -11,7 +11,7 @@ from rockflex._errors import InputError
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion
 from rockflex.structure import rigid_block
-from rockflex.study._arguments import WORK_LIMIT, check_options, positive_numbers
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice, check_options, ground_under, positive_numbers
 from rockflex.study._simulate_many import simulate_many
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ def rocking_spectrum(
     free_vibration: float | Literal["settle"] = "settle",
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> "pd.DataFrame":
     """Largest rotation of homogeneous rigid blocks under one motion, for several slendernesses and sizes.
 
@@ -52,6 +53,8 @@ def rocking_spectrum(
         Number of threads; None for one a core.
     work_limit
         Work limit of each run, as in `simulate_many`.
+    ground
+        As in `simulate_many`.
 
     Returns
     -------
@@ -78,12 +81,20 @@ def rocking_spectrum(
     chosen = parse_model(model)
     if chosen.n_modes != 0:
         raise InputError(f'Blocks have no modes, but the model {chosen.label} was given. Use "rigid" or "rigid-C".')
-    check_options(None, impact)
+    check_options(None, impact, ground)
     radii = [0.75 * GRAVITY * (time / (2.0 * math.pi)) ** 2 for time in times]
     blocks = [rigid_block(alpha, radius) for alpha in alphas for radius in radii]
-    chosen.of(blocks[int(np.argmax(alphas)) * len(radii)], impact)  # the squattest, before any work
+    squattest = blocks[int(np.argmax(alphas)) * len(radii)]
+    chosen.of(squattest, impact, ground=ground_under(squattest, ground))  # before any work
     table = simulate_many(
-        blocks, motion, chosen, free_vibration=free_vibration, impact=impact, workers=workers, work_limit=work_limit
+        blocks,
+        motion,
+        chosen,
+        free_vibration=free_vibration,
+        impact=impact,
+        workers=workers,
+        work_limit=work_limit,
+        ground=ground,
     ).reset_index(drop=True)
     slenderness, period = np.repeat(alphas, len(times)), np.tile(times, len(alphas))
     import pandas as pd

@@ -8,11 +8,13 @@ from rockflex.motion import GroundMotion
 from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
+    GroundChoice,
     Output,
     RockingStructure,
     case_options,
     check_motion,
     check_options,
+    ground_under,
     properties_of,
 )
 from rockflex.study._case import Case
@@ -29,6 +31,7 @@ def simulate(
     impact: ImpactLaw | None = None,
     initial: InitialState | None = None,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> Response:
     """Simulate one structure under one ground motion.
 
@@ -66,6 +69,10 @@ def simulate(
         Limit of the work of the run, in s of computing on one core; None for no limit. A run is refused if its
         estimate exceeds the limit, and stopped when it reaches the limit. Work is counted, not timed, so the limit is
         the same on every machine. A typical run takes milliseconds.
+    ground
+        Springs under the base, friction between base and ground, or both; for simplified models with an elastic
+        superstructure. Or a function that returns a `Ground` for the `RockingProperties` of a structure. Default: rigid
+        ground on which the base cannot slide.
 
     Returns
     -------
@@ -90,7 +97,8 @@ def simulate(
     ('rocking', 0.0198)
     """
     options = case_options(output, free_vibration, initial, work_limit)
-    check_options(bouc_wen, impact)
-    tied = parse_model(model).of(properties_of(structure), impact, bouc_wen)
+    check_options(bouc_wen, impact, ground)
+    properties = properties_of(structure)
+    tied = parse_model(model).of(properties, impact, bouc_wen, ground_under(properties, ground))
     check_motion(motion)
     return Case(tied, **options).run(motion)

@@ -12,10 +12,12 @@ from rockflex.motion import check_horizontal
 from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
+    GroundChoice,
     Output,
     case_options,
     check_options,
     factors_of,
+    ground_under,
     properties_of,
 )
 from rockflex.study._case import Case
@@ -44,6 +46,7 @@ def simulate_many(
     initial: InitialState | None = None,
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
@@ -68,6 +71,9 @@ def simulate_many(
         Number of threads; None for one a core.
     work_limit
         Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
+    ground
+        As in `simulate`. With several structures, a function gives each its own: ``lambda properties:
+        Ground(springs=winkler_bed(properties.half_width, ...), ...)``.
 
     Returns
     -------
@@ -98,7 +104,7 @@ def simulate_many(
     3  MDOF-S    1.0  rocking
     """
     options = case_options(output, free_vibration, initial, work_limit)
-    check_options(bouc_wen, impact)
+    check_options(bouc_wen, impact, ground)
     everything, names = structures_of(structures)
     records = motions_of(motions)
     check_horizontal(*records)
@@ -114,7 +120,9 @@ def simulate_many(
     def case_of(index: int, which: int) -> Case | str:
         """Return the case of a structure and a model, or the reason why there is none."""
         try:
-            return Case(chosen[which].of(properties_of(everything[index]), impact, yielding[which]), **options)
+            properties = properties_of(everything[index])
+            below = ground_under(properties, ground)
+            return Case(chosen[which].of(properties, impact, yielding[which], below), **options)
         except InputError as error:
             return str(error)
 

@@ -7,7 +7,7 @@ from pydantic import AfterValidator, Field
 
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion
-from rockflex.study._arguments import WORK_LIMIT, factors_of
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice, factors_of
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plan._bench import Bench, bench_of
 from rockflex.study.plan._chunked import run_plan
@@ -84,6 +84,7 @@ def run_cloud(
     friction: bool = False,
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale, with intensity measures.
 
@@ -101,6 +102,8 @@ def run_cloud(
         Number of threads; None for one a core.
     work_limit
         Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
+    ground
+        As in `simulate_many`.
 
     Returns
     -------
@@ -131,6 +134,14 @@ def run_cloud(
     """
     given: Any = scales
     bench = bench_of(
-        structures, motions, models, free_vibration, bouc_wen, impact, friction=friction, work_limit=work_limit
+        structures,
+        motions,
+        models,
+        free_vibration,
+        bouc_wen,
+        impact,
+        friction=friction,
+        work_limit=work_limit,
+        ground=ground,
     )
     return run_plan(CloudPlan(bench, given, per_chunk=64), workers)

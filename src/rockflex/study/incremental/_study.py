@@ -11,7 +11,7 @@ from rockflex._shown import shown
 from rockflex.fragility import LIMIT_STATES, OVERTURNING
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import intensity
-from rockflex.study._arguments import WORK_LIMIT
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study._tables import Columns, Row
 from rockflex.study.incremental._ladder import Ladder, Steps, rungs, steps_between, steps_from_rest
@@ -144,6 +144,7 @@ def run_incremental(
     impact: ImpactLaw | None = None,
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> "pd.DataFrame":
     """Scale every motion until it overturns the structure, and beyond, and return every run.
 
@@ -153,7 +154,7 @@ def run_incremental(
 
     Parameters
     ----------
-    structures, motions, models, free_vibration, bouc_wen, impact, workers, work_limit
+    structures, motions, models, free_vibration, bouc_wen, impact, workers, work_limit, ground
         As in `run_cloud`.
     smallest_scale, largest_scale, growth
         First and last scale of the grid, and the ratio of each scale to the one before.
@@ -184,7 +185,9 @@ def run_incremental(
     >>> round(float(runs["first_overturning_scale"].iloc[0]), 2)
     2.56
     """
-    bench = bench_of(structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit)
+    bench = bench_of(
+        structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
+    )
     if not one_of(limit, ("overturning", "nominal")):
         raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
     steps = Steps(smallest_scale, largest_scale, growth, tolerance)

@@ -15,8 +15,10 @@ from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
+    GroundChoice,
     check_options,
     free_vibration_time,
+    ground_under,
     properties_of,
     work_limit_of,
 )
@@ -34,7 +36,8 @@ class Assumptions:
     """The options that all runs of a study share.
 
     `free_vibration` in s, None until settled. `bouc_wen` applies to the models whose label ends in "-BW", or to all if
-    there are none. `work_limit` is that of each run in s, None for no limit.
+    there are none. `work_limit` is that of each run in s, None for no limit. `ground` is that of all structures, or a
+    function that returns the ground of each.
     """
 
     models: tuple[Model, ...]
@@ -43,6 +46,7 @@ class Assumptions:
     bouc_wen: BoucWen | None = None
     friction: bool = False
     work_limit: float | None = WORK_LIMIT
+    ground: GroundChoice = None
 
 
 class Bench:
@@ -150,7 +154,9 @@ class Bench:
     def _new_case(self, structure: int, model: int) -> Case | str:
         given = self.assumptions
         try:
-            tied = given.models[model].of(self.structures[structure], given.impact, self._yielding[model])
+            properties = self.structures[structure]
+            ground = ground_under(properties, given.ground)
+            tied = given.models[model].of(properties, given.impact, self._yielding[model], ground)
             return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.friction)
         except InputError as error:
             return str(error)
@@ -210,6 +216,7 @@ def bench_of(
     *,
     friction: bool = False,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> Bench:
     """Check the arguments of a study in Python and return its bench; structures without names are "S1", "S2", ...
 
@@ -219,7 +226,7 @@ def bench_of(
         If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
         option is out of range.
     """
-    check_options(bouc_wen, impact)
+    check_options(bouc_wen, impact, ground)
     instance("friction", friction, bool)
     chosen = tuple(models_of(models))
     free = free_vibration_time(free_vibration)
@@ -227,5 +234,5 @@ def bench_of(
     listed, names = structures_of(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
     named = {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
-    assumptions = Assumptions(chosen, free, impact, bouc_wen, friction, work_limit_of(work_limit))
+    assumptions = Assumptions(chosen, free, impact, bouc_wen, friction, work_limit_of(work_limit), ground)
     return Bench(named, suite, assumptions)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 from rockflex._checks import instance
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.study._arguments import WORK_LIMIT, RockingStructure
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice, RockingStructure
 from rockflex.study._subjects import Motions
 from rockflex.study.design.search._cost import DesignCost
 from rockflex.study.design.search._plan import SearchPlan
@@ -32,6 +32,7 @@ def search_design(
     impact: ImpactLaw | None = None,
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
 ) -> "pd.DataFrame":
     """Search base width, tendons and dissipators together for the cheapest design that meets all requirements.
 
@@ -42,7 +43,7 @@ def search_design(
     ----------
     structure
         A structure, or its `RockingProperties`, with the elements that the factors of the search multiply.
-    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit
+    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground
         As in `run_cloud`.
     search
         The values of the variables, and the number of refinements.
@@ -81,7 +82,9 @@ def search_design(
     [9, 8]
     """
     given: Any = scales
-    bench = bench_of([structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit)
+    bench = bench_of(
+        [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
+    )
     wanted = check_requirements(requirements)
     space, unit_costs = instance("search", search, DesignSearch), instance("cost", cost, DesignCost)
     return run_plan(SearchPlan(bench, space, wanted, unit_costs, given, runs_per_chunk=64), workers)
