@@ -14,6 +14,7 @@ from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
 from rockflex.models._slider import Slider
+from rockflex.models._springs import SpringModel
 
 Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by name
 
@@ -155,6 +156,10 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
     """
     row = np.zeros(model.layout.columns)
     side, p = key[0], model.properties
+    if isinstance(model, SpringModel):
+        row -= model.spring_forces(key).sum(axis=0)
+        row[-1] += p.resting_reaction
+        return row
     if model.complete and side != CLOSED:
         return row
     if model.is_free(key):
@@ -167,6 +172,12 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
 
 def tensions(model: ModalModel, key: Key) -> Array:
     """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
+    if isinstance(model, SpringModel):
+        branches = model.element_key(key)[1:]
+        rows = np.zeros((len(branches), model.layout.columns))
+        for place, branch in enumerate(branches):
+            rows[place] = model.tension(place, branch)
+        return rows
     rows = np.zeros((len(model.elements), model.layout.columns))
     if is_held(model.properties, model.elements, model.element_key(key)):
         hold(model, key, rows)

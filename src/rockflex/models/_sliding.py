@@ -155,7 +155,7 @@ class SlidingModel(LinearModel):
                 row=guard.row if base.free else self._moment_with_slip(key),
                 below=_along(guard.below, slip),
                 above=_along(guard.above, slip),
-                recall=np.column_stack((guard.recall, np.zeros(2))),
+                recall=np.column_stack((guard.recall[:, : self.layout.remembered - 1], np.zeros(2))),
             ),
             pulls=np.column_stack((base.pulls, np.zeros(base.pulls.shape[0]))),
             changes=tuple(each._replace(key=along(each.key)) for each in base.changes),

@@ -37,7 +37,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, 
     shaken = is_shaken(span)
     slipping = slip_in(system)
     n, freedoms, step, series = system.layout.modes, motion.push.size, span.length, motion.series
-    free = system.phases[phase].free
+    moves = system.phases[phase].free or freedoms > 1  # otherwise the base is at rest
     for i in range(n):
         series[i, 0] = motion.state[i]
         series[i, 1] = motion.state[n + i] * step
@@ -68,7 +68,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, 
                 motion.push[j] += system.border[phase, j, LEVERAGE, i] * restoring
         for j in range(freedoms):
             series[n + j, k + 2] = 0.0
-        if not free:
+        if not moves:
             continue
         motion.push[0] = pushed
         for j in range(freedoms):

@@ -1,0 +1,341 @@
+"""The simplified models on springs that cannot pull: the base rotates, heaves and, with friction, slides."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
+from rockflex.modal import RockingProperties, Springs
+from rockflex.models._based import accelerations_of, arrow_of, blank_border, horizontal_reaction
+from rockflex.models._branch_code import code_of, codes_for, decoded
+from rockflex.models._element import Element
+from rockflex.models._elements import CLOSED, memories
+from rockflex.models._impact import ImpactLaw, VVELSimplified
+from rockflex.models._layout import HEADER, StateLayout, layout_of
+from rockflex.models._linear import LinearModel
+from rockflex.models._modal_model import QUARTER_TURN
+from rockflex.models._phase import (
+    CHANGES,
+    CLOSES,
+    OPENS,
+    OVERTURNS,
+    SLIPS,
+    STICKS,
+    Arrow,
+    Border,
+    Exit,
+    Fence,
+    Guard,
+    Key,
+    Phase,
+)
+from rockflex.models._pulls import SUMS
+
+# Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
+LOADED, LIFTED, RECEDING = 0, 1, 2
+STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
+
+Pose = tuple[float, float]  # rotation in rad and heave in m
+
+
+@dataclass(frozen=True, eq=False)
+class SpringModel(LinearModel):
+    """N modes on a base on springs and dashpots that cannot pull: no impact law, and flight as one more phase.
+
+    A key has the side, always 0, the branches of the springs, that of the slip, and those of the elements. The state
+    keeps them as the last memories.
+
+    Parameters
+    ----------
+    label, properties, lifts, law, missing_mass, gravity
+        As in `LinearModel`; the law is not used.
+    springs
+        The springs.
+    inertia
+        Rotary inertia Σ m_i h_i² + I_b about the axis of the masses, kg m².
+    friction : ndarray, shape (n,), or None
+        Coulomb's coefficient at each spring; None for a base that cannot slide.
+    rest
+        Rotation and heave under the weight, from which the elements are stretched.
+    """
+
+    label: str
+    properties: RockingProperties
+    lifts: bool = True
+    law: ImpactLaw = field(default_factory=VVELSimplified)
+    missing_mass: bool = False
+    gravity: float = GRAVITY
+    springs: Springs = field(kw_only=True)
+    inertia: float = field(kw_only=True)
+    friction: Array | None = None
+    rest: Pose = (0.0, 0.0)
+
+    @cached_property
+    def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Layout of the state vector."""
+        remembered = len(memories(self.elements)) + codes_for(self._key_size)
+        return layout_of(
+            self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True
+        )
+
+    @property
+    def turning(self) -> bool:
+        """Always False: elements that yield have fences of their own."""
+        return False
+
+    @property
+    def most_changes(self) -> int:
+        """Always 0: the elements change their branches at fences."""
+        return 0
+
+    @cached_property
+    def most_fences(self) -> int:
+        """Largest number of fences of a phase."""
+        of_elements = sum(
+            max(len(each.stops(branch)) + (each.direction(branch) != 0) for branch in each.branches)
+            for each in self.elements
+        )
+        return 2 * self.springs.n + (2 if self.friction is not None else 0) + of_elements
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """The only side, 0: the base has no pivot."""
+        return (CLOSED,)
+
+    @property
+    def neutral(self) -> bool:
+        """Always False: a base that is not stable on its springs is refused."""
+        return False
+
+    @property
+    def _key_size(self) -> int:
+        return self.springs.n + 1 + len(self.elements)
+
+    def element_key(self, key: Key) -> Key:
+        """Return the branches of the base and of the elements."""
+        return (key[0], *key[self.springs.n + 2 :])
+
+    def start(self, side: int) -> Key:
+        """Return the branches of a base at rest."""
+        return (side, *(LOADED,) * self.springs.n, STICK, *(each.branches[0] for each in self.elements))
+
+    def initial(self, state: Array | None) -> tuple[Key, Array]:
+        """Return the branches and the state at the start of a run, from [D.., D'.., θ, θ'] or at rest.
+
+        The rotation of a state counts from the base at rest. The base heaves as the weight on its springs demands, and
+        the elements as built are brought to this position.
+        """
+        layout, springs = self.layout, self.springs
+        start = np.zeros(layout.size)
+        rotation, heave = self.rest
+        if state is not None:
+            start[: state.size] = state
+            rotation += start[layout.rotation]
+            heave = heave_at(springs, rotation, self._weight)
+        start[layout.rotation], start[layout.heave] = rotation, heave
+        depth = heave - springs.positions * rotation
+        pressed = np.where(depth < 0.0, springs.stiffness, 0.0)
+        spin = start[layout.spin]
+        start[layout.heave + 1] = pressed @ springs.positions / pressed.sum() * spin if spin else 0.0
+        speed = start[layout.heave + 1] - springs.positions * spin
+        force = -springs.stiffness * depth - springs.damping * speed
+        branches = np.where(depth >= 0.0, LIFTED, np.where(force > 0.0, LOADED, RECEDING))
+        known, kept, of_elements = memories(self.elements), list[float](), list[int]()
+        for place, each in enumerate(self.elements):
+            stretch = self._stretch(each)
+            elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
+            memory = each.memory_at(elongation)
+            of_elements.append(int(each.branch_at(np.array([elongation]), np.array([memory]))[0]))
+            kept += [memory] if place in known else []
+        key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
+        start[layout.memory :] = (*kept, *code_of(key[1:]))
+        return key, start
+
+    @property
+    def _weight(self) -> float:
+        """Weight with the initial tensions of the elements, N."""
+        return self.properties.m_tot * GRAVITY + sum(each.pull(each.branches[0]).force for each in self.elements)
+
+    def is_free(self, key: Key) -> bool:  # noqa: ARG002
+        """Always True: the base rotates in every phase."""
+        return True
+
+    def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:  # noqa: ARG002
+        """Return the branches at the states of a history, shape (n, K)."""
+        first = HEADER + self.layout.memory + len(memories(self.elements))
+        codes = states[:, first : HEADER + self.layout.size]
+        return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size)))
+
+    def spring_forces(self, key: Key) -> Array:
+        """Return the force of each spring on the base in a phase in N, upwards: rows, shape (n, C)."""
+        rows = np.zeros((self.springs.n, self.layout.columns))
+        for j, branch in enumerate(key[1 : self.springs.n + 1]):
+            if branch == LOADED:
+                rows[j] = self._push(j)
+        return rows
+
+    def _push(self, j: int) -> Array:
+        """Return -k z_j - c z_j' of one spring as a row, shape (C,)."""
+        place, speed = self._depth(j)
+        return -self.springs.stiffness[j] * place - self.springs.damping[j] * speed
+
+    def _depth(self, j: int) -> tuple[Array, Array]:
+        """Return z_j = z - x_j θ above one spring, and its rate, as rows, shape (C,)."""
+        return self._risen(float(self.springs.positions[j]))
+
+    def _risen(self, position: float) -> tuple[Array, Array]:
+        layout = self.layout
+        place, speed = np.zeros((2, layout.columns))
+        place[layout.heave], place[layout.rotation] = 1.0, -position
+        speed[layout.heave + 1], speed[layout.spin] = 1.0, -position
+        return place, speed
+
+    def _stretch(self, element: Element) -> Array:
+        """Return the elongation of an element as a row, shape (C,): zero at rest."""
+        place, _ = self._risen(element.position)
+        place[-1] = element.position * self.rest[0] - self.rest[1]
+        return place
+
+    def tension(self, place: int, branch: int) -> Array:
+        """Return the tension of an element on a branch in N as a row, shape (C,)."""
+        each, known = self.elements[place], memories(self.elements)
+        pull = each.pull(branch)
+        row = pull.stiffness * self._stretch(each) + pull.damping * self._risen(each.position)[1]
+        row[-1] += pull.force
+        if place in known:
+            row[self.layout.memory + known[place]] += pull.recall
+        return row
+
+    def _new_arrow(self, key: Key) -> Arrow:
+        slips = [] if self.friction is None else [key[self.springs.n + 1] != STICK]
+        return arrow_of(self, self._border(key), np.array([True, *slips, True]))
+
+    def _border(self, key: Key) -> Border:
+        p, layout = self.properties, self.layout
+        b = layout.freedoms
+        border = blank_border(b, layout.remembered)
+        z = b - 1
+        border.inertia[0, 0], border.inertia[z, z] = self.inertia, p.m_tot
+        border.stiffness[0, 0] = -p.l0r * self.gravity
+        border.constant[z] = -p.m_tot * self.gravity
+        border.ground[0] = -p.l0r
+        if self.friction is not None:
+            border.inertia[0, 1] = border.inertia[1, 0] = p.l0r
+            border.inertia[1, 1], border.ground[1] = p.m_tot, -p.m_tot
+        for x, row in zip(self.springs.positions, self.spring_forces(key), strict=True):
+            self._add_force(border, row, (-x, z))
+        for place, branch in enumerate(self.element_key(key)[1:]):
+            self._add_force(border, -self.tension(place, branch), (-self.elements[place].position, z))
+        if self.friction is not None:
+            slip = key[self.springs.n + 1]
+            self._add_to(border, 1, -slip * self._grip(key))
+        return border
+
+    def _add_force(self, border: Border, row: Array, levers: tuple[float, int]) -> None:
+        """Add an upward force on the base, a row, at the lever arm of the rotation."""
+        arm, z = levers
+        self._add_to(border, 0, arm * row)
+        self._add_to(border, z, row)
+
+    def _add_to(self, border: Border, freedom: int, force: Array) -> None:
+        """Add a force on one degree of freedom of the base, a row over its state and 1."""
+        layout = self.layout
+        places = layout.rotation + 2 * np.arange(layout.freedoms)
+        border.stiffness[freedom] -= force[places]
+        border.damping[freedom] -= force[places + 1]
+        border.constant[freedom] += force[-1]
+        border.recall[freedom] += force[layout.memory : layout.memory + layout.remembered]
+
+    def _grip(self, key: Key) -> Array:
+        """Return Σ μ_j N_j as a row, shape (C,)."""
+        return self.friction @ self.spring_forces(key) if self.friction is not None else np.zeros(self.layout.columns)
+
+    def _new_accelerations(self, key: Key) -> Array:
+        return accelerations_of(self, self.arrow(key))
+
+    def phase(self, key: Key) -> Phase:
+        """Return one phase: the equations of motion on these branches, and the conditions that end it."""
+        count = self.layout.remembered
+        first = len(memories(self.elements))
+        row = np.zeros(self.layout.columns)
+        row[self.layout.rotation] = 1.0
+        tips = Exit(OVERTURNS, key)
+        return Phase(
+            key=key,
+            side=CLOSED,
+            arrow=self.arrow(key),
+            guard=Guard(row, -QUARTER_TURN, QUARTER_TURN, tips, tips, np.zeros((2, count))),
+            pulls=np.zeros((SUMS, 1 + count)),
+            changes=(),
+            turned=key,
+            beside=(key, key, key),
+            free=True,
+            fences=(*self._spring_fences(key), *self._slip_fences(key), *self._element_fences(key)),
+            marks=tuple((first + k, code) for k, code in enumerate(code_of(key[1:]))),
+        )
+
+    def _spring_fences(self, key: Key) -> list[Fence]:
+        found, last = list[Fence](), self.springs.n - 1
+        for j, branch in enumerate(key[1 : self.springs.n + 1]):
+            depth, push, edge = self._depth(j)[0], self._push(j), j in (0, last)
+            damped = self.springs.damping[j] > 0.0
+            if branch == LOADED:
+                following = RECEDING if damped else LIFTED
+                event = OPENS if edge and not damped else CHANGES
+                found.append(Fence(push, event, _with(key, 1 + j, following)))
+            elif branch == LIFTED:
+                found.append(Fence(depth, CLOSES if edge else CHANGES, _with(key, 1 + j, LOADED)))
+            else:
+                found.append(Fence(-push, CHANGES, _with(key, 1 + j, LOADED)))
+                found.append(Fence(-depth, OPENS if edge else CHANGES, _with(key, 1 + j, LIFTED)))
+        return found
+
+    def _slip_fences(self, key: Key) -> list[Fence]:
+        if self.friction is None:
+            return []
+        place = self.springs.n + 1
+        if key[place] == STICK:
+            held, grip = horizontal_reaction(self, self.accelerations(key)), self._grip(key)
+            # The ground pushes to the right on a base that would slide to the left.
+            return [Fence(grip - held, SLIPS, _with(key, place, -1)), Fence(grip + held, SLIPS, _with(key, place, 1))]
+        going = np.zeros(self.layout.columns)
+        going[self.layout.slip + 1] = key[place]
+        return [Fence(going, STICKS, _with(key, place, STICK))]
+
+    def _element_fences(self, key: Key) -> list[Fence]:
+        found, known = list[Fence](), memories(self.elements)
+        for k, each in enumerate(self.elements):
+            place = self.springs.n + 2 + k
+            branch, stretch = key[place], self._stretch(each)
+            offset, value = each.turning(branch), None
+            if offset is not None:
+                value = stretch.copy()
+                value[-1] -= offset
+            memory = known[k] if value is not None else -1
+            for stop in each.stops(branch):
+                row = -stretch
+                row[-1] += stop.place
+                row[self.layout.memory + known[k]] += stop.recall
+                way = 1.0 if stop.upper else -1.0
+                found.append(Fence(way * row, CHANGES, _with(key, place, stop.branch), memory, value))
+            if each.direction(branch) != 0:
+                row = each.direction(branch) * self._risen(each.position)[1]
+                found.append(Fence(row, CHANGES, _with(key, place, each.stopped(branch)), memory, value))
+        return found
+
+
+def _with(key: Key, place: int, branch: int) -> Key:
+    return (*key[:place], branch, *key[place + 1 :])
+
+
+def heave_at(springs: Springs, rotation: float, weight: float) -> float:
+    """Return the heave in m at which the springs carry a weight in N at a rotation in rad."""
+    ends = springs.positions * rotation  # a spring is compressed while the heave is below its end
+    order = np.argsort(-ends)
+    stiffness = np.cumsum(springs.stiffness[order])
+    heaves = (np.cumsum(springs.stiffness[order] * ends[order]) - weight) / stiffness
+    fits = np.append(heaves[:-1] >= ends[order][1:], True)
+    return float(heaves[np.argmax(fits)])
