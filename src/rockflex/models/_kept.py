@@ -43,7 +43,9 @@ def accelerations(model: RockingModel, states: Array) -> Array:
     heavier = under_more_gravity(model)
     found = np.zeros((states.shape[0], n + layout.freedoms))
     for chosen, key, vector in by_phase(model, states, side):
-        found[chosen] = at_gravity(states[chosen], vector, model.accelerations(key), lambda: heavier().accelerations(key))
+        found[chosen] = at_gravity(
+            states[chosen], vector, model.accelerations(key), lambda: heavier().accelerations(key)
+        )
     return found
 
 

@@ -14,7 +14,7 @@ from rockflex.models._elements import CLOSED, arm_of, border_of, memories
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
-from rockflex.models._phase import CHANGES, SLIPS, STICKS, Arrow, Border, Exit, Fence, Guard, Key, Phase
+from rockflex.models._phase import CHANGES, SLIPS, STICKS, Arrow, Border, Exit, Fence, Key, Phase
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
 LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against

@@ -77,9 +77,7 @@ class SpringModel(LinearModel):
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
         remembered = len(memories(self.elements)) + codes_for(self._key_size)
-        return layout_of(
-            self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True
-        )
+        return layout_of(self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True)
 
     @property
     def turning(self) -> bool:

@@ -197,9 +197,7 @@ class Engine:
         with preparing(self.model):
             return self._phases.place(key)
 
-    def _course(
-        self, acceleration: Array, vertical: Array | None, dt: float, free_vibration: float | None
-    ) -> Course:
+    def _course(self, acceleration: Array, vertical: Array | None, dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
         return Course(
             # The compiled type is that of a writable array.

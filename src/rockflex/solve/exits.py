@@ -16,9 +16,7 @@ INSIDE, PASSING, LIFTED, TOUCHED = 0, 1, 2, 3
 
 
 @kernel
-def phase_exit(
-    system: System, at: Progress, span: Span, motion: Motion, polys: Array
-) -> tuple[float, int, float]:
+def phase_exit(system: System, at: Progress, span: Span, motion: Motion, polys: Array) -> tuple[float, int, float]:
     """Return where the guard first passes a limit, which limit, and by how much it then exceeds it.
 
     The place is inf if no limit is passed. It is `BEFORE` if the moment on a base at rest exceeds a limit from the
@@ -150,10 +148,11 @@ def fence_exit(
         if system.fence_kinds[at.phase, e, KIND] == STICKS:
             zeros = max(at.slip_onset - 1, 0)  # a slip that has just begun grows like t² or t³
         elif polys[row, 0] <= NOUGHT * reach:
-            size = NOUGHT * size_at(system, at.phase, row, span, motion)
-            if polys[row, 0] < -size:
+            size, slope = sizes_at(system, at.phase, row, span, motion)
+            if polys[row, 0] < -NOUGHT * (size + slope * system.dt):
                 return 0.0, e
-            zeros = 1 if polys[row, 0] <= size else 0
+            if polys[row, 0] <= NOUGHT * (size + slope * system.dt):
+                zeros = 2 if abs(polys[row, 1]) <= NOUGHT * slope * span.length else 1
         for k in range(polys.shape[1]):
             polys[work, k] = polys[row, k + zeros] if k + zeros < polys.shape[1] else 0.0
         if polys[work, 0] < 0.0 or (zeros > 0 and polys[work, 0] == 0.0 and polys[work, 1] < 0.0):
@@ -165,10 +164,14 @@ def fence_exit(
 
 
 @kernel
-def size_at(system: System, phase: int, row: int, span: Span, motion: Motion) -> float:
-    """Return the sum of the magnitudes of the terms of a row at the start of a stretch."""
-    rows, moving = system.plain_rows, system.plain_rows.shape[2] - 2
-    size = abs(rows[phase, row, moving] * span.ground) + abs(rows[phase, row, moving + 1])
+def sizes_at(system: System, phase: int, row: int, span: Span, motion: Motion) -> tuple[float, float]:
+    """Return the sum of the magnitudes of the terms of a row at the start of a stretch, and that of its known rates."""
+    rows, moving, n = system.plain_rows, system.plain_rows.shape[2] - 2, system.layout.modes
+    size, slope = abs(rows[phase, row, moving] * span.ground) + abs(rows[phase, row, moving + 1]), 0.0
     for i in range(moving):
         size += abs(rows[phase, row, i] * motion.state[i])
-    return size
+    for i in range(n):
+        slope += abs(rows[phase, row, i] * motion.state[n + i])
+    for j in range(motion.push.size):
+        slope += abs(rows[phase, row, 2 * (n + j)] * motion.state[2 * (n + j) + 1])
+    return size, slope

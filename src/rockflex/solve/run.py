@@ -83,7 +83,9 @@ def run(
             i = at.index
             time, until = (at.offset + i) * course.dt, (at.offset + i + 1) * course.dt
             rise, risen = rise_at(vertical, i), rise_at(vertical, i + 1)
-            sample = Span(time, until, piece[i], (piece[i + 1] - piece[i]) * rate, course.dt, rise, (risen - rise) * rate)
+            sample = Span(
+                time, until, piece[i], (piece[i + 1] - piece[i]) * rate, course.dt, rise, (risen - rise) * rate
+            )
             status = cross_sample(system, steps, impact, sample, piece[i + 1], at, log, motion)
             if status != CROSSED:
                 return status
@@ -119,7 +121,13 @@ def begin_piece(
             if system.phases[at.phase].free:
                 motion.state[system.layout.rotation] = motion.offset[GUARD]
             return True
-    elif steps is not None and not system.phases[at.phase].linear and at.offset > 0 and course.settle and still(system, steps.flow, at, steps.room):
+    elif (
+        steps is not None
+        and not system.phases[at.phase].linear
+        and at.offset > 0
+        and course.settle
+        and still(system, steps.flow, at, steps.room)
+    ):
         return True
     falls = at.offset == course.record.size - 1 and rise_at(course.vertical, at.offset) != 0.0
     if ground != at.last or falls:  # the start, or a jump of the acceleration at the end of the record

@@ -36,7 +36,15 @@ def step_through(
             if log.work[LEFT] < 0.0 or room_left(log) < 0:
                 return False
             longest = dt - at.begun
-            rest = Span(time + at.begun, until, piece[i] + slope * at.begun, slope, longest, rise + rise_slope * at.begun, rise_slope)
+            rest = Span(
+                time + at.begun,
+                until,
+                piece[i] + slope * at.begun,
+                slope,
+                longest,
+                rise + rise_slope * at.begun,
+                rise_slope,
+            )
             proposed = at.step
             step = take_step(flow, side, rest, stages)
             if step == FAILED:

@@ -133,9 +133,7 @@ def grown(system: System, larger: System) -> System:
     return larger
 
 
-def put_phase(
-    system: System, p: int, phase: Phase, basis: Basis | Drift | None, plain_rows: Array, twin: int
-) -> None:
+def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None, plain_rows: Array, twin: int) -> None:
     """Enter one phase at index `p`; `plain_rows` (F + E, C). A phase that is not linear has no basis.
 
     `twin` is the index of a phase that differs only in constant forces, or -1; the common tables are copied.
