@@ -1,14 +1,16 @@
 """N modes rocking on rigid ground on which the base slides (Coulomb), shaken horizontally and vertically.
 
-Freedoms: rotation θ, slip x of the base, and D_n. With s the side, B and I_θ about its pivot, and N = m_tot (g + a_v + s B θ'') and at least 0:
+Freedoms: rotation θ, slip x of the base, and D_n. With s the side, and B and I_θ of its pivot:
 
+    N = max(0, m_tot (g + a_v + s B θ''))
     D''_n + 2 ζ_n ω_n D'_n + ω_n² D_n + h*_n θ'' + x'' = -a
     I_θ θ'' + Σ m*_n h*_n D''_n + L x'' = L (g + a_v) θ - s m_tot (g + a_v) B - L a
     m_tot x'' + Σ m*_n D''_n + L θ'' = -m_tot a - sign(x') μ N
 
-A phase is (side, slip, pressed): side 1, -1 or 0 in contact; the sign of x', or 0 where the base sticks; and whether the
-ground pushes. Where more than one phase could follow an event, it is the one that none of its own limits ends at once.
-An impact keeps all horizontal velocities. Outputs: θ, top, base moment, base shear, x.
+A phase is (side, slip, pressed): side 1, -1 or 0 in contact; the sign of x', or 0 where the base sticks; and whether
+the ground pushes. Where more than one phase could follow an event, it is the one that none of its own limits ends at
+once. An impact keeps all horizontal velocities; rocking goes on at ``restitution`` θ' unless the next excursion, by
+2|θ'|/|θ''|, would be shorter than ``shortest``. Outputs: θ, top, base moment, base shear, x.
 """
 
 from dataclasses import dataclass, field
@@ -52,6 +54,8 @@ class SlidingTwin:
     half_width: float | tuple[float, float]
     friction: float | None = None
     gravity: float = GRAVITY
+    restitution: float = 0.0
+    shortest: float = 1e-4
     outputs: Vector = field(init=False)
     lost: list = field(init=False)  # energy of each impact
     n_powers: int = len(POWERS)
@@ -73,6 +77,15 @@ class SlidingTwin:
         M[TURN, d] = M[d, TURN] = self.mass * self.height
         M[SLIP, d] = M[d, SLIP] = self.mass
         M[d, d] = np.diag(self.mass)
+
+    @classmethod
+    def of(cls, p, friction: float | None, **more) -> "SlidingTwin":
+        """The twin of a structure with the properties p."""
+        modes = (p.omega, p.effective_mass, p.effective_height, p.top_ordinate, p.zeta)
+        arms = (p.half_width - p.eccentricity, p.half_width + p.eccentricity)
+        own = p.i_theta - p.m_tot * p.half_width**2
+        inertia = tuple(own + p.m_tot * arm**2 for arm in arms)
+        return cls(*modes, inertia, p.l0r, p.m_tot, arms, friction, **more)
 
     def _pairs(self) -> list[tuple[float, float]]:
         return [tuple(float(v) for v in np.broadcast_to(each, 2)) for each in (self.half_width, self.i_theta)]
@@ -177,31 +190,55 @@ class SlidingTwin:
         strain = 0.5 * self.mass @ (self.omega * p[MODES:]) ** 2
         return float(0.5 * y[q:] @ self.mass_matrix(side) @ y[q:] + weight + strain)
 
-    def after(self, key, name, y: Vector, holds):
-        side, slip, pressed = key
-        y = y.copy()
-        if name == "land":
-            before = self.stored(y, side)
-            y[self.q + MODES :] += self.height * y[self.q + TURN]
-            y[TURN] = y[self.q + TURN] = 0.0
-            side = 0
-            self.lost.append(before - self.stored(y, 0))
+    def after(self, key, name, y: Vector, ahead):
+        side, y = key[0], y.copy()
         if name == "stop":
             y[self.q + SLIP] = 0.0
-        sides = (side,) if side or y[self.q + TURN] else (0, LIFTS.get(name, 1), -LIFTS.get(name, 1))
+        if name == "land":
+            return self._landed(side, y, ahead)
+        sides = (side,) if side else (0, LIFTS.get(name, 1), -LIFTS.get(name, 1))
+        return self._following(sides, y, ahead), y
+
+    def _following(self, sides, y: Vector, ahead):
+        speed = y[self.q + SLIP]
         if self.friction is None:
             slips = ((0, True),)
-        elif y[self.q + SLIP]:
-            sign = 1 if y[self.q + SLIP] > 0.0 else -1
+        elif speed:
+            sign = 1 if speed > 0.0 else -1
             slips = ((sign, True), (sign, False))
         else:
             slips = ((0, True), (1, True), (-1, True), (1, False), (-1, False))
-        for each in sides:
+        for side in sides:
             for way in slips:
-                if holds((each, *way), y):
-                    return (each, *way), y
-        msg = f"nothing can follow {name} in {key}"
+                if ahead.holds((side, *way), y):
+                    return (side, *way)
+        msg = f"nothing can follow {y} on {sides}"
         raise RuntimeError(msg)
+
+    def _landed(self, side: int, y: Vector, ahead):
+        spin, before = y[self.q + TURN], self.stored(y, side)
+        y[TURN] = 0.0
+        on = y.copy()
+        on[self.q + TURN] = self.restitution * spin
+        on[self.q + MODES :] += self.height * (1.0 - self.restitution) * spin
+        key = None
+        if on[self.q + TURN]:
+            key = self._following((-side,), on, ahead)
+            pull = ahead.rates(key, on)[self.q + TURN]
+            if pull * spin < 0.0 and 2.0 * abs(on[self.q + TURN]) < self.shortest * abs(pull):
+                key = None
+        if key is None:
+            on[self.q + TURN] = 0.0
+            on[self.q + MODES :] = y[self.q + MODES :] + self.height * spin
+            key = self._following((0, 1, -1), on, ahead)
+        self.lost.append(before - self.stored(on, key[0]))
+        return key, on
+
+    def energies(self, track: Track) -> dict[str, float]:
+        """Energies in J of a run from rest, and the error of their balance."""
+        stored = self.stored(track.y, track.key[0])
+        out = dict(zip(POWERS, track.work, strict=True)) | {"impacts": sum(self.lost), "stored": stored}
+        return out | {"error": 2.0 * out["input"] - sum(out.values())}
 
     def run(self, record, dt, vertical=None, free=0.0, *, start=None, history=False) -> Track:
         key, y = ((0, 0, True), np.zeros(2 * self.q)) if start is None else start

@@ -72,6 +72,14 @@ class SpringTwin:
         M[SLIP, d] = M[d, SLIP] = self.mass
         M[d, d] = np.diag(self.mass)
 
+    @classmethod
+    def of(cls, p, positions, stiffness, damping, base_inertia: float, **more) -> "SpringTwin":
+        """The twin of a structure with the properties p."""
+        modes = (p.omega, p.effective_mass, p.effective_height, p.top_ordinate, p.zeta)
+        edges = (p.half_width - p.eccentricity, -p.half_width - p.eccentricity)
+        inertia = p.translational_inertia + base_inertia
+        return cls(*modes, inertia, p.l0r, p.m_tot, positions, stiffness, damping, edges, **more)
+
     def below(self, j: int) -> tuple[Vector, Vector]:
         """Rows over y of z_j and of the force -k z_j - c z_j'."""
         z, force = np.zeros(2 * self.q), np.zeros(2 * self.q)
@@ -99,17 +107,14 @@ class SpringTwin:
 
     def _phase(self, key) -> Phase:
         q, d = self.q, slice(MODES, self.q)
-        v = slice(q + MODES, 2 * q)
         total, moment, grip = self.pressed(key)
         force, by_vertical, load = np.zeros((q, 2 * q)), np.zeros((q, 2 * q)), np.zeros((q, 3))
         force[TURN] = -moment
         force[TURN, TURN] += self.l0r * self.gravity
         by_vertical[TURN, TURN] = self.l0r
         force[HEAVE] = total
-        force[d, d], force[d, v] = (
-            -np.diag(self.mass * self.omega**2),
-            -np.diag(2.0 * self.mass * self.zeta * self.omega),
-        )
+        force[d, d] = -np.diag(self.mass * self.omega**2)
+        force[d, q + MODES :] = -np.diag(2.0 * self.mass * self.zeta * self.omega)
         load[TURN, 1], load[HEAVE], load[SLIP, 1] = (
             -self.l0r,
             (-self.m_tot * self.gravity, 0.0, -self.m_tot),
@@ -195,7 +200,7 @@ class SpringTwin:
         strain = 0.5 * self.mass @ (self.omega * p[MODES:]) ** 2 + 0.5 * self.stiffness @ sunk**2
         return float(0.5 * y[q:] @ self.mass_matrix @ y[q:] + weight + strain)
 
-    def after(self, key, name, y: Vector, holds):
+    def after(self, key, name, y: Vector, ahead):
         springs, slip = list(key[0]), key[1]
         if isinstance(name, tuple):
             what, j = name
@@ -210,7 +215,7 @@ class SpringTwin:
         y = y.copy()
         y[self.q + SLIP] = 0.0
         for way in (0, 1, -1):
-            if holds((key[0], way), y):
+            if ahead.holds((key[0], way), y):
                 return (key[0], way), y
         return (key[0], -slip if name == "stop" else 0), y
 
@@ -232,6 +237,11 @@ class SpringTwin:
         y[TURN], y[HEAVE] = turn, heave
         springs = tuple(LOADED if each else LIFTED for each in carries)
         return (springs, None if self.friction is None else 0), y
+
+    def energies(self, track: Track, start: float) -> dict[str, float]:
+        """Energies in J of a run that began with `start` stored, and the error of their balance."""
+        out = dict(zip(POWERS, track.work, strict=True)) | {"stored": self.stored(track.y) - start}
+        return out | {"error": 2.0 * out["input"] - sum(out.values())}
 
     def run(self, record, dt, vertical=None, free=0.0, *, start=None, history=False) -> Track:
         key, y = self.standing() if start is None else start

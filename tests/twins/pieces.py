@@ -4,8 +4,8 @@ State ``y``, horizontal ground acceleration a and vertical one b, both linear in
 
     y' = (A + b A_v) y + F [1, a, b].
 
-A phase lasts while all its guards, rows over ``w = [y, y', 1, a, b]``, are positive. They are polynomials in time within
-a step of less than 1/|λ| of the fastest eigenvalue, so that their first root is found on the solution itself.
+A phase lasts while all its guards, rows over ``w = [y, y', 1, a, b]``, are positive. They are polynomials in time
+within a step of less than 1/|λ| of the fastest eigenvalue, so that their first root is found on the solution itself.
 """
 
 from dataclasses import dataclass, field
@@ -60,17 +60,31 @@ class System(Protocol):
 
     def phase(self, key) -> Phase: ...
 
-    def after(self, key, name, y: Vector, holds) -> tuple[object, Vector]:
-        """Phase and state after the guard `name` of the phase `key` has reached zero.
-
-        ``holds(key, y)`` says whether no guard of a phase becomes negative at once.
-        """
+    def after(self, key, name, y: Vector, ahead: "Ahead") -> tuple[object, Vector]:
+        """Phase and state after the guard `name` of the phase `key` has reached zero."""
         ...
+
+
+@dataclass(frozen=True)
+class Ahead:
+    """What would follow an instant in one phase or another."""
+
+    system: System
+    shaking: Vector
+
+    def rates(self, key, y: Vector) -> Vector:
+        return coefficients(self.system.phase(key), y, self.shaking)[1]
+
+    def holds(self, key, y: Vector) -> bool:
+        """Whether no guard of the phase is negative just after the instant."""
+        phase = self.system.phase(key)
+        w = observed(coefficients(phase, y, self.shaking), self.shaking)
+        return bool((phase.guards @ (EARLY ** np.arange(TERMS) @ w) >= 0.0).all())
 
 
 @dataclass
 class Track:
-    """What happened in a run: largest and smallest outputs, events (time, key before, name, key after), work of the powers."""
+    """What happened in a run; an event is (time, key before, name, key after)."""
 
     highs: Vector  # of the outputs, then of their negatives
     times: Vector
@@ -231,14 +245,8 @@ class Run:
             self.stopped, self.track.time = True, time
             return
 
-        def holds(key, y: Vector) -> bool:
-            phase = self.system.phase(key)
-            w = observed(coefficients(phase, y, now), now)
-            later = EARLY ** np.arange(TERMS) @ w
-            return bool((phase.guards @ later >= 0.0).all())
-
         before = self.key
-        self.key, self.y = self.system.after(before, name, self.y, holds)
+        self.key, self.y = self.system.after(before, name, self.y, Ahead(self.system, now))
         self.track.events.append((time, before, name, self.key))
         self.fresh = True
 
