@@ -120,23 +120,25 @@ class Bounce:
     deepest: float
 
 
-def bounce(speed: float, frequency: float, damping_ratio: float, gravity: float = GRAVITY) -> Bounce:
-    """A mass that meets an unloaded spring-dashpot at `speed`, until its force -k z - c z' vanishes; ζ < 1.
+def bounce(
+    speed: float, frequency: float, damping_ratio: float, gravity: float = GRAVITY, pressed: float = 0.0
+) -> Bounce:
+    """A mass that meets a spring-dashpot downwards at `speed`, until its force -k z - c z' vanishes; ζ < 1.
 
-    Raises ValueError if the mass does not leave again.
+    The spring is already `pressed` by that length, or still unloaded. Raises ValueError if the mass does not leave.
     """
     w, z = frequency, damping_ratio
     if not 0.0 <= z < 1.0:
         msg = "the damping ratio must lie in [0, 1)"
         raise ValueError(msg)
     wd, rest = w * np.sqrt(1.0 - z**2), gravity / w**2
+    c1 = rest - pressed
+    c2 = (z * w * c1 - speed) / wd
 
-    def place(t: float) -> float:  # heave, with rest + c1 = 0
-        c1, c2 = rest, (z * w * rest - speed) / wd
+    def place(t: float) -> float:  # heave
         return -rest + np.exp(-z * w * t) * (c1 * np.cos(wd * t) + c2 * np.sin(wd * t))
 
     def rate(t: float) -> float:
-        c1, c2 = rest, (z * w * rest - speed) / wd
         swing = (wd * c2 - z * w * c1) * np.cos(wd * t) - (wd * c1 + z * w * c2) * np.sin(wd * t)
         return np.exp(-z * w * t) * swing
 
@@ -150,7 +152,7 @@ def bounce(speed: float, frequency: float, damping_ratio: float, gravity: float 
         raise ValueError(msg)
     i = int(np.argmax(pushes < 0.0))
     end = brentq(force, grid[i - 1] if i else 0.0, grid[i], xtol=1e-16, rtol=1e-15)
-    low = brentq(rate, 0.0, end, xtol=1e-16, rtol=1e-15)
+    low = brentq(rate, 0.0, end, xtol=1e-16, rtol=1e-15) if speed > 0.0 else 0.0
     return Bounce(float(end), float(-place(end)), float(rate(end)), float(-place(low)))
 
 

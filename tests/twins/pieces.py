@@ -108,6 +108,14 @@ def polynomial(c, t: float) -> float:
     return total
 
 
+def root(c: Vector, low: float, high: float) -> float:
+    """Where the polynomial changes its sign; by rounding it may be at an end."""
+    ends = polynomial(c, low), polynomial(c, high)
+    if ends[0] * ends[1] >= 0.0:
+        return low if abs(ends[0]) < abs(ends[1]) else high
+    return float(brentq(lambda t: polynomial(c, t), low, high, **ROOT))
+
+
 def coefficients(phase: Phase, y: Vector, shaking: Vector) -> Vector:
     """Power series of y in time, shape (TERMS + 1, n), for ``shaking = [a, a', b, b']``."""
     a, da, b, db = shaking
@@ -148,15 +156,15 @@ def first_root(values: Vector, slopes: Vector, c: Vector, start: float) -> float
         if values[i + 1] < 0.0:
             if polynomial(c, low) <= 0.0:
                 return low
-            return float(brentq(lambda t: polynomial(c, t), low, high, **ROOT))
+            return root(c, low, high)
         if slopes[i] < 0.0 < slopes[i + 1] and min(values[i], values[i + 1]) < step * max(-slopes[i], slopes[i + 1]):
             if polynomial(rate, low) >= 0.0:
                 continue
-            dip = float(brentq(lambda t: polynomial(rate, t), low, high, **ROOT))
+            dip = root(rate, low, high)
             if polynomial(c, dip) < 0.0:
                 if polynomial(c, low) <= 0.0:
                     return low
-                return float(brentq(lambda t: polynomial(c, t), low, dip, **ROOT))
+                return root(c, low, dip)
     return None
 
 
@@ -263,7 +271,7 @@ class Run:
             track.highs[q], track.times[q] = values[best[q], q], time + FULL[best[q]] * found * h
         reach = np.maximum(values[1:], values[:-1]) + FULL[1] * np.maximum(abs(slopes[1:]), abs(slopes[:-1]))
         for i, q in np.argwhere((slopes[:-1] > 0.0) & (slopes[1:] < 0.0) & (reach > track.highs)):
-            top = float(brentq(lambda t, r=rate[:, q]: polynomial(r, t), FULL[i], FULL[i + 1], **ROOT))
+            top = root(rate[:, q], FULL[i], FULL[i + 1])
             value = polynomial(o[:, q], top)
             if value > track.highs[q]:
                 track.highs[q], track.times[q] = value, time + top * found * h

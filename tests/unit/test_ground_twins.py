@@ -17,8 +17,11 @@ NONE = np.zeros(0)
 FRAME = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)
 
 
-def plain_springs(twin, a, a_v, end):
-    """State at `end` by an integration that knows no phases: the forces of the springs as they are stated."""
+def plain_springs(twin, a, a_v, end, creep=None):
+    """State at `end` by an integration that knows no phases: the forces of the springs as they are stated.
+
+    Friction is rounded off within the speed `creep`.
+    """
     q = twin.q
 
     def rate(t, y):
@@ -30,7 +33,11 @@ def plain_springs(twin, a, a_v, end):
         force[TURN] = twin.l0r * (weight * p[TURN] - a(t)) - twin.positions @ push
         force[HEAVE] = push.sum() - twin.m_tot * weight
         force[3:] = -twin.mass * (twin.omega**2 * p[3:] + 2.0 * twin.zeta * twin.omega * v[3:] + a(t))
-        free = np.arange(q) != SLIP
+        free = np.full(q, True)
+        if creep is None:
+            free[SLIP] = False
+        else:
+            force[SLIP] = -twin.m_tot * a(t) - twin.friction @ push * np.clip(v[SLIP] / creep, -1.0, 1.0)
         accelerations = np.zeros(q)
         accelerations[free] = np.linalg.solve(twin.mass_matrix[np.ix_(free, free)], force[free])
         return np.concatenate((v, accelerations))
@@ -48,6 +55,18 @@ def test_springs_against_an_integration_without_phases():
     assert {sum(each == LOADED for each in key[0]) for _, key, *_ in run.events} == {0, 1, 2, 3}
     plain = plain_springs(twin, lambda s: np.interp(s, t, one), lambda s: np.interp(s, t, two), t[-1])
     np.testing.assert_allclose(run.y, plain, atol=2e-6 * abs(plain).max())
+
+
+def test_springs_that_slide_against_an_integration_without_phases():
+    p, dt = FRAME.rocking(1), 0.01
+    twin = SpringTwin.of(p, (-1.1, 1.1), 3e8, 2e6, 6e4, friction=(0.15, 0.25))
+    t = dt * np.arange(151)
+    one, two = 7.0 * np.sin(7.0 * t), 12.0 * np.cos(9.0 * t)
+    run = twin.run(one, dt, two)
+    assert {key[1] for _, key, *_ in run.events} == {-1, 0, 1}
+    assert 0 in {sum(each == LOADED for each in key[0]) for _, key, *_ in run.events}
+    plain = plain_springs(twin, lambda s: np.interp(s, t, one), lambda s: np.interp(s, t, two), t[-1], 1e-5)
+    np.testing.assert_allclose(run.y, plain, atol=1e-4 * abs(plain).max())
 
 
 @pytest.mark.parametrize("gravity", [9.81, 12.5])
