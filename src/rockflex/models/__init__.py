@@ -61,9 +61,11 @@ from rockflex.models._phase import (
 )
 from rockflex.models._pulls import SUMS, pulls_of
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
-from rockflex.models._reactions import Reactions, printed_reactions, reactions
+from rockflex.models._reactions import Reactions, printed_reactions, reactions, spring_forces
 from rockflex.models._slider import Slider
-from rockflex.models._stored import floor_accelerations, stored_energies
+from rockflex.models._sliding import SlidingModel
+from rockflex.models._springs import SpringModel
+from rockflex.models._stored import floor_accelerations, raised_weight_rate, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 
 __all__ = [
@@ -120,7 +122,9 @@ __all__ = [
     "RockingModel",
     "SidedRestitution",
     "Slider",
+    "SlidingModel",
     "Spring",
+    "SpringModel",
     "StateLayout",
     "VVELComplete",
     "VVELSimplified",
@@ -154,10 +158,12 @@ __all__ = [
     "pulls_at",
     "pulls_of",
     "quantities",
+    "raised_weight_rate",
     "rates_of",
     "reactions",
     "rotation_by_side",
     "rows_of",
+    "spring_forces",
     "stick",
     "stiffness_of_fuses",
     "stored_energies",

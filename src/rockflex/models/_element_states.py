@@ -10,6 +10,7 @@ from rockflex.models._kept import acting_side, by_phase
 from rockflex.models._label import RockingModel
 from rockflex.models._quantities import tensions
 from rockflex.models._slider import Slider
+from rockflex.models._springs import SpringModel
 
 
 def arms(model: RockingModel, side: Array) -> Array:
@@ -21,8 +22,15 @@ def arms(model: RockingModel, side: Array) -> Array:
 
 
 def elongations(model: RockingModel, states: Array) -> Array:
-    """Return δ = r |θ|, in complete models 2 r sin(|θ|/2), of every element at the states of a history, (n, E) in m."""
+    """Return δ of every element at the states of a history in m, (n, E): r |θ|, in complete models 2 r sin(|θ|/2).
+
+    On springs it is how far the base has risen there since it was at rest.
+    """
     rotation = model.layout.of(states, model.layout.rotation)
+    if isinstance(model, SpringModel):
+        heave = model.layout.of(states, model.layout.heave)
+        moved = [(heave - model.rest[1]) - each.position * (rotation - model.rest[0]) for each in model.elements]
+        return np.stack(moved, axis=1) if moved else np.zeros((rotation.size, 0))
     return arms(model, rotation) * model.stretch_per_arm(np.abs(rotation))[:, None]
 
 
@@ -58,7 +66,7 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
         return found
     for chosen, key, vector in by_phase(model, states, acting_side(states)):
         memory = layout.memory
-        for place, (each, branch) in enumerate(zip(model.elements, key[1:], strict=True)):
+        for place, (each, branch) in enumerate(zip(model.elements, model.element_key(key)[1:], strict=True)):
             if isinstance(each, Bar):
                 offset = each.turning(branch)
                 kept = np.nan if branch == BROKEN else vector[:, memory]

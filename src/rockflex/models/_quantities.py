@@ -21,7 +21,7 @@ Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by 
 OF_MODES = ("displacement", "restoring", "acceleration")
 OF_BASE = ("rotation", "right", "turn", "ground")
 OF_SWING = ("swing", "right_swing")
-OF_SHIFT = ("slip", "heave")
+OF_SHIFT = ("slip", "heave", "heaving")
 ROTATION, RIGHT_ROTATION, TURN, GROUND = -4, -3, -2, -1  # columns of `Quantities.shares`
 
 
@@ -37,8 +37,9 @@ class Quantities:
         (`right`), of θ'' (`turn`) and of the acceleration of the base (`ground`).
     swings : ndarray, shape (F, 2)
         Weights of θ' (`swing`), and of θ' while the base rotates about its right pivot (`right_swing`).
-    shifts : ndarray, shape (F, 2)
-        Weights of the `slip` and the `heave` of the base, in models that have them.
+    shifts : ndarray, shape (F, 3)
+        Weights of the `slip` and the `heave` of the base and of the rate of the heave (`heaving`), in models that have
+        them.
     kinds : ndarray, shape (F,)
         Kind of the quantity for large rotations; see `rockflex.models.observe`.
     """
@@ -121,9 +122,11 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
         for column in (ROTATION, RIGHT_ROTATION, GROUND):
             shares[bends, column] = 0.0
     rows = shares @ _moving(model, key, large=large)
-    if key[0] != CLOSED and quantities.swings.any():
+    if model.is_free(key) and quantities.swings.any():
         rows[:, model.layout.spin] += quantities.swings @ (1.0, float(key[0] == RIGHT))
-    for place, weights in zip((model.layout.slip, model.layout.heave), quantities.shifts.T, strict=True):
+    slip, heave = model.layout.slip, model.layout.heave
+    places = slip, heave, heave + 1 if heave >= 0 else -1
+    for place, weights in zip(places, quantities.shifts.T, strict=True):
         if place >= 0:
             rows[:, place] += weights
     return rows

@@ -10,11 +10,12 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
-from rockflex.models._kept import acting_side, pulls_at, rates_of
+from rockflex.models._kept import acting_side, by_phase, pulls_at, rates_of
 from rockflex.models._label import RockingModel
-from rockflex.models._layout import GROUND, HEADER
+from rockflex.models._layout import GROUND, HEADER, RISE, SIDE
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
+from rockflex.models._springs import SpringModel
 
 
 class Reactions(NamedTuple):
@@ -33,14 +34,27 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """
     if model.complete:
         return _of_large_rotations(model, states, rates)
-    p, side = model.properties, acting_side(states)
+    p, side, layout = model.properties, acting_side(states), model.layout
     n = p.n_modes
     turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
-    vertical = p.m_tot * GRAVITY + element_forces(model, states).sum(axis=1)
+    horizontal = p.m_tot * states[:, GROUND] + p.l0r * turn + push
+    if layout.slip >= 0:
+        horizontal += p.m_tot * rates[:, n + 1]
+    if isinstance(model, SpringModel):
+        return Reactions(horizontal, spring_forces(model, states).sum(axis=1))
+    vertical = p.m_tot * (model.gravity + states[:, RISE]) + element_forces(model, states).sum(axis=1)
     for each in (1, -1):
         on = side == each
         vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]
-    return Reactions(p.m_tot * states[:, GROUND] + p.l0r * turn + push, vertical)
+    return Reactions(horizontal, vertical)
+
+
+def spring_forces(model: SpringModel, states: Array) -> Array:
+    """Return the force of every spring on the base at the states of a history in N, upwards, shape (n, n_springs)."""
+    found = np.zeros((states.shape[0], model.springs.n))
+    for chosen, key, vector in by_phase(model, states, states[:, SIDE]):
+        found[chosen] = vector @ model.spring_forces(key).T
+    return found
 
 
 def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:

@@ -3,23 +3,27 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
 from rockflex.modal import FloorModes
 from rockflex.models._kept import accelerations, acting_side
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, SIDE
+from rockflex.models._springs import SpringModel
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
     """Return kinetic, strain and gravity energy at the states of a history in J, each of shape (n,).
 
-    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving ground;
-    for complete models those of Eqs. 6-8.
+    Simplified models on rigid ground:
+    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving ground,
+    with a slip x plus ½ m_tot x'² + x' (L_0^r θ' + Σ m* D'). On springs the inertia is that about the axis of the masses,
+    and m_tot g z takes the place of s m_tot g B θ. For complete models those of Eqs. 6-8.
     """
     p, layout = model.properties, model.layout
     side, d, v = states[:, SIDE], layout.displacements(states), layout.velocities(states)
     rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
-    inertia, arm, weight = (_by_side(side, *values) for values in _pivot_values(model))
+    inertia, arm = (_by_side(side, *values) for values in _pivot_values(model))
+    if isinstance(model, SpringModel):
+        inertia = model.inertia
     kinetic = 0.5 * inertia * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
     kinetic += 0.5 * v**2 @ p.effective_mass
     share = model.bouc_wen.post_yield_ratio if model.bouc_wen else 1.0
@@ -29,8 +33,35 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
         displaced = d @ p.effective_mass
         kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
         raised = (p.m_tot * offset - displaced) * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
-        return kinetic, strain, GRAVITY * raised
-    return kinetic, strain, side * weight * rotation - 0.5 * p.l0r * GRAVITY * rotation**2
+        return kinetic, strain, model.gravity * raised
+    if layout.heave >= 0:
+        kinetic += 0.5 * p.m_tot * layout.of(states, layout.heave + 1) ** 2
+    if layout.slip >= 0:
+        slide = layout.of(states, layout.slip + 1)
+        kinetic += slide * (0.5 * p.m_tot * slide + p.l0r * spin + v @ p.effective_mass)
+    return kinetic, strain, model.gravity * raised_weight(model, states)
+
+
+def raised_weight_rate(model: RockingModel, states: Array) -> Array:
+    """Return the rate of `raised_weight` in kg m/s, shape (n,)."""
+    p, layout = model.properties, model.layout
+    rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
+    if isinstance(model, SpringModel):
+        return p.m_tot * layout.of(states, layout.heave + 1) - p.l0r * rotation * spin
+    side = states[:, SIDE]
+    arm = _by_side(side, *(p.pivot(each).arm for each in (1, -1)))
+    return side * p.m_tot * arm * spin - p.l0r * rotation * spin
+
+
+def raised_weight(model: RockingModel, states: Array) -> Array:
+    """Return the gravity energy per unit of gravity at the states of a history in kg m, for small rotations."""
+    p, layout = model.properties, model.layout
+    rotation = layout.of(states, layout.rotation)
+    if isinstance(model, SpringModel):
+        return p.m_tot * layout.of(states, layout.heave) - 0.5 * p.l0r * rotation**2
+    side = states[:, SIDE]
+    arm = _by_side(side, *(p.pivot(each).arm for each in (1, -1)))
+    return side * p.m_tot * arm * rotation - 0.5 * p.l0r * rotation**2
 
 
 def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) -> Array:
@@ -39,9 +70,8 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
     a + h θ'' + Σ Γ φ D''; in the complete models the second derivative of the horizontal coordinate of Eq. 3.
     """
     layout = model.layout
-    rates = accelerations(model, states)
-    ground = states[:, GROUND, None]
-    n = layout.modes
+    rates, n = accelerations(model, states), layout.modes
+    ground = states[:, GROUND, None] + (rates[:, n + 1, None] if layout.slip >= 0 else 0.0)
     bend = rates[:, :n] @ floors.displacement.T  # u''
     angular = rates[:, n : n + 1]
     if not model.complete:
@@ -59,7 +89,7 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
 
 def _pivot_values(model: RockingModel) -> list[tuple[float, float]]:
     right, left = (model.properties.pivot(side) for side in (1, -1))
-    return [(right.i_theta, left.i_theta), (right.arm, left.arm), (right.weight_moment, left.weight_moment)]
+    return [(right.i_theta, left.i_theta), (right.arm, left.arm)]
 
 
 def _by_side(side: Array, right: float, left: float) -> Array:

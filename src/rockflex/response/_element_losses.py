@@ -4,29 +4,27 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.models import (
-    SIDE,
     Bar,
     Dashpot,
     RockingModel,
     Slider,
-    arms,
     element_energies,
     elongations,
     plastic_stretches,
 )
 
 
-def element_losses(model: RockingModel, states: Array, swing: Array) -> Array:
+def element_losses(model: RockingModel, states: Array, sweeps: Array) -> Array:
     """Return the energy that each element dissipates between adjacent states, in J, shape (n_states - 1, E).
 
     A bar loses (1 - α) F_y for every metre that it yields, and whatever it stores when it breaks; a viscous damper
-    loses c ∫ δ'² dt, with `swing` the integral of (δ'/r)², shape (n_states - 1,); a friction damper loses F_0 for every
+    loses c ∫ δ'² dt, with the integrals `sweeps`, shape (n_states - 1, E); a friction damper loses F_0 for every
     metre that it slides. Between adjacent states an element yields or slides in one direction only.
     """
     found = np.zeros((states.shape[0] - 1, len(model.elements)))
     if not model.elements:
         return found
-    reach, moved = arms(model, states[:-1, SIDE]), np.abs(np.diff(elongations(model, states), axis=0))
+    moved = np.abs(np.diff(elongations(model, states), axis=0))
     plastic, stored = plastic_stretches(model, states), element_energies(model, states)
     broken = np.isnan(plastic)
     breaks = broken[1:] & ~broken[:-1]
@@ -37,7 +35,7 @@ def element_losses(model: RockingModel, states: Array, swing: Array) -> Array:
             released = stored[:-1, place] - stored[1:, place]
             found[breaks[:, place], place] = released[breaks[:, place]]
         elif isinstance(each, Dashpot):
-            found[:, place] = each.coefficient * reach[:, place] ** 2 * swing
+            found[:, place] = each.coefficient * sweeps[:, place]
         elif isinstance(each, Slider):
             found[:, place] = each.force * moved[:, place]
     return found

@@ -3,31 +3,36 @@
 The simplified equations (Eqs. 15, 23 and 25) describe a system with the energy
 ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'² + ½ Σ m* ω² D² + s m_tot g B θ - ½ L_0^r g θ²
 relative to the moving ground, plus the energy of the elements between base and ground. The work of the ground is
--∫ a (L_0^r θ' + Σ m* D') dt. For the complete equations the energy is that of Eqs. 6-8.
+-∫ a (L_0^r θ' + Σ m* D') dt. For the complete equations the energy is that of Eqs. 6-8. A base that slides has further
+kinetic energy, and one on springs the energy of its heave; vertical acceleration of the ground does work on the weight
+that rises, -∫ a_v (m_tot z' - L_0^r θ θ') dt.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.models import GROUND, HEADER, SIDE, TIME, RockingModel, element_energies, stored_energies
+from rockflex.models import (
+    HEADER,
+    SIDE,
+    TIME,
+    RockingModel,
+    SpringModel,
+    element_energies,
+    stored_energies,
+)
 from rockflex.response._element_losses import element_losses
-from rockflex.solve import ClosedForm
-
-REACH = 8.0  # radians of the fastest mode covered by one Gauss rule, which then has at most 20 points
-MOST_PIECES = 10_000  # per interval: a minute of quadrature for a record of a thousand samples
+from rockflex.response._work import sweeps_of, work_between
 
 
 @dataclass(frozen=True, eq=False)
 class EnergyLedger(Value):
     """Energies in J at every state of a history, relative to the moving ground; read-only arrays of shape (n_states,).
 
-    ``kinetic + strain + gravity + element_strain + damped + yielded + elements.sum(axis=1) + lost - input`` is
-    constant; `residual` is its numerical deviation from the initial value.
+    ``kinetic + strain + gravity + element_strain + soil_strain + damped + yielded + elements.sum(axis=1) + friction +
+    soil.sum(axis=1) + lost - input`` is constant; `residual` is its numerical deviation from the initial value.
 
     Parameters
     ----------
@@ -45,6 +50,10 @@ class EnergyLedger(Value):
     elements
         Energy dissipated by each element up to each state, in the order of `RockingProperties.elements`, shape
         (n_states, E). An element that breaks dissipates what it had stored.
+    soil_strain
+        Elastic energy stored in the springs under the base: ½ k z_j² while z_j < 0, loaded or not.
+    friction, soil
+        Energy lost by sliding, and by each spring under the base, shape (n_states, n_springs), up to each state.
     lost
         Energy lost in impacts up to each state.
     impact_losses
@@ -74,17 +83,21 @@ class EnergyLedger(Value):
     input: Array
     lost: Array
     impact_losses: Array
+    soil_strain: Array
+    friction: Array
+    soil: Array
 
     @property
     def residual(self) -> Array:
         """Error of the energy balance at each state, in J."""
-        total = self.stored + self.damped + self.yielded + self.elements.sum(axis=1) + self.lost - self.input
+        spent = self.damped + self.yielded + self.elements.sum(axis=1) + self.lost
+        total = self.stored + spent + self.friction + self.soil.sum(axis=1) - self.input
         return total - total[0]
 
     @property
     def stored(self) -> Array:
-        """Stored energy: kinetic, strain, gravity and that of the elements, in J."""
-        return self.kinetic + self.strain + self.gravity + self.element_strain
+        """Stored energy: kinetic, strain, gravity and that of the elements and the springs under the base, in J."""
+        return self.kinetic + self.strain + self.gravity + self.element_strain + self.soil_strain
 
     @property
     def tendons(self) -> Array:
@@ -112,27 +125,48 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
     losses = kinetic[impact] - kinetic[impact + 1]
     lost = np.zeros(states.shape[0])
     np.add.at(lost, impact + 1, losses)
-    damped, work, swing = _work(model, states)
-    yielded = np.zeros(damped.size)
+    work = work_between(model, states)
+    damped, given, yielded = work.damped, work.ground, np.zeros(work.damped.size)
     if model.integrated:
         integrated = (states[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
         counted = np.diff(states[:, HEADER + model.layout.damped : HEADER + model.layout.yielded + 1], axis=0)
         # The counters are not advanced while contact is solved in closed form, and resume when it ends.
-        damped, work, yielded = np.where(integrated, counted.T, (damped, work, yielded))
+        damped, given, yielded = np.where(integrated, counted.T, (damped, given, yielded))
         if model.layout.swept >= 0:
-            swing = np.where(integrated, np.diff(model.layout.of(states, model.layout.swept)), swing)
+            swept = np.diff(model.layout.of(states, model.layout.swept))
+            work = work._replace(swing=np.where(integrated, swept, work.swing))
+    stored = soil_strain(model, states)
+    soil = work.soil - np.diff(stored, axis=0)
     return EnergyLedger(
         kinetic=kinetic,
         strain=strain,
         gravity=gravity,
         element_strain=element_energies(model, states).sum(axis=1),
-        damped=np.concatenate(([0.0], np.cumsum(damped))),
-        yielded=np.concatenate(([0.0], np.cumsum(yielded))),
-        elements=np.vstack((np.zeros(len(model.elements)), np.cumsum(element_losses(model, states, swing), axis=0))),
-        input=np.concatenate(([0.0], np.cumsum(work))),
+        damped=_summed(damped),
+        yielded=_summed(yielded),
+        elements=_summed(element_losses(model, states, sweeps_of(model, states, work))),
+        input=_summed(given),
         lost=np.cumsum(lost),
         impact_losses=losses,
+        soil_strain=stored.sum(axis=1),
+        friction=_summed(work.friction),
+        soil=_summed(soil),
     )
+
+
+def soil_strain(model: RockingModel, states: Array) -> Array:
+    """Return the energy stored in each spring under the base in J, shape (n_states, n_springs)."""
+    if not isinstance(model, SpringModel):
+        return np.zeros((states.shape[0], 0))
+    layout = model.layout
+    depth = layout.of(states, layout.heave)[:, None]
+    depth = depth - model.springs.positions * layout.of(states, layout.rotation)[:, None]
+    return 0.5 * model.springs.stiffness * np.minimum(depth, 0.0) ** 2
+
+
+def _summed(parts: Array) -> Array:
+    """Return the sums up to each state of what is known between adjacent states."""
+    return np.concatenate((np.zeros((1, *parts.shape[1:])), np.cumsum(parts, axis=0)))
 
 
 def is_impact(model: RockingModel, states: Array) -> Bools:
@@ -141,41 +175,3 @@ def is_impact(model: RockingModel, states: Array) -> Bools:
     time, side = states[:, TIME], states[:, SIDE]
     landed = (time[1:] == time[:-1]) & (side[:-1] != 0.0) & (rotation[:-1] == 0.0)
     return landed & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
-
-
-def _work(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
-    """Return the damped and the input energy in J, and ∫ (δ'/r)² dt in rad²/s, between adjacent states.
-
-    δ'/r is the rate of an element's elongation per unit distance from the pivot. All have the shape (n_states - 1,),
-    and are found by Gauss quadrature.
-    """
-    p, layout = model.properties, model.layout
-    n = p.n_modes
-    motion = ClosedForm(model)
-    intervals = motion.intervals(states)
-    span = np.diff(states[:, TIME])
-    places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
-    drag = 2.0 * p.zeta * p.omega * p.effective_mass
-    damped, work, swing = (np.zeros(span.size) for _ in range(3))
-    for place, weight in zip(places, weights, strict=True):
-        inside = intervals.at(float(place))
-        v, spin = inside[:, n : 2 * n], inside[:, layout.spin]
-        acceleration = states[:-1, GROUND] + place * np.diff(states[:, GROUND])
-        damped += weight * span * (v**2 @ drag)
-        work -= weight * span * acceleration * (p.l0r * spin + v @ p.effective_mass)
-        swing += weight * span * spin**2
-    return damped, work, swing
-
-
-def _rule(label: str, fastest: float, longest: float) -> tuple[Array, Array]:
-    """Return points in [0, 1] and weights of a Gauss rule for states with eigenvalues up to `fastest` (rad/s)."""
-    pieces = max(math.ceil(fastest * longest / REACH), 1)
-    if pieces > MOST_PIECES:
-        raise InputError(
-            f"The energy ledger of {label} needs {pieces} quadratures per step, above the limit of {MOST_PIECES}: the "
-            f"model vibrates or decays at up to {fastest:.3g} rad/s, and steps last up to {longest:.3g} s. Keep fewer "
-            "modes, damp them less, or refine the record."
-        )
-    places, weights = np.polynomial.legendre.leggauss(8 + math.ceil(1.5 * fastest * longest / pieces))
-    starts = np.arange(pieces)[:, None]
-    return ((starts + 0.5 + 0.5 * places) / pieces).ravel(), np.tile(0.5 * weights / pieces, pieces)

@@ -1,6 +1,7 @@
-"""The motion between the states of a history, in closed form for linear phases."""
+"""The motion between the states of a history: in closed form or, for other linear phases, by power series."""
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -8,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import GROUND, HEADER, SIDE, TIME, Key, LinearModel, RockingModel, phases_at
+from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, Key, LinearModel, RockingModel, phases_at
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
+from rockflex.solve.exact.developed import Developed, Shaking
 from rockflex.solve.exact.tables import propagate
 
 
@@ -35,6 +37,14 @@ class ClosedForm:
                 basis = basis_of(self._model, arrow, self._model.accelerations(key))
                 self._known[key] = with_constant(basis, arrow)
         return self._known[key]
+
+    def _developed(self, key: Key) -> Developed | None:
+        """Return the power series of a phase; None if it is not linear."""
+        arrow = self._model.phase(key).arrow
+        heavier = replace(self._model, gravity=self._model.gravity + 1.0).phase(key).arrow
+        if arrow is None or heavier is None:
+            return None
+        return Developed(self._model, arrow, heavier, self._model.accelerations(key))
 
     @cached_property
     def _known(self) -> dict[Key, Basis | None]:
@@ -62,17 +72,28 @@ class ClosedForm:
         layout, before = self._model.layout, states[:-1, HEADER:]
         memories = before[:, layout.memory : layout.memory + layout.remembered]
         start = np.column_stack((states[:-1, GROUND], slopes, np.ones(steps.size), memories))
+        rise = states[:-1, RISE]
+        rise_slopes = np.where(steps > 0.0, np.diff(states[:, RISE]) / safe, 0.0)
+        shaken = (rise != 0.0) | (rise_slopes != 0.0)
+        shaking = np.stack((states[:-1, GROUND], slopes, rise, rise_slopes))
         # The branch of an element over an interval is that in its middle, with the memory at its start.
         rotation = layout.of(states, layout.rotation)
         middle = 0.5 * (rotation[:-1] + rotation[1:])
-        parts = list[Part]()
-        for chosen, key in phases_at(self._model, states[:-1, SIDE], middle, states[:-1]):
-            basis = self._basis(key)
-            if basis is not None:
+        parts, series = list[Part](), list[SeriesPart]()
+        for found, key in phases_at(self._model, states[:-1, SIDE], middle, states[:-1]):
+            basis, chosen = self._basis(key), found
+            if basis is None or shaken[found].any():
+                chosen = found & ~shaken if basis is not None else np.zeros_like(found)
+                rest = found & ~chosen
+                developed = self._developed(key)
+                if developed is not None:
+                    rows = np.flatnonzero(rest)
+                    series.append(SeriesPart(rows, developed, before[rest], Shaking(*shaking[:, rest]), steps[rest]))
+            if basis is not None and chosen.any():
                 forced = basis.steady @ basis.inverse.T
                 w = before[chosen][:, : layout.core] @ basis.inverse.T - start[chosen] @ forced
                 parts.append(Part(np.flatnonzero(chosen), basis, forced, w, start[chosen], steps[chosen]))
-        return Intervals(before, parts)
+        return Intervals(before, parts, series)
 
 
 class Part(NamedTuple):
@@ -86,11 +107,22 @@ class Part(NamedTuple):
     steps: Array  # (n,): lengths, s
 
 
+class SeriesPart(NamedTuple):
+    """The intervals of one linear phase that has no closed form, or in which the ground moves vertically."""
+
+    rows: NDArray[np.intp]  # (n,)
+    motion: Developed
+    start: Array  # (n, S'): states at the start
+    shaking: Shaking
+    steps: Array  # (n,): lengths, s
+
+
 class Intervals(NamedTuple):
-    """The motion between adjacent nodes, each linear phase in its own coordinates."""
+    """The motion between adjacent nodes, each linear phase in its own coordinates or by power series."""
 
     before: Array  # (n - 1, S'): states at the start
     parts: list[Part]
+    series: list[SeriesPart]
 
     def at(self, fraction: float) -> Array:
         """Return the states at a fraction of every interval, shape (n - 1, S').
@@ -103,6 +135,8 @@ class Intervals(NamedTuple):
             end[:, 0] += fraction * steps * start[:, 1]
             carried = propagate(basis, w, fraction * steps) + end @ forced
             moved[rows, : carried.shape[1]] = carried @ basis.basis.T
+        for rows, motion, start, shaking, steps in self.series:
+            moved[rows] = motion.moved(start, shaking, fraction * steps)
         return moved
 
 
