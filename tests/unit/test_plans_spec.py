@@ -156,7 +156,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         (CLOUD.replace("[records]", '[records]\nfolder = "none"'), ""),
         (
             CLOUD.replace("suites", "suite"),
-            "[records] suite is not known; there are suites, folder, on_error, include. Did",
+            "[records] suite is not known; there are suites, folder, on_error, vertical, include. Did",
         ),
         (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),

@@ -155,8 +155,10 @@ def _pair(
             raise InputError(f"{message} {skip} keeps them without it.", longest=NAMES, field="vertical")
         warnings.warn(message, RecordWarning, stacklevel=4)
     if len(without) == len(both) and not faults:
+        first = next(iter(both)).name
+        which = first if len(both) == 1 else f"any of the {len(both)} records, such as {first}"
         raise InputError(
-            f"No vertical component was found for any of the {len(both)} records, such as {next(iter(both)).name}. "
+            f"No vertical component was found for {which}. "
             "It is recognised by its header or the end of its name: ABC-UP.AT2 (or -V, -UD, -DWN) belongs to "
             "ABC090.AT2. Rename the files, or join them in Python: read_motion(path, vertical=...).",
             field="vertical",
