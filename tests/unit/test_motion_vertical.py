@@ -198,8 +198,8 @@ def test_unit_and_step_are_for_both_files(tmp_path):
         (tmp_path / name).write_text(f"0\n{peak}\n0\n")
     both = read_motion(tmp_path / "a.txt", units="cm/s2", dt=0.02, vertical=tmp_path / "b.txt")
     assert (both.pga, both.pva, both.dt) == (1.0, 0.5, 0.02)
+    (tmp_path / "a.txt").write_text("0\n1\n0\n")
     with pytest.raises(InputError, match=r"b\.txt: the peak acceleration is 50 m/s2"):
-        (tmp_path / "a.txt").write_text("0\n1\n0\n")
         read_motion(tmp_path / "a.txt", units="m/s2", dt=0.02, vertical=tmp_path / "b.txt")
 
 

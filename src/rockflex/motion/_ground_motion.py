@@ -182,7 +182,7 @@ class GroundMotion(Samples):
                 "with_vertical(other.vertical_motion) or with_vertical(other.without_vertical())."
             )
         sign, info = _vertical.info_of_both(vertical.name, vertical.metadata, self.metadata)
-        along, upwards = _vertical.aligned(self, vertical)
+        along, upwards = _vertical.aligned(self.name, self, vertical)
         return GroundMotion(along, self.dt, self.name, info, sign * upwards)
 
     def without_vertical(self) -> "GroundMotion":

@@ -68,8 +68,8 @@ def info_of_both(name: str, given: RecordInfo | None, info: RecordInfo | None) -
     return -1 if down else 1, replace(info or RecordInfo(), vertical_source=f"{source}{note}")
 
 
-def aligned(along: Samples, upwards: Samples) -> tuple[Array, Array]:
-    """Return the samples of both components, with zeros after the end of the shorter one.
+def aligned(name: str, along: Samples, upwards: Samples) -> tuple[Array, Array]:
+    """Return the samples of both components of a motion, with zeros after the end of the shorter one.
 
     Raises
     ------
@@ -87,8 +87,8 @@ def aligned(along: Samples, upwards: Samples) -> tuple[Array, Array]:
     longest = max(along.acceleration.size, upwards.acceleration.size)
     if abs(along.duration - upwards.duration) > APART:
         warnings.warn(
-            f"The horizontal component lasts {along.duration:g} s and the vertical one {upwards.duration:g} s; zeros "
-            "were appended to the shorter one. Make sure that both start at the same instant.",
+            f"The motion {shown(name)} lasts {along.duration:g} s, and its vertical component {upwards.duration:g} s; "
+            "zeros were appended to the shorter one. Make sure that both start at the same instant.",
             RecordWarning,
             stacklevel=3,
         )
