@@ -160,7 +160,10 @@ def test_a_vertical_file_belongs_to_one_motion(tmp_path):
 
 def test_a_suite_with_a_vertical_file_of_columns(tmp_path):
     np.savetxt(tmp_path / "up.txt", ACCELERATION)
-    (found,) = find_motions(["el-centro-1940"], "m/s2", 0.02, vertical=str(tmp_path / "up.txt"))
+    with pytest.warns(
+        RecordWarning, match=r"The motion 'EL-CENTRO-1940-NS' lasts 31\.18 s, and its vertical component 0"
+    ):
+        (found,) = find_motions(["el-centro-1940"], "m/s2", 0.02, vertical=str(tmp_path / "up.txt"))
     assert found.motion.vertical[:50].tolist() == ACCELERATION.tolist()
     with pytest.raises(InputError, match=r"On the command line these are --units and --dt\.$"):
         find_motions(["el-centro-1940"], "m/s2", vertical=str(tmp_path / "up.txt"))

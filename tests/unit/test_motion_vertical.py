@@ -135,10 +135,8 @@ def test_the_shorter_component_is_followed_by_zeros():
 
 
 def test_lengths_that_are_far_apart_are_told():
-    short, long = GroundMotion(np.ones(5), 0.1), GroundMotion(np.ones(16), 0.1)
-    said = (
-        r"The horizontal component lasts 0\.4 s and the vertical one 1\.5 s; zeros were appended to the shorter one\."
-    )
+    short, long = GroundMotion(np.ones(5), 0.1, "A"), GroundMotion(np.ones(16), 0.1)
+    said = r"The motion 'A' lasts 0\.4 s, and its vertical component 1\.5 s; zeros were appended to the shorter one\."
     with pytest.warns(RecordWarning, match=said) as caught:
         short.with_vertical(long)
     assert caught[0].filename == __file__

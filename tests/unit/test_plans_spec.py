@@ -213,7 +213,7 @@ def test_records_in_pairs(tmp_path):
     assert study.document()["records"]["vertical"] == "pair"
     assert study.bench().motions[0].vertical.tolist() == [0.0, 0.5, 0.0]
     assert "vertical" not in rf.Records(folder="records").model_dump(exclude_none=True)
-    with pytest.raises(rf.InputError, match="vertical is for the files of a folder, but none is named"):
+    with pytest.raises(ValueError, match="vertical is for the files of a folder, but none is named"):
         rf.Records(suites=["el-centro-1940"], vertical="pair")
 
 
