@@ -38,6 +38,34 @@ def test_measures_are_those_of_the_motion():
     assert found["options"] == {"periods": [0.5, 2.0], "damping_ratio": 0.02}
 
 
+def at2(folder, name, component, peak):
+    """A record file of four samples."""
+    text = f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= 4, DT= .1\n0 {peak} -.2 0\n"
+    (folder / name).write_text(text)
+    return folder / name
+
+
+def test_vertical_component(tmp_path):
+    along, upwards = at2(tmp_path, "A-000.AT2", "0", 0.4), at2(tmp_path, "A-UP.AT2", "UP", 0.3)
+    motion = rf.read_motion(along, vertical=upwards)
+    for options in ([along, "--vertical", upwards], [tmp_path, "--vertical", "pair"]):
+        result = invoke(*options, "--period", 0.5, "--damping", 0.02, "--json", "--out", tmp_path / "out", "--force")
+        (row,) = json.loads(result.stdout)["motions"]
+        assert (row["pga"], row["pva"], row["pva_pga"]) == (motion.pga, motion.pva, motion.pva / motion.pga)
+        assert row["sa_vertical_0.5"] == motion.vertical_motion.sa(0.5, 0.02)
+        assert row["v_h_0.5"] == motion.vertical_ratio([0.5], 0.02)[0]
+        assert row["vertical_sha256"] != row["sha256"]
+        assert row["metadata"]["vertical_source"] == "A-UP"
+    with (tmp_path / "out" / "motion-A-000.csv").open(newline="") as file:
+        assert [float(line["vertical"]) for line in csv.DictReader(file)] == motion.vertical.tolist()
+    shown = invoke(along, "el-centro-1940").stdout
+    assert "Vertical" not in shown
+    table = invoke(tmp_path, "el-centro-1940", "--vertical", "pair").stdout.partition("Vertical component")[2].split()
+    start = table.index("A-000")
+    assert table[start + 1 : start + 3] == ["0.3000", "0.7500"]
+    assert table[table.index("EL-CENTRO-1940-NS") + 1 :][:4] == ["-"] * 4
+
+
 def test_printed_tables():
     result = invoke("el-centro-1940", "fema-p695-near-field-pulse/NFP-1-a", columns=100)
     rows = [line.split() for line in result.stdout.splitlines()]
@@ -94,6 +122,10 @@ def test_folder_of_many_motions_and_of_unknown_ones(tmp_path):
         (["--units", "g"], "No ground motion was given."),
         (["--on-error", "skip"], "No ground motion was given."),
         (["--period", 1], "No ground motion was given."),
+        (["--vertical", "pair"], "No ground motion was given."),
+        (["el-centro-1940", "--vertical", "pair"], "--vertical pair is for record files, but none was given"),
+        (["el-centro-1940", "--vertical", "none.at2"], "none.at2 does not exist"),
+        (["el-centro-1940", "--vertical", "v.at2", "--on-error", "skip"], "--on-error are for record files, but no"),
     ],
 )
 def test_bad_input(arguments, said, tmp_path):

@@ -5,7 +5,7 @@ import hashlib
 import numpy as np
 import pytest
 
-from rockflex import InputError, RecordWarning, load_suite
+from rockflex import InputError, RecordWarning, load_suite, read_motion
 from rockflex.cli._motions import embedded_suites, find_motions
 
 ACCELERATION = 0.1 * np.sin(np.arange(50))
@@ -141,3 +141,38 @@ def test_all_files_that_cannot_be_read_are_told(tmp_path):
         assert names(find_motions(files, on_error="skip")) == ["a"]
     with pytest.raises(InputError, match="--units, --dt and --on-error are for record files"):
         find_motions(["el-centro-1940"], on_error="skip")
+
+
+def test_a_vertical_file_belongs_to_one_motion(tmp_path):
+    along, upwards = at2(tmp_path, "a-000.at2", "0"), at2(tmp_path, "a-UP.at2", "UP")
+    (found,) = find_motions([along], vertical=upwards)
+    assert found.motion == read_motion(along, vertical=upwards)
+    assert found.describe()["pva"] == found.motion.pva
+    assert "pva" not in find_motions([along])[0].describe()
+    other = at2(tmp_path, "a-090.at2", "90")
+    with pytest.raises(
+        InputError, match=r"a-UP\.at2 is the vertical component of one motion, but 2 were given\. Name one"
+    ):
+        find_motions([along, other], vertical=upwards)
+    paired = find_motions([along, other, upwards], vertical="pair")
+    assert [item.motion.vertical.tolist() for item in paired] == [found.motion.vertical.tolist()] * 2
+
+
+def test_a_suite_with_a_vertical_file_of_columns(tmp_path):
+    np.savetxt(tmp_path / "up.txt", ACCELERATION)
+    with pytest.warns(
+        RecordWarning, match=r"The motion 'EL-CENTRO-1940-NS' lasts 31\.18 s, and its vertical component 0"
+    ):
+        (found,) = find_motions(["el-centro-1940"], "m/s2", 0.02, vertical=str(tmp_path / "up.txt"))
+    assert found.motion.vertical[:50].tolist() == ACCELERATION.tolist()
+    with pytest.raises(InputError, match=r"On the command line these are --units and --dt\.$"):
+        find_motions(["el-centro-1940"], "m/s2", vertical=str(tmp_path / "up.txt"))
+
+
+def test_motions_that_differ_only_vertically_are_two(tmp_path):
+    for folder, peak in (("x", 1.0), ("y", 2.0)):
+        (tmp_path / folder).mkdir()
+        text = f"time (s),acc (m/s2),vertical (m/s2)\n0,0,0\n1,1,{peak}\n2,0,0\n"
+        (tmp_path / folder / "a.csv").write_text(text)
+    with pytest.raises(InputError, match="hold different motions, both named 'a'"):
+        find_motions([str(tmp_path / "x"), str(tmp_path / "y")])

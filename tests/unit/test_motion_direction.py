@@ -75,7 +75,7 @@ HEADER = "PEER NGA STRONG MOTION DATABASE RECORD\nSome Event, 1/1/2001, Some Sta
 
 @pytest.mark.parametrize("name", VERTICAL)
 def test_names_of_vertical_components(name):
-    assert direction_of(Path(name)) == "vertical"
+    assert direction_of(Path(name)) == ("down" if "DWN" in name else "vertical")
 
 
 @pytest.mark.parametrize("name", UNKNOWN)
@@ -87,7 +87,8 @@ def test_names_that_say_nothing_of_it(name):
     "component", ["UP", "up", "V", "V1", "DWN", "DOWN", "UD", "VER", "VERT", "Vertical", "HNZ", " UP "]
 )
 def test_components_that_a_header_calls_vertical(component):
-    assert direction_of(Path("RSN1_X_ABC.AT2"), component) == "vertical"
+    expected = "down" if component in ("DWN", "DOWN") else "vertical"
+    assert direction_of(Path("RSN1_X_ABC.AT2"), component) == expected
 
 
 @pytest.mark.parametrize(
@@ -111,8 +112,9 @@ def test_readers_tell_the_direction(tmp_path, component, direction):
     assert read_motion(named).metadata.direction == "vertical"
 
 
-def test_nothing_is_shaken_by_a_vertical_component():
-    motion = GroundMotion([0.0, 1.0, 0.0], 0.01, "M-UP", RecordInfo(direction="vertical"))
+@pytest.mark.parametrize("direction", ["vertical", "down"])
+def test_nothing_is_shaken_by_a_vertical_component(direction):
+    motion = GroundMotion([0.0, 1.0, 0.0], 0.01, "M-UP", RecordInfo(direction=direction))
     for call in (
         lambda: simulate(STRUCTURE, motion, "2DOF-S"),
         lambda: simulate_many(STRUCTURE, [motion], "2DOF-S"),

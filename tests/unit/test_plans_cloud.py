@@ -190,14 +190,24 @@ def test_what_is_not_a_number_is_missing():
     bench = bench_of(rf.rigid_block(0.2, 1.5), SUITE[0], "rigid", 0.0, None, None)
     table = CloudPlan(bench, [1.0], 10).chunk(0)
     assert (table["sa_t1"].null_count, table["pga"].null_count) == (1, 0)
+    assert table["pva"].null_count == 1
+
+
+def test_the_peak_of_a_vertical_component_is_a_measure():
+    both = SUITE[0].with_vertical(SUITE[0].acceleration[::-1])
+    table = CloudPlan(bench_of(rf.rigid_block(0.2, 1.5), both, "rigid", 0.0, None, None), [-2.0], 10).chunk(0)
+    assert table["pva"].to_pylist() == [2.0 * both.pva]
 
 
 def test_checksums_follow_the_samples():
     motions = [rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "a"), rf.GroundMotion([0.0, 1.0, 0.0], 0.02, "b")]
     motions += [rf.GroundMotion([0.0, 1.0, 5e-324], 0.01, "c"), rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "d")]
     sums = checksums(motions)
+    motions += [motions[0].with_vertical(np.array([0.0, up, 0.0])) for up in (1.0, 2.0)]
+    motions[4:] = [dataclasses.replace(motion, name=name) for motion, name in zip(motions[4:], "ef", strict=True)]
+    sums = checksums(motions)
     assert sums["a"] == sums["d"]
-    assert len(set(sums.values())) == 3
+    assert len(set(sums.values())) == 5
     assert set(study().plan().checksums) == {"FF-1-a", "FF-1-b", "FF-3-a"}
 
 

@@ -156,7 +156,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         (CLOUD.replace("[records]", '[records]\nfolder = "none"'), ""),
         (
             CLOUD.replace("suites", "suite"),
-            "[records] suite is not known; there are suites, folder, on_error, include. Did",
+            "[records] suite is not known; there are suites, folder, on_error, vertical, include. Did",
         ),
         (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),
@@ -198,6 +198,23 @@ def test_python_says_the_same():
 def test_missing_file_is_named(tmp_path):
     with pytest.raises(rf.InputError, match=r"The study file .*none\.toml does not exist"):
         load_study(tmp_path / "none.toml")
+
+
+def test_records_in_pairs(tmp_path):
+    (tmp_path / "records").mkdir()
+    for name, peak in (("a-000", 1.0), ("a-UP", 0.5)):
+        (tmp_path / "records" / f"{name}.csv").write_text(f"time (s),acc (m/s2)\n0,0\n0.01,{peak}\n0.02,0\n")
+    records = rf.Records(folder="records", vertical="pair")
+    (motion,) = records.load(tmp_path)
+    assert (motion.pga, motion.pva) == (1.0, 0.5)
+    named = '[records]\nfolder = "records"\nvertical = "pair"\n'
+    (tmp_path / "study.toml").write_text(CLOUD.replace(RECORDS, named), "utf-8")
+    study = load_study(tmp_path / "study.toml")
+    assert study.document()["records"]["vertical"] == "pair"
+    assert study.bench().motions[0].vertical.tolist() == [0.0, 0.5, 0.0]
+    assert "vertical" not in rf.Records(folder="records").model_dump(exclude_none=True)
+    with pytest.raises(ValueError, match="vertical is for the files of a folder, but none is named"):
+        rf.Records(suites=["el-centro-1940"], vertical="pair")
 
 
 def test_an_eccentric_structure_of_a_study(tmp_path):

@@ -51,6 +51,22 @@ def test_motion_shades_the_significant_duration():
         np.testing.assert_allclose([box.get_x(), box.get_x() + box.get_width()], expected, atol=2 * RECORD.dt)
 
 
+def test_motion_shows_its_vertical_component():
+    both = RECORD.with_vertical(0.8 * RECORD.acceleration[::-1])
+    figure = drawn(plot_motion(both))
+    panels = {axes.get_ylabel(): axes for axes in figure.axes}
+    places = [panels[label].get_position().y0 for label in ("$a$ [m/s²]", "$a_v$ [m/s²]", "$v$ [m/s]", "$d$ [m]")]
+    assert places == sorted(places, reverse=True)
+    upwards = panels["$a_v$ [m/s²]"]
+    np.testing.assert_array_equal(upwards.get_lines()[0].get_ydata(), both.vertical)
+    assert upwards.get_title(loc="right") == f"PVA = {both.pva:.3g} m/s² ({both.pva / 9.81:.3g} g)"
+    horizontal, vertical = panels["$S_a$ [m/s²]"].get_lines()
+    assert [text.get_text() for text in panels["$S_a$ [m/s²]"].get_legend().get_texts()] == ["horizontal", "vertical"]
+    period = float(vertical.get_xdata()[100])
+    assert vertical.get_ydata()[100] == pytest.approx(both.vertical_motion.sa(period, 0.05), rel=1e-12)
+    assert horizontal.get_ydata()[100] == pytest.approx(both.sa(period, 0.05), rel=1e-12)
+
+
 def test_motion_may_be_quiet_and_nameless():
     figure = drawn(plot_motion(rf.GroundMotion(np.zeros(100), 0.01)))
     assert figure.get_suptitle() == "ground motion"

@@ -36,7 +36,7 @@ def tendons() -> list[rf.Tendon]:
 
 
 def motion() -> GroundMotion:
-    return GroundMotion(RECORD, 0.01, "sine", rf.RecordInfo(event="none", magnitude=6.5))
+    return GroundMotion(RECORD, 0.01, "sine", rf.RecordInfo(event="none", magnitude=6.5), RECORD[::-1])
 
 
 def response() -> rf.Response:

@@ -11,7 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
+from rockflex.web._download import download
+from rockflex.web._records import record_view
 from rockflex.web._refusal import Refusal
+from rockflex.web._state import parse_state
 from rockflex.web._uploads import KEPT, Uploads, clean_name, read_matrices, read_record
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
@@ -45,6 +48,21 @@ def test_a_record_is_what_the_library_reads(tmp_path, name, content) -> None:
     motion, expected = read_record(name, content, None, None), rf.read_motion(tmp_path / name)
     assert np.array_equal(motion.acceleration, expected.acceleration)
     assert (motion.dt, motion.name) == (expected.dt, expected.name)
+
+
+def test_a_column_may_be_vertical_and_comes_back(client, tmp_path) -> None:
+    content = b"time (s),acc (m/s2),vertical (m/s2)\n0,0,0\n0.01,1,0.5\n0.02,0,0\n"
+    assert read_record("a.csv", content, None, None).vertical.tolist() == [0.0, 0.5, 0.0]
+    alone = b"time (s),vertical (m/s2)\n0,0\n0.01,1\n0.02,0\n"
+    assert "is a vertical component by its header or its name" in refusal(read_record, "a.csv", alone, None, None)
+    uploads = Uploads()
+    key = uploads.add(read_record("a.csv", content, None, None), content, "")
+    state = parse_state(client.state() | {"record": {"source": "upload", "upload": key}})
+    name, saved = download(state, "record", uploads)[0::2]
+    (tmp_path / name).write_bytes(saved)
+    assert rf.read_motion(tmp_path / name).vertical.tolist() == [0.0, 0.5, 0.0]
+    told = record_view(state, None, uploads)["measures"]
+    assert [each["value"] for each in told if each["name"] in ("PVA", "PVA/PGA")] == [0.5, 0.5]
 
 
 def test_a_name_with_folders_is_no_path(tmp_path) -> None:

@@ -11,6 +11,8 @@ from rockflex.cli import _options as options
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from rich.table import Table
+
     from rockflex.cli._motions import FoundMotion
 
 EPILOG = """[bold]Examples[/bold]
@@ -20,6 +22,10 @@ rockflex motion
 rockflex motion fema-p695-far-field --period 0.5 --period 1 --damping 0.02
 
 rockflex motion fema-p695-far-field/FF-12-a --out record
+
+rockflex motion RSN6-180.AT2 --vertical RSN6-UP.AT2
+
+rockflex motion folder --vertical pair
 
 rockflex motion record.csv --units g --dt 0.01 --json"""
 
@@ -49,6 +55,7 @@ def motion(
     units: options.Units = None,
     dt: options.Dt = None,
     on_error: options.OnError = "raise",
+    vertical: options.Vertical = None,
 ) -> None:
     """Print the data and the intensity measures of ground motions; without a name, list the embedded suites."""
     from rockflex.cli._motions import embedded_suites, find_motions
@@ -56,7 +63,7 @@ def motion(
 
     check_folder(out, force=force)
     # With a folder or a unit, motions are expected, and an empty list of names is an error.
-    about_files = units is not None or dt is not None or on_error != "raise"
+    about_files = units is not None or dt is not None or vertical is not None or on_error != "raise"
     if not names and out is None and period is None and not about_files:
         suites = embedded_suites()
         if json:
@@ -64,7 +71,7 @@ def motion(
         else:
             _print_suites(suites)
         return
-    found = find_motions(names or [], units, dt, on_error)
+    found = find_motions(names or [], units, dt, on_error, vertical)
     periods = list(dict.fromkeys(period or [1.0]))
     rows = [{**item.describe(), **_measures(item, periods, damping)} for item in found]
     document: dict[str, Any] = {
@@ -82,25 +89,36 @@ def motion(
 
 
 def _units() -> dict[str, str]:
-    from rockflex.motion import record_measures
+    from rockflex.motion import record_measures, vertical_measures
 
     return {
         "dt": "s",
         "duration": "s",
-        **{measure.name: measure.unit for measure in record_measures()},
+        **{measure.name: measure.unit for measure in (*record_measures(), *vertical_measures())},
         "sa_*": "m/s², at the period in s",
+        "sa_vertical_*": "m/s², at the period in s",
+        "v_h_*": "",
         "metadata.distance_km": "km",
         "metadata.vs30": "m/s",
     }
 
 
 def _measures(item: "FoundMotion", periods: Sequence[float], damping: float) -> dict[str, float]:
-    from rockflex.motion import Shaking, record_measures
+    from rockflex.motion import Shaking, record_measures, vertical_measures
 
-    shaking = Shaking(item.motion)
-    sa = item.motion.spectrum(periods, damping).sa
-    spectral = {f"sa_{period:g}": float(value) for period, value in zip(periods, sa, strict=True)}
-    return {**{measure.name: measure.of(shaking) for measure in record_measures()}, **spectral}
+    motion, shaking = item.motion, Shaking(item.motion)
+    spectral = {"sa": motion.spectrum(periods, damping).sa}
+    measures = record_measures()
+    if motion.vertical is not None:
+        measures += vertical_measures()
+        spectral["sa_vertical"] = motion.vertical_motion.spectrum(periods, damping).sa
+        spectral["v_h"] = motion.vertical_ratio(periods, damping)
+    at_periods = {
+        f"{name}_{period:g}": float(value)
+        for name, values in spectral.items()
+        for period, value in zip(periods, values, strict=True)
+    }
+    return {**{measure.name: measure.of(shaking) for measure in measures}, **at_periods}
 
 
 def _print_suites(suites: Sequence[dict[str, Any]]) -> None:
@@ -140,7 +158,24 @@ def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: fl
     heads = [f"{measure.head} [g]" if in_g else measure.with_unit(measure.head) for measure, in_g in chosen]
     spectral = (f"Sa({period:g} s) [g]" for period in periods)
     show(console, grid(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures))
+    if any("pva" in row for row in rows):
+        console.print("\nVertical component", markup=False)
+        show(console, _vertical_table(rows, periods))
     console.print(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²", markup=False)
+
+
+def _vertical_table(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> "Table":
+    from rockflex._constants import GRAVITY
+    from rockflex.cli._console import grid, number
+
+    cells: list[list[str]] = []
+    for row in rows:
+        keys = [("pva", GRAVITY), ("pva_pga", 1.0)]
+        for period in periods:
+            keys += [(f"sa_vertical_{period:g}", GRAVITY), (f"v_h_{period:g}", 1.0)]
+        cells.append([row["name"], *(number(row[key] / unit) if key in row else "-" for key, unit in keys)])
+    spectral = [head for period in periods for head in (f"Sa,v({period:g} s) [g]", f"V/H({period:g} s)")]
+    return grid(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
 
 
 def _write(
@@ -168,6 +203,8 @@ def _write(
                 series = {
                     name: getattr(item.motion, name) for name in ("time", "acceleration", "velocity", "displacement")
                 }
+                if item.motion.vertical is not None:
+                    series["vertical"] = item.motion.vertical
                 pd.DataFrame(series).to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
                 save_figure(plot_motion(item.motion), stage / f"{stem}.png")
     note(f"Written to {folder}" + ("" if few else f"; series and figures only of up to --figures {figures} motions"))

@@ -1,15 +1,27 @@
 """Ground motions by the name of a suite, of a record in it, or by path."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import GroundMotion, OnError, folder_files, load_suite, quiet_motion, read_files, suite_names
+from rockflex.motion import (
+    GroundMotion,
+    OnError,
+    Vertical,
+    folder_files,
+    load_suite,
+    quiet_motion,
+    read_files,
+    read_motion,
+    suite_names,
+)
 
 SHORTEST = 0.01  # s of quiet ground before a free vibration until at rest
 
@@ -23,13 +35,17 @@ class FoundMotion:
 
     @property
     def sha256(self) -> str:
-        """SHA-256 of the samples in m/s² as little-endian doubles."""
-        return hashlib.sha256(self.motion.acceleration.astype("<f8").tobytes()).hexdigest()
+        """SHA-256 of the horizontal samples in m/s² as little-endian doubles."""
+        return _digest(self.motion.acceleration)
+
+    def same(self, other: "FoundMotion") -> bool:
+        """Whether the samples of both motions are the same."""
+        return (self.motion.dt, self.sha256, self._vertical()) == (other.motion.dt, other.sha256, other._vertical())
 
     def describe(self) -> dict[str, Any]:
         """Return the data that identify the motion, for a document."""
         motion = self.motion
-        return {
+        described: dict[str, Any] = {
             "name": motion.name,
             "origin": self.origin,
             "sha256": self.sha256,
@@ -39,6 +55,11 @@ class FoundMotion:
             "pga": motion.pga,
             "metadata": motion.metadata,
         }
+        return described | self._vertical()
+
+    def _vertical(self) -> dict[str, Any]:
+        vertical = self.motion.vertical
+        return {} if vertical is None else {"pva": self.motion.pva, "vertical_sha256": _digest(vertical)}
 
 
 def embedded_suites() -> list[dict[str, Any]]:
@@ -51,7 +72,11 @@ def embedded_suites() -> list[dict[str, Any]]:
 
 
 def find_motions(
-    names: Sequence[str], units: str | None = None, dt: float | None = None, on_error: OnError = "raise"
+    names: Sequence[str],
+    units: str | None = None,
+    dt: float | None = None,
+    on_error: OnError = "raise",
+    vertical: str | None = None,
 ) -> list[FoundMotion]:
     """Find motions, in the order of their names; a motion that is named twice appears once.
 
@@ -61,12 +86,15 @@ def find_motions(
         Each is an embedded suite, ``suite/record``, a file, or a directory of files.
     units, dt, on_error
         As in `read_suite`, for the files.
+    vertical
+        "pair", as in `read_suite`, or the file of the vertical component of the only motion.
 
     Raises
     ------
     InputError
         If there is no name, one is unknown, a file cannot be read and `on_error` is "raise", no file holds a horizontal
-        component, two different motions have the same name, or units, dt or `on_error` are given without a file.
+        component, two different motions have the same name, or units, dt, `on_error` or "pair" are given without a
+        file, or one vertical file for several motions.
     """
     if not names:
         raise InputError(
@@ -74,7 +102,8 @@ def find_motions(
             "fema-p695-far-field/FF-12-a, or a file."
         )
     files = {name: _files(name) for name in names if name.partition("/")[0] not in suite_names()}
-    read = _read([file for each in files.values() for file in each], units, dt, on_error)
+    pair = "pair" if vertical == "pair" else None
+    read = _read([file for each in files.values() for file in each], units, dt, on_error, pair)
     found: dict[str, FoundMotion] = {}
     for name in names:
         suite, _, record = name.partition("/")
@@ -85,14 +114,34 @@ def find_motions(
         for motion in motions:
             member = FoundMotion(motion, name if name in files else suite)
             first = found.setdefault(motion.name, member)
-            if first.sha256 != member.sha256 or first.motion.dt != motion.dt:
+            if not first.same(member):
                 raise InputError(
                     f"{member.origin} and {first.origin} hold different motions, both named {shown(motion.name)}. "
                     "Rename one of the files."
                 )
-    if not files and (units is not None or dt is not None or on_error != "raise"):
+    own_file = vertical is not None and pair is None
+    about_horizontal = on_error != "raise" or (not own_file and (units is not None or dt is not None))
+    if not files and about_horizontal:
         raise InputError("--units, --dt and --on-error are for record files, but no file was given. Leave them out.")
+    if not files and pair:
+        raise InputError(
+            "--vertical pair is for record files, but none was given: the embedded suites hold no vertical components. "
+            "Name the files or their folder, or give the file of the vertical component of one record: --vertical FILE."
+        )
+    if own_file:
+        return [_with_vertical(list(found.values()), str(vertical), units, dt)]
     return list(found.values())
+
+
+def _with_vertical(found: list[FoundMotion], file: str, units: str | None, dt: float | None) -> FoundMotion:
+    if len(found) != 1:
+        raise InputError(
+            f"--vertical {file} is the vertical component of one motion, but {len(found)} were given. Name one motion, "
+            "or name all files of a station, or their folder, with --vertical pair."
+        )
+    with _naming_flags():
+        motion = found[0].motion.with_vertical(read_motion(file, units=units, dt=dt))
+    return FoundMotion(motion, found[0].origin)
 
 
 def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], float | Literal["settle"]]:
@@ -130,11 +179,24 @@ def _files(name: str) -> list[Path]:
     return folder_files(path) if path.is_dir() else [path]
 
 
-def _read(files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError) -> dict[Path, GroundMotion]:
+def _read(
+    files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError, pair: Vertical | None
+) -> dict[Path, GroundMotion]:
+    with _naming_flags():
+        return read_files(files, units, dt, on_error, pair, skip="--on-error skip")
+
+
+@contextmanager
+def _naming_flags() -> Generator[None]:
+    """Name the options for what a message says of the arguments in Python."""
     try:
-        return read_files(files, units, dt, on_error, skip="--on-error skip")
+        yield
     except InputError as error:
         if error.field not in ("units", "dt"):
             raise
         text = f"{error} On the command line these are --units and --dt."
         raise InputError(text, longest=len(text), field=error.field) from error
+
+
+def _digest(samples: Array) -> str:
+    return hashlib.sha256(samples.astype("<f8").tobytes()).hexdigest()

@@ -43,6 +43,15 @@ Dt = Annotated[
     float | None,
     typer.Option("--dt", metavar="S", help="Sampling step in s, if a file has none.", rich_help_panel=RECORD_FILES),
 ]
+Vertical = Annotated[
+    str | None,
+    typer.Option(
+        "--vertical",
+        metavar="FILE|pair",
+        help="The record of the vertical component, of one motion; or pair: find those of all record files given.",
+        rich_help_panel=RECORD_FILES,
+    ),
+]
 OnError = Annotated[
     Literal["raise", "skip"],
     typer.Option(

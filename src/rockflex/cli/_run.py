@@ -16,6 +16,8 @@ rockflex run structure.toml fema-p695-far-field --model MDOF-S,fixed --out resul
 
 rockflex run structure.toml record.csv --units g --free-vibration settle --times
 
+rockflex run structure.toml RSN6-180.AT2 --vertical RSN6-UP.AT2
+
 rockflex run structure.toml el-centro-1940 --model 2DOF-C,MDOF-C,rigid --friction 0.5
 
 rockflex run structure.toml el-centro-1940 --model 2DOF-S,2DOF-S-BW,1DOF-fixed-BW --yield-displacement 0.075
@@ -80,6 +82,7 @@ def run(
     units: options.Units = None,
     dt: options.Dt = None,
     on_error: options.OnError = "raise",
+    vertical: options.Vertical = None,
 ) -> None:
     """Simulate a structure under ground motions and print the peaks of each run.
 
@@ -112,7 +115,10 @@ def run(
         free = number_or_word(free_vibration)
         free_vibration_time(free)
         mu = None if friction is None else friction_coefficient(friction)
-        found, free = (find_motions(names, units, dt, on_error), free) if names or not initial else quiet_ground(free)
+        if names or vertical or not initial:
+            found = find_motions(names, units, dt, on_error, vertical)
+        else:
+            found, free = quiet_ground(free)
         scales = list(dict.fromkeys(factors_of(scale, max((each.motion for each in found), key=lambda it: it.pga))))
         batch = Batch(
             properties=loaded.properties,

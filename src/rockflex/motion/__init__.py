@@ -5,7 +5,7 @@ from rockflex.motion._direction import check_horizontal, direction_of, is_vertic
 from rockflex.motion._embedded import load_suite, suite_names
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._measure import Measure
-from rockflex.motion._measures import MEASURES, intensities, intensity, record_measures
+from rockflex.motion._measures import MEASURES, intensities, intensity, record_measures, vertical_measures
 from rockflex.motion._pulses import (
     half_sine_pulse,
     one_cosine_pulse,
@@ -14,7 +14,7 @@ from rockflex.motion._pulses import (
     rectangular_pulse,
     ricker_pulse,
 )
-from rockflex.motion._read_suite import OnError, folder_files, read_files, read_suite
+from rockflex.motion._read_suite import OnError, Vertical, folder_files, read_files, read_suite
 from rockflex.motion._readers import read_motion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._shaking import Shaking
@@ -29,6 +29,7 @@ __all__ = [
     "RecordInfo",
     "Shaking",
     "Suite",
+    "Vertical",
     "check_horizontal",
     "direction_of",
     "folder_files",
@@ -49,4 +50,5 @@ __all__ = [
     "rectangular_pulse",
     "ricker_pulse",
     "suite_names",
+    "vertical_measures",
 ]

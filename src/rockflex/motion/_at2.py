@@ -23,7 +23,7 @@ DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::
 TOKEN = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?\d{1,3}+)?(?=[\s,+-]|$)")
 
 
-def read_at2(path: str | Path) -> GroundMotion:
+def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMotion:
     """Read an AT2 file of a PEER strong-motion database.
 
     The header gives the number of samples and the time step, as ``NPTS= 4000, DT= .00500 SEC`` or as
@@ -35,6 +35,8 @@ def read_at2(path: str | Path) -> GroundMotion:
     ----------
     path : str or Path
         The file.
+    vertical : str or Path, optional
+        The AT2 file of the vertical component; see `GroundMotion.with_vertical`.
 
     Returns
     -------
@@ -46,7 +48,8 @@ def read_at2(path: str | Path) -> GroundMotion:
     ------
     InputError
         If the file is missing, empty or binary, NPTS or DT is not found, there are fewer or more values than
-        NPTS, a value is not a finite number, the header states another unit than g, or the peak exceeds 5 g.
+        NPTS, a value is not a finite number, the header states another unit than g, or the peak exceeds 5 g. With
+        `vertical` also if the time steps differ, or a component is known to have the other direction.
 
     Examples
     --------
@@ -57,7 +60,8 @@ def read_at2(path: str | Path) -> GroundMotion:
     GroundMotion('DEMO', 4 samples, dt=0.01 s, duration=0.03 s, pga=1.962 m/s²)
     """
     file = path_of("path", path)
-    return parse_at2(file, read_lines(file))
+    motion = parse_at2(file, read_lines(file))
+    return motion if vertical is None else motion.with_vertical(read_at2(path_of("vertical", vertical)))
 
 
 def find_header(lines: list[str]) -> tuple[int, int, str] | None:

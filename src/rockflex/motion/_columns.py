@@ -11,10 +11,13 @@ from rockflex._shown import shown
 from rockflex.motion._direction import direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import DECIMAL, build_motion, number
+from rockflex.motion._text import DECIMAL, acceleration_of, build_motion, number
 
 SPELLING = re.compile(r"g|gals?|(c?m)(?:s-2|/(s|sec)(?:2|/\2))")  # with g, m or cm, and gal for cm/s²
 SECONDS = ("s", "sec", "secs", "second", "seconds")
+UPWARDS = re.compile(
+    r"(?:acc[a-z]*+[\s_-]++)?(?:ver|vert|vertical|up|ud)(?![a-z])|acc[a-z]*+[\s_-]++[vz](?![a-z])", re.I
+)
 BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 
 
@@ -37,8 +40,15 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
         times = np.array([number(cells[time_column], file, line) for line, cells in rows])
         step = _step(file, times, [line for line, _ in rows], dt)
     remedy = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
-    info = RecordInfo(source=file.name, direction=direction_of(file))
-    return build_motion(file, values, stated, step, info, remedy)
+    alone = bool(labels) and UPWARDS.match(labels[column])
+    info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file))
+    motion = build_motion(file, values, stated, step, info, remedy)
+    upwards = _vertical_column(file, labels)
+    if upwards is None:
+        return motion
+    stated = _stated_unit(file, labels[upwards], units)
+    values = np.array([number(cells[upwards], file, line) for line, cells in rows])
+    return motion.with_vertical(acceleration_of(file, values, stated, remedy))
 
 
 def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -98,7 +108,8 @@ def _after_brackets(text: str) -> int:
 def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, int]:
     """Return the columns of time (None if there is none) and acceleration."""
     times = [i for i, label in enumerate(labels) if re.match(r"t(ime)?\b", label, re.IGNORECASE)]
-    accelerations = [i for i, label in enumerate(labels) if re.match("acc", label, re.IGNORECASE)]
+    upwards = _vertical_columns(labels)
+    accelerations = [i for i, label in enumerate(labels) if re.match("acc", label, re.I) and i not in upwards]
     if len(accelerations) == 1 and len(times) == 1:
         return times[0], accelerations[0]
     if n_columns <= 2:
@@ -111,8 +122,22 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, 
         return time, column
     raise InputError(
         f"{file} has {n_columns} columns, and its header does not name one as time and exactly one as "
-        'acceleration ("time (s), acc (g), ..."). Keep the columns time and acceleration.'
+        'acceleration ("time (s), acc (g), ..."). Keep the columns time and acceleration; a vertical one may be '
+        'added as "vertical (g)".'
     )
+
+
+def _vertical_columns(labels: list[str]) -> list[int]:
+    """Return the columns of vertical acceleration beside the time and a horizontal one."""
+    return [i for i, label in enumerate(labels) if UPWARDS.match(label)] if len(labels) > 2 else []
+
+
+def _vertical_column(file: Path, labels: list[str]) -> int | None:
+    found = _vertical_columns(labels)
+    if len(found) > 1:
+        names = ", ".join(shown(labels[i]) for i in found)
+        raise InputError(f"{file}: the header names {len(found)} columns as vertical, {names}. Keep one of them.")
+    return found[0] if found else None
 
 
 def _stated_unit(file: Path, label: str, units: str | None) -> str:

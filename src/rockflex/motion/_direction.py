@@ -7,21 +7,24 @@ from typing import Literal
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
 
-Direction = Literal["horizontal", "vertical"]
+Direction = Literal["horizontal", "vertical", "down"]
 
 CHANNEL = "[A-Z][HLNG]"  # band and instrument codes of a seismological channel; the third letter is the direction
-UPWARDS = f"UP|DN|UD|DWN|DOWN|VER|VRT|VERT|VERTICAL|{CHANNEL}Z"
+APART = "-_. "  # between the station and the component in the name of a file
+DOWN = "DN|DWN|DOWN"  # positive downwards
+UPRIGHT = f"UP|UD|VER|VRT|VERT|VERTICAL|{CHANNEL}Z|{DOWN}"
 COMPASS = "[NSEW]|NS|EW|NORTH|SOUTH|EAST|WEST|SOU|EAS"
-VERTICAL = re.compile(rf"{UPWARDS}|U|V|Z|V[12]", re.IGNORECASE)
+VERTICAL = re.compile(rf"{UPRIGHT}|U|V|Z|V[12]", re.IGNORECASE)
 HORIZONTAL = re.compile(
     rf"[NS]?\s*\d+(?:\.\d+)?\s*[EW]?|{COMPASS}|[LTH][12]?|LONG?|TRAN?S?|{CHANNEL}[NE12]", re.IGNORECASE
 )
-SET_APART = re.compile(rf".*(?:[-_. ](?:{UPWARDS})|[-_.][VZ])", re.IGNORECASE)
-RUN_TOGETHER = re.compile(rf".*(?:{UPWARDS}|\dV|-V[12])", re.IGNORECASE)
+SET_APART = re.compile(rf"(.*)(?:[-_. ](?:{UPRIGHT})|[-_.][VZ])", re.IGNORECASE)
+DOWNWARDS = re.compile(rf".*(?:{DOWN})", re.IGNORECASE)
+RUN_TOGETHER = re.compile(rf"(.*?)(?:{UPRIGHT}|(?<=\d)V|-V[12])", re.IGNORECASE)
 
 
 def direction_of(file: Path, component: str | None = None) -> Direction | None:
-    """Return the direction of a component, or None if it is not stated.
+    """Return the direction of a component, or None if it is not stated; "down" is vertical, but positive downwards.
 
     A component is vertical if the header calls it UP, DWN, V, UD and the like, or if the file name ends in such a word
     after a hyphen or an underscore. PEER files may also join station and component, as in TCU078V.AT2; this is accepted
@@ -35,17 +38,34 @@ def direction_of(file: Path, component: str | None = None) -> Direction | None:
         Name of the component in the header.
     """
     stated = (component or "").strip()
-    if VERTICAL.fullmatch(stated) or SET_APART.fullmatch(file.stem):
-        return "vertical"
+    if VERTICAL.fullmatch(stated):
+        return _upright(stated)
+    if SET_APART.fullmatch(file.stem):
+        return _upright(file.stem)
     if HORIZONTAL.fullmatch(stated):
         return "horizontal"
     from_peer = file.suffix.lower() == ".at2" or re.match(r"RSN\d", file.name, re.IGNORECASE)
-    return "vertical" if from_peer and RUN_TOGETHER.fullmatch(file.stem) else None
+    return _upright(file.stem) if from_peer and RUN_TOGETHER.fullmatch(file.stem) else None
+
+
+def _upright(text: str) -> Direction:
+    return "down" if DOWNWARDS.fullmatch(text) else "vertical"
+
+
+def station_of_vertical(file: Path) -> str | None:
+    """Return the name of a file without the word that makes it vertical, or None if there is no such word."""
+    named = SET_APART.fullmatch(file.stem) or RUN_TOGETHER.fullmatch(file.stem)
+    return named and named[1].rstrip(APART)
+
+
+def is_horizontal_name(component: str) -> bool:
+    """Return whether a word, such as 090, NS or H1, names a horizontal component."""
+    return bool(HORIZONTAL.fullmatch(component)) or component in ("X", "Y")
 
 
 def is_vertical(motion: GroundMotion) -> bool:
     """Return whether a motion is known to be a vertical component."""
-    return motion.metadata is not None and motion.metadata.direction == "vertical"
+    return motion.metadata is not None and motion.metadata.is_vertical
 
 
 def check_horizontal(*motions: GroundMotion) -> None:

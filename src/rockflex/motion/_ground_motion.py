@@ -1,8 +1,9 @@
 """Ground acceleration, linear between its samples."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,21 +12,22 @@ from rockflex._arrays import Array
 from rockflex._checks import finite, finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex._values import Value
-from rockflex.motion import _integrals, _processing
+from rockflex.motion import _processing, _vertical
 from rockflex.motion._record_info import RecordInfo
-
-if TYPE_CHECKING:
-    from rockflex.motion._spectrum import ResponseSpectrum
+from rockflex.motion._samples import Samples
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class GroundMotion(Value):
+class GroundMotion(Samples):
     """A ground acceleration sampled at equal steps and linear between samples.
 
     The ground is at rest before t = 0, the time of the first sample; after the last sample the
     acceleration is zero. Every measure is exact for this piecewise linear function, including peaks between
     samples, and covers the time from the first sample to the last.
+
+    The ground may also move vertically. All measures are those of the horizontal component, unless their name says
+    otherwise; those of the vertical one are those of `vertical_motion`. What changes a motion, such as `scaled`,
+    changes both components.
 
     Parameters
     ----------
@@ -37,11 +39,14 @@ class GroundMotion(Value):
         Name by which suites and tables refer to the motion.
     metadata : RecordInfo, optional
         Information about the record.
+    vertical : array_like, shape (n,), optional
+        Samples of the vertical acceleration in m/s² at the same instants, positive upwards; None if unknown.
 
     Raises
     ------
     InputError
-        If there are fewer than three samples, a sample is not finite, or `dt` is not positive.
+        If there are fewer than three samples, a sample is not finite, `dt` is not positive, or the components differ
+        in length.
 
     Examples
     --------
@@ -53,14 +58,25 @@ class GroundMotion(Value):
     GroundMotion('sine', 201 samples, dt=0.01 s, duration=2 s, pga=3 m/s²)
     >>> round(motion.scaled(2.0).pgv, 3)
     1.909
+    >>> both = rf.GroundMotion([0.0, 2.0, 0.0], dt=0.01, vertical=[0.0, 0.0, -1.5])
+    >>> both.scaled(2.0).pva
+    3.0
     """
 
     acceleration: Array
     dt: float
     name: str = ""
     metadata: RecordInfo | None = None
+    vertical: Array | None = None
 
-    def __init__(self, acceleration: ArrayLike, dt: float, name: str = "", metadata: RecordInfo | None = None) -> None:
+    def __init__(
+        self,
+        acceleration: ArrayLike,
+        dt: float,
+        name: str = "",
+        metadata: RecordInfo | None = None,
+        vertical: ArrayLike | None = None,
+    ) -> None:
         samples = finite_vector("acceleration", acceleration, "m/s²")
         if samples.size < 3:
             raise InputError(
@@ -74,88 +90,105 @@ class GroundMotion(Value):
                 f"metadata must be a RecordInfo or None, but {type(metadata).__name__} was given. "
                 "Write metadata=RecordInfo(event=..., year=...)."
             )
-        vars(self).update(acceleration=samples, dt=positive("dt", dt, "s"), name=name, metadata=metadata)
+        upwards = None if vertical is None else _vertical.checked(vertical, samples.size)
+        step = positive("dt", dt, "s")
+        vars(self).update(acceleration=samples, dt=step, name=name, metadata=metadata, vertical=upwards)
 
     def __repr__(self) -> str:
+        upwards = "" if self.vertical is None else f", pva={self.pva:.4g} m/s²"
         return (
             f"GroundMotion({self.name!r}, {self.acceleration.size} samples, dt={self.dt:g} s, "
-            f"duration={self.duration:g} s, pga={self.pga:.4g} m/s²)"
+            f"duration={self.duration:g} s, pga={self.pga:.4g} m/s²{upwards})"
         )
 
-    @property
-    def time(self) -> Array:
-        """Time of the samples in s, shape (n,)."""
-        return self.dt * np.arange(self.acceleration.size, dtype=np.float64)
-
-    @property
-    def duration(self) -> float:
-        """Time from the first sample to the last, (n - 1) dt, in s."""
-        return (self.acceleration.size - 1) * self.dt
+    @cached_property
+    def pva(self) -> float:
+        """Peak vertical acceleration in m/s²; NaN without a vertical component."""
+        return math.nan if self.vertical is None else float(np.max(np.abs(self.vertical)))
 
     @property
-    def velocity(self) -> Array:
-        """Ground velocity at the samples in m/s, shape (n,): the exact integral, starting from rest."""
-        return _integrals.velocity(self.acceleration, self.dt)
+    def vertical_motion(self) -> "GroundMotion":
+        """The vertical component as a motion of its own, for its measures: ``motion.vertical_motion.sa(0.1)``.
 
-    @property
-    def displacement(self) -> Array:
-        """Ground displacement at the samples in m, shape (n,): the exact second integral, starting from rest."""
-        return _integrals.displacement(self.acceleration, self.dt)
-
-    @cached_property
-    def pga(self) -> float:
-        """Peak ground acceleration in m/s²."""
-        return float(np.max(np.abs(self.acceleration)))
-
-    @cached_property
-    def pgv(self) -> float:
-        """Peak ground velocity in m/s, including peaks between samples."""
-        return _integrals.peak_velocity(self.acceleration, self.dt)
-
-    @cached_property
-    def pgd(self) -> float:
-        """Peak ground displacement in m up to the last sample, including peaks between samples."""
-        return _integrals.peak_displacement(self.acceleration, self.dt)
-
-    @cached_property
-    def arias(self) -> float:
-        """Arias intensity π/(2g) ∫a² dt in m/s (Arias 1970).
-
-        The integral is exact. Databases often sum a² dt over the samples instead, which gives a larger value,
-        especially if the frequency content of the record is close to its Nyquist frequency.
-        """
-        return _integrals.arias_intensity(self.acceleration, self.dt)
-
-    @cached_property
-    def cav(self) -> float:
-        """Cumulative absolute velocity ∫|a| dt in m/s (EPRI 1988, without a threshold)."""
-        return _integrals.cumulative_absolute_velocity(self.acceleration, self.dt)
-
-    @cached_property
-    def d5_95(self) -> float:
-        """Significant duration between 5 % and 95 % of the Arias intensity, in s."""
-        return self.significant_duration()
-
-    def significant_duration(self, low: float = 0.05, high: float = 0.95) -> float:
-        """Time between two fractions of the Arias intensity (Trifunac & Brady 1975).
-
-        Parameters
-        ----------
-        low, high : float
-            Fractions of the Arias intensity, 0 <= low < high <= 1.
-
-        Returns
-        -------
-        float
-            Duration in s between the instants at which the fractions are first reached, found on the exact
-            cubic growth between samples; zero for a record without motion.
+        Its metadata say that it is vertical, so that it cannot be used as a horizontal motion.
 
         Raises
         ------
         InputError
-            If the fractions are out of order or out of range.
+            If there is no vertical component.
         """
-        return _integrals.significant_duration(self.acceleration, self.dt, low, high)
+        return GroundMotion(
+            _vertical.known(self.name, self.vertical), self.dt, self.name, _vertical.info_alone(self.metadata)
+        )
+
+    def vertical_ratio(self, periods: ArrayLike, damping_ratio: float = 0.05) -> Array:
+        """Vertical over horizontal pseudo-acceleration, V/H, at periods (s) as in `spectrum`.
+
+        At a period of zero it is PVA/PGA. It is NaN where the horizontal component does not move.
+
+        Raises
+        ------
+        InputError
+            If there is no vertical component, or as for `spectrum`.
+        """
+        upwards, along = self.vertical_motion.spectrum(periods, damping_ratio), self.spectrum(periods, damping_ratio)
+        return np.divide(upwards.sa, along.sa, out=np.full(along.sa.size, math.nan), where=along.sa > 0)
+
+    def with_vertical(self, vertical: "GroundMotion | ArrayLike") -> "GroundMotion":
+        """Return the motion with this vertical component, in place of any other.
+
+        Parameters
+        ----------
+        vertical : GroundMotion or array_like, shape (n,)
+            A motion, such as a record read from the file of the vertical component, or samples in m/s², positive
+            upwards. Both components start at the same instant. If one motion is shorter, zeros are appended to it,
+            since components of one recording often differ by a few samples. A record known to be positive downwards
+            (DWN, DN or DOWN; see `RecordInfo.direction`) is reversed.
+
+        Returns
+        -------
+        GroundMotion
+            Both components. `RecordInfo.vertical_source` names the vertical record.
+
+        Raises
+        ------
+        InputError
+            If the time steps differ, samples differ in number from those of the motion, the given motion is known to be
+            horizontal or itself has a vertical component, or this motion is known to be vertical.
+
+        Warns
+        -----
+        RecordWarning
+            If two motions differ in length by more than 1 s.
+
+        Examples
+        --------
+        >>> import rockflex as rf
+        >>> along = rf.GroundMotion([0.0, 2.0, -1.0, 0.0], dt=0.01)
+        >>> upwards = rf.GroundMotion([0.0, 0.5, 0.0], dt=0.01)
+        >>> along.with_vertical(upwards).vertical.tolist()
+        [0.0, 0.5, 0.0, 0.0]
+        """
+        if self.metadata is not None and self.metadata.is_vertical:
+            raise InputError(
+                f"{shown(self.name)} is itself a vertical component according to the header or name of the file. Give "
+                "the horizontal one first: horizontal.with_vertical(vertical)."
+            )
+        if not isinstance(vertical, GroundMotion):
+            return GroundMotion(self.acceleration, self.dt, self.name, self.metadata, vertical)
+        if vertical.vertical is not None:
+            raise InputError(
+                f"{shown(vertical.name)} has a vertical component of its own. Give one of both: "
+                "with_vertical(other.vertical_motion) or with_vertical(other.without_vertical())."
+            )
+        sign, info = _vertical.info_of_both(vertical.name, vertical.metadata, self.metadata)
+        along, upwards = _vertical.aligned(self.name, self, vertical)
+        return GroundMotion(along, self.dt, self.name, info, sign * upwards)
+
+    def without_vertical(self) -> "GroundMotion":
+        """Return the horizontal component alone."""
+        info = None if self.metadata is None else replace(self.metadata, vertical_source=None)
+        return GroundMotion(self.acceleration, self.dt, self.name, info)
 
     def scaled(self, factor: float) -> "GroundMotion":
         """Return the motion multiplied by `factor` (negative to reverse it), with the same name.
@@ -167,7 +200,7 @@ class GroundMotion(Value):
         """
         factor = finite("factor", factor, "")
         with np.errstate(over="ignore"):
-            return self._with(self.acceleration * factor)
+            return self._changed(lambda samples: samples * factor)
 
     def refined(self, k: int) -> "GroundMotion":
         """Return the same piecewise linear function with every interval split into `k` equal ones.
@@ -177,7 +210,7 @@ class GroundMotion(Value):
         InputError
             If `k` is not a whole number of at least 1.
         """
-        return self._with(_processing.refine(self.acceleration, k), self.dt / k)
+        return self._changed(lambda samples: _processing.refine(samples, k), k)
 
     def resampled(self, dt: float) -> "GroundMotion":
         """Return the same piecewise linear function sampled at the finer step `dt` (s).
@@ -215,7 +248,7 @@ class GroundMotion(Value):
         InputError
             If `degree` is negative, not whole, or too high for the number of samples.
         """
-        return self._with(_processing.baseline_correct(self.acceleration, self.dt, degree))
+        return self._changed(lambda samples: _processing.baseline_correct(samples, self.dt, degree))
 
     def band_passed(self, low: float, high: float, order: int = 4) -> "GroundMotion":
         """Return the motion filtered by a Butterworth band-pass, forwards and backwards.
@@ -240,39 +273,9 @@ class GroundMotion(Value):
             If the corners are not in order below the Nyquist frequency, the order is not a whole positive
             number, or the record is too short for the filter.
         """
-        return self._with(_processing.band_pass(self.acceleration, self.dt, low, high, order))
+        return self._changed(lambda samples: _processing.band_pass(samples, self.dt, low, high, order))
 
-    def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> "ResponseSpectrum":
-        """Elastic response spectrum; see `ResponseSpectrum`.
-
-        Parameters
-        ----------
-        periods : array_like, shape (m,)
-            Natural periods in s: zero, or at least 1e-6 s.
-        damping_ratio : float
-            Fraction of critical damping, 0 <= ζ < 1.
-
-        Returns
-        -------
-        ResponseSpectrum
-            Peaks of relative displacement and velocity, and the pseudo-acceleration.
-
-        Raises
-        ------
-        InputError
-            If a period is negative or not finite, or the damping ratio is out of range.
-        """
-        from rockflex.motion._spectrum import response_spectrum
-
-        return response_spectrum(self.acceleration, self.dt, periods, damping_ratio)
-
-    def sd(self, period: float, damping_ratio: float = 0.05) -> float:
-        """Spectral displacement in m at one period (s); see `spectrum`."""
-        return float(self.spectrum([period], damping_ratio).sd[0])
-
-    def sa(self, period: float, damping_ratio: float = 0.05) -> float:
-        """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""
-        return float(self.spectrum([period], damping_ratio).sa[0])
-
-    def _with(self, acceleration: Array, dt: float | None = None) -> "GroundMotion":
-        return GroundMotion(acceleration, self.dt if dt is None else dt, self.name, self.metadata)
+    def _changed(self, change: Callable[[Array], Array], k: int = 1) -> "GroundMotion":
+        """Return the motion with both components changed alike; the new step is 1/k of the present one."""
+        upwards = None if self.vertical is None else change(self.vertical)
+        return GroundMotion(change(self.acceleration), self.dt / k, self.name, self.metadata, upwards)

@@ -24,8 +24,9 @@ class Measure:
         Description, such as ``"peak ground velocity"``; empty if the label is clear enough.
     of : callable
         Computes it from a `Shaking`.
-    of_what : {"motion", "mode", "base"}
-        What it depends on: only the motion, also the first mode, or also the base.
+    of_what : {"motion", "vertical", "mode", "base"}
+        What it depends on: only the horizontal motion, also the vertical one, also the first mode, or also the base.
+        Measures of the vertical motion are NaN without one.
     power : {0, 1, 2}
         The measure is proportional to this power of the acceleration. Motions cannot be scaled to a measure of power 0.
     short : str
@@ -39,7 +40,7 @@ class Measure:
     unit: str
     words: str = ""
     of: Callable[[Shaking], float]
-    of_what: Literal["motion", "mode", "base"] = "motion"
+    of_what: Literal["motion", "vertical", "mode", "base"] = "motion"
     power: Literal[0, 1, 2] = 1
     short: str = ""
     symbol: str = ""

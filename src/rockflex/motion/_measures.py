@@ -1,5 +1,7 @@
 """The intensity measures. A measure added here is available everywhere: in files, commands, figures and the page."""
 
+import math
+
 from rockflex._checks import one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -28,6 +30,22 @@ _ALL = (
         of=lambda s: s.motion.d5_95,
         power=0,
         symbol="$D_{5–95}$",
+    ),
+    Measure(
+        name="pva",
+        label="PVA",
+        unit="m/s²",
+        words="peak vertical acceleration",
+        of=lambda s: s.motion.pva,
+        of_what="vertical",
+    ),
+    Measure(
+        name="pva_pga",
+        label="PVA/PGA",
+        unit="",
+        of=lambda s: s.motion.pva / s.motion.pga if s.motion.pga else math.nan,
+        of_what="vertical",
+        power=0,
     ),
     Measure(
         name="sd_t1",
@@ -75,8 +93,13 @@ def intensities() -> list[Measure]:
 
 
 def record_measures() -> list[Measure]:
-    """Return the measures that depend only on the motion, not on a structure."""
+    """Return the measures that depend only on the horizontal motion, not on a structure."""
     return [each for each in MEASURES.values() if each.of_what == "motion"]
+
+
+def vertical_measures() -> list[Measure]:
+    """Return the measures of the vertical motion; they are NaN without one."""
+    return [each for each in MEASURES.values() if each.of_what == "vertical"]
 
 
 def intensity(name: str) -> Measure:

@@ -12,13 +12,16 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._text import UNITS, read_lines
 
 
-def read_motion(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
+def read_motion(
+    path: str | Path, units: str | None = None, dt: float | None = None, vertical: str | Path | None = None
+) -> GroundMotion:
     """Read a record from an AT2 file, a CSV file, or text in columns; the content decides.
 
     Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A single
     column is the acceleration, two columns are time (s) and acceleration. With more columns, a header line must
-    have exactly one label that begins with "t" or "time" and one that begins with "acc". The motion starts at
-    the first sample, whatever its time.
+    have exactly one label that begins with "t" or "time" and one that begins with "acc"; a label "vertical" or
+    "up", also after "acc", is the vertical acceleration, positive upwards. The motion starts at the first sample,
+    whatever its time.
 
     Parameters
     ----------
@@ -30,6 +33,10 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
     dt : float, optional
         Sampling step in s; needed if the file has no times. For a file with a time column it replaces
         times that were rounded in print: each must lie within half a step of its nominal time.
+    vertical : str or Path, optional
+        The file of the vertical component, with the same time step; `units` and `dt` apply to it as well. Zeros are
+        appended to the shorter record, and a component that is positive downwards is reversed; see
+        `GroundMotion.with_vertical`, which also joins two records that are read one by one.
 
     Returns
     -------
@@ -41,7 +48,8 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
     InputError
         If the file is missing, empty or binary; `units` or `dt` is missing, contradicts the file or is not
         valid; a value is not a finite number; rows differ in length; time steps are not equal and positive;
-        or the peak exceeds 5 g, which indicates a wrong unit. A file is never read in part.
+        or the peak exceeds 5 g, which indicates a wrong unit. A file is never read in part. With `vertical` also
+        if the time steps differ, or a component is known to have the other direction.
 
     Examples
     --------
@@ -57,7 +65,11 @@ def read_motion(path: str | Path, units: str | None = None, dt: float | None = N
         )
     if dt is not None:
         dt = positive("dt", dt, "s")
-    file = path_of("path", path)
+    motion = _read(path_of("path", path), units, dt)
+    return motion if vertical is None else motion.with_vertical(_read(path_of("vertical", vertical), units, dt))
+
+
+def _read(file: Path, units: str | None, dt: float | None) -> GroundMotion:
     lines = read_lines(file)
     if find_header(lines) is None and file.suffix.lower() != ".at2":
         return parse_columns(file, lines, units, dt)

@@ -24,12 +24,15 @@ class RecordInfo:
         Record sequence number of the PEER NGA database.
     component : str, optional
         Name of the component in its source.
-    direction : {"horizontal", "vertical"}, optional
-        Direction of the component, if its source states it. Vertical components cannot be used in simulations.
+    direction : {"horizontal", "vertical", "down"}, optional
+        Direction of the component, if its source states it: "vertical" is positive upwards, "down" is vertical and
+        positive downwards. Vertical components cannot be used as horizontal motions, nor horizontal ones as vertical.
     station : str, optional
         Recording station.
     source : str, optional
         File or publication from which the samples were taken.
+    vertical_source : str, optional
+        Record from which the vertical component was taken.
 
     Examples
     --------
@@ -47,6 +50,12 @@ class RecordInfo:
     vs30: float | None = None
     rsn: int | None = None
     component: str | None = None
-    direction: Literal["horizontal", "vertical"] | None = None
+    direction: Literal["horizontal", "vertical", "down"] | None = None
     station: str | None = None
     source: str | None = None
+    vertical_source: str | None = None
+
+    @property
+    def is_vertical(self) -> bool:
+        """Whether the component is known to be vertical."""
+        return self.direction in ("vertical", "down")

@@ -63,11 +63,19 @@ def number(token: str, file: str | Path, line: int) -> float:
 
 
 def build_motion(file: Path, values: Array, units: str, dt: float, info: RecordInfo, remedy: str) -> GroundMotion:
+    """Build a motion named after its file."""
+    acceleration = acceleration_of(file, values, units, remedy)
+    try:
+        return GroundMotion(acceleration, dt, name=file.stem, metadata=info)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from error
+
+
+def acceleration_of(file: Path, values: Array, units: str, remedy: str) -> Array:
     """Convert to m/s² and reject amplitudes that indicate a wrong unit."""
     acceleration = values * UNITS[units]
-    motion = _named(file, acceleration, dt, info)
-    if motion.pga > LIMIT * GRAVITY:
-        peak = motion.pga / UNITS[units]
+    peak = float(np.max(np.abs(values), initial=0.0))
+    if peak * UNITS[units] > LIMIT * GRAVITY:
         smaller = {"g": "m/s² or cm/s²", "m/s2": "cm/s²", "cm/s2": "a smaller unit"}[units]
         raise InputError(
             f"{file}: the peak acceleration is {peak:g} {units}, above {LIMIT:g} g. "
@@ -75,11 +83,4 @@ def build_motion(file: Path, values: Array, units: str, dt: float, info: RecordI
             "build GroundMotion(acceleration, dt) from the array; motions can be scaled without limit.",
             field="units",
         )
-    return motion
-
-
-def _named(file: Path, acceleration: Array, dt: float, info: RecordInfo) -> GroundMotion:
-    try:
-        return GroundMotion(acceleration, dt, name=file.stem, metadata=info)
-    except InputError as error:
-        raise InputError(f"{file}: {error}") from error
+    return acceleration

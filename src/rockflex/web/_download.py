@@ -141,9 +141,12 @@ def _of_elements(response: Response) -> dict[str, Any]:
 
 def _record(state: State, uploads: Uploads) -> tuple[str, str]:
     motion = motion_of(state.record, uploads)
-    rows = zip(motion.time.tolist(), motion.acceleration.tolist(), strict=True)
-    lines = [f"{t!r},{a!r}" for t, a in rows]
-    return f"{_file_name(motion)}.csv", "\n".join(["time (s),acc (m/s2)", *lines, ""])
+    columns = {"time (s)": motion.time, "acc (m/s2)": motion.acceleration}
+    if motion.vertical is not None:
+        columns["vertical (m/s2)"] = motion.vertical
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    lines = [",".join(map(repr, row)) for row in rows]
+    return f"{_file_name(motion)}.csv", "\n".join([",".join(columns), *lines, ""])
 
 
 def _file_name(motion: GroundMotion) -> str:

@@ -8,8 +8,8 @@ from rockflex.web._names import among
 FIRST = ("pgv", "pga", "pgd", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
 
 
-MeasureName = Annotated[str, among(lambda: [measure.name for measure in intensities()])]
-SameForAll = Annotated[str, among(lambda: [measure.name for measure in intensities() if measure.of_what != "base"])]
+MeasureName = Annotated[str, among(lambda: [measure.name for measure in _offered()])]
+SameForAll = Annotated[str, among(lambda: [measure.name for measure in _offered() if measure.of_what != "base"])]
 """A measure that does not depend on the base, so that one level means the same motion for every width."""
 
 
@@ -23,8 +23,13 @@ def measures() -> list[dict[str, Any]]:
             "axis": measure.with_unit(measure.label),
             "of_base": measure.of_what == "base",
         }
-        for measure in sorted(intensities(), key=_place)
+        for measure in sorted(_offered(), key=_place)
     ]
+
+
+def _offered() -> list[Measure]:
+    """The measures of the suites that the page has, which hold no vertical components."""
+    return [measure for measure in intensities() if measure.of_what != "vertical"]
 
 
 def _place(measure: Measure) -> int:

@@ -23,6 +23,7 @@ from rockflex.motion import (
     rectangular_pulse,
     ricker_pulse,
     suite_names,
+    vertical_measures,
 )
 from rockflex.web._packing import envelope, pack
 from rockflex.web._refusal import refusing
@@ -126,6 +127,7 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
     spectrum = motion.spectrum(PERIODS)
     measures: list[dict[str, Any]] = [
         *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in record_measures()),
+        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in _vertical(motion)),
         {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
         {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
     ]
@@ -150,6 +152,10 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
             "lifting": None if built is None else built.properties.resisting_moment / built.properties.l0r,
         }
     )
+
+
+def _vertical(motion: GroundMotion) -> list[Measure]:
+    return [] if motion.vertical is None else vertical_measures()
 
 
 def _fact(measure: Measure, value: float, words: str) -> dict[str, Any]:

@@ -93,8 +93,9 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
         message = "the server could not store the file temporarily. Try again."
         raise Refusal({"record.upload": message}, 503) from error
     info = motion.metadata or RecordInfo()
-    info = replace(info, direction=direction_of(Path(shown), info.component))  # the temporary file has another name
-    named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info)
+    # The temporary file has another name.
+    info = replace(info, direction=direction_of(Path(shown), info.component) or info.direction)
+    named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info, motion.vertical)
     if is_vertical(named):
         message = f"{shown} is a vertical component by its header or its name. Choose a horizontal one."
         raise Refusal({"record.upload": message})

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import GroundMotion, OnError, Suite, load_suite, read_suite
+from rockflex.motion import GroundMotion, OnError, Suite, Vertical, load_suite, read_suite
 from rockflex.structure.file import Table
 
 
@@ -29,6 +29,9 @@ class Records(Table):
     on_error: OnError = Field(
         "raise", description='"raise" or "skip": what to do with files of the folder that cannot be read'
     )
+    vertical: Vertical | None = Field(
+        None, description='"pair": each record of the folder with the vertical component of its station'
+    )
     include: list[str] = Field(["*"], description='a list of patterns of record names to keep, such as "FF-1-*"')
 
     @model_validator(mode="after")
@@ -37,6 +40,11 @@ class Records(Table):
             raise InputError('no record is named. Give suites = ["fema-p695-far-field"], folder = "...", or both.')
         if self.folder is None and self.on_error != "raise":
             raise InputError("on_error is for the files of a folder, but none is named. Leave it out.")
+        if self.folder is None and self.vertical is not None:
+            raise InputError(
+                "vertical is for the files of a folder, but none is named: the embedded suites hold no vertical "
+                "components. Leave it out."
+            )
         return self
 
     def load(self, base: Path) -> Suite:
@@ -50,7 +58,7 @@ class Records(Table):
         """
         motions = [motion for name in self.suites for motion in load_suite(name)]
         if self.folder is not None:
-            motions += read_suite(base / self.folder, on_error=self.on_error)
+            motions += read_suite(base / self.folder, on_error=self.on_error, vertical=self.vertical)
         names = [motion.name for motion in motions]
         for pattern in self.include:
             if not any(fnmatchcase(name, pattern) for name in names):
@@ -75,11 +83,13 @@ def record_group(motion: GroundMotion) -> str:
 
 
 def checksums(motions: Iterable[GroundMotion]) -> dict[str, str]:
-    """SHA-256 of each record's step and samples (little-endian doubles), by its name."""
+    """SHA-256 of each record's step and samples (little-endian doubles, vertical ones last), by its name."""
     return {motion.name: _checksum(motion) for motion in motions}
 
 
 def _checksum(motion: GroundMotion) -> str:
     digest = hashlib.sha256(float(motion.dt).hex().encode())
     digest.update(motion.acceleration.astype("<f8").tobytes())
+    if motion.vertical is not None:
+        digest.update(motion.vertical.astype("<f8").tobytes())
     return digest.hexdigest()

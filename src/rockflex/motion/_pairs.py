@@ -1,0 +1,91 @@
+"""Which vertical record belongs to which horizontal one."""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TypeAlias
+
+from rockflex._errors import InputError
+from rockflex.motion._direction import APART, is_horizontal_name, station_of_vertical
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_info import RecordInfo
+
+Key: TypeAlias = tuple[str | int | None, ...]
+
+REPORTED = 10  # records that are named in a message; of more, the number is told
+
+
+def paired(
+    horizontal: Mapping[Path, GroundMotion], vertical: Mapping[Path, GroundMotion]
+) -> tuple[dict[Path, GroundMotion], dict[Path, str], list[Path]]:
+    """Give each horizontal record the vertical one of its station.
+
+    Records that have a vertical component already keep it.
+
+    Returns
+    -------
+    tuple
+        All horizontal records; for those that remain without a vertical component, the reason, which is empty if no
+        vertical record belongs to them; the vertical records that belong to none.
+    """
+    both: dict[Path, GroundMotion] = {}
+    without: dict[Path, str] = {}
+    used: set[Path] = set()
+    index = _index(vertical)
+    for file, motion in horizontal.items():
+        both[file] = motion
+        if motion.vertical is not None:
+            continue
+        found = next((index[key] for key in _keys(file, motion.metadata) if key in index), [])
+        used.update(found)
+        if len(found) == 1:
+            try:
+                both[file] = motion.with_vertical(vertical[found[0]])
+            except InputError as error:
+                without[file] = f"{found[0].name}: {error}"
+        else:
+            without[file] = f"{named(found)} could each belong to it" if found else ""
+    return both, without, [file for file in vertical if file not in used]
+
+
+def named(files: Iterable[Path]) -> str:
+    """Return the names of files, of the first ones if they are many."""
+    names = [file.name for file in files]
+    more = f" and {len(names) - REPORTED} more" if len(names) > REPORTED else ""
+    return ", ".join(names[:REPORTED]) + more
+
+
+def _index(vertical: Mapping[Path, GroundMotion]) -> dict[Key, list[Path]]:
+    """Return the vertical records by each key that a horizontal record of the same station has."""
+    found: dict[Key, list[Path]] = defaultdict(list)
+    for file, motion in vertical.items():
+        station = station_of_vertical(file)
+        if station is not None:
+            found[_by_name(file, station)].append(file)
+        for key in _by_header(motion.metadata):
+            found[key].append(file)
+    return dict(found)
+
+
+def _keys(file: Path, info: RecordInfo | None) -> Iterator[Key]:
+    """Yield the keys under which the vertical record of a horizontal one may be, the surest ones first."""
+    splits = [(file.stem[:end], file.stem[end:]) for end in reversed(range(len(file.stem)))]
+    possible = [(station, word) for station, word in splits if is_horizontal_name(word.lstrip(APART))]
+    # In G1230 the azimuth is 230, although 30 or 0 would also do.
+    for station, _ in sorted(possible, key=lambda each: not (each[1][0] in APART or re.fullmatch(r"\d{3}", each[1]))):
+        yield _by_name(file, station.rstrip(APART))
+    yield from _by_header(info)
+
+
+def _by_name(file: Path, station: str) -> Key:
+    return str(file.parent), station.casefold()
+
+
+def _by_header(info: RecordInfo | None) -> list[Key]:
+    """Return the record sequence number, else event, year and station, if they are known."""
+    if info is None:
+        return []
+    if info.rsn is not None:
+        return [(info.rsn,)]
+    return [(info.event, info.year, info.station)] if None not in (info.event, info.year, info.station) else []

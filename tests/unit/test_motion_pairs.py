@@ -1,0 +1,140 @@
+"""Folders whose vertical records belong to horizontal ones."""
+
+import warnings
+from pathlib import Path
+
+import pytest
+
+from rockflex import GroundMotion, InputError, RecordInfo, RecordWarning, read_suite
+from rockflex.motion._pairs import named, paired
+
+AT2 = "{}, 1/1/2001, {}, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= {}\n0 {} 0\n"
+
+
+def write(folder, name, component, peak, *, event="Some Event", station="Some Station", dt=0.1):
+    (folder / f"{name}.AT2").write_text(AT2.format(event, station, component, dt, peak))
+
+
+def motion(name, **info):
+    return GroundMotion([0.0, 1.0, 0.0], 0.1, name, RecordInfo(**info))
+
+
+def pairs_of(horizontal, vertical):
+    """Which vertical record, by its name, each horizontal one gets; file names as they are in one folder."""
+    along = {Path(name): motion(name) for name in horizontal}
+    upwards = {Path(name): motion(name, direction="vertical") for name in vertical}
+    both, without, left = paired(along, upwards)
+    found = {file.name: each.metadata.vertical_source for file, each in both.items() if each.vertical is not None}
+    return found, {file.name: reason for file, reason in without.items()}, [file.name for file in left]
+
+
+@pytest.mark.parametrize(
+    ("horizontal", "vertical"),
+    [
+        (("RSN9_BORREGO_B-ELC000.AT2", "RSN9_BORREGO_B-ELC090.AT2"), "RSN9_BORREGO_B-ELC-UP.AT2"),
+        (("RSN1294_CHICHI_HWA048-N.AT2", "RSN1294_CHICHI_HWA048-W.AT2"), "RSN1294_CHICHI_HWA048-V.AT2"),
+        (("RSN2734_CHICHI.04_CHY074E.AT2", "RSN2734_CHICHI.04_CHY074N.AT2"), "RSN2734_CHICHI.04_CHY074V.AT2"),
+        (("RSN1_HELENA.A_A-HMC180.AT2", "RSN1_HELENA.A_A-HMC270.AT2"), "RSN1_HELENA.A_A-HMCDWN.AT2"),
+        (("RSN11341_10275733_N5471HNE.AT2", "RSN11341_10275733_N5471HNN.AT2"), "RSN11341_10275733_N5471HNZ.AT2"),
+        (("RSN5618_IWATE_IWT010EW.AT2", "RSN5618_IWATE_IWT010NS.AT2"), "RSN5618_IWATE_IWT010UD.AT2"),
+        (("RSN1633_MANJIL_ABBAR--L.AT2", "RSN1633_MANJIL_ABBAR--T.AT2"), "RSN1633_MANJIL_ABBAR--V.AT2"),
+        (("SED-H1.csv", "SED-H2.csv"), "SED-V1.csv"),
+        (("Kobe NS.txt", "Kobe EW.txt"), "kobe UP.txt"),
+        (("record_X.csv", "record_Y.csv"), "record_Z.csv"),
+        (("NS.AT2", "EW.AT2"), "UP.AT2"),
+    ],
+)
+def test_names_that_differ_only_in_the_component(horizontal, vertical):
+    found, without, left = pairs_of(horizontal, [vertical, "OTHER-UP.AT2"])
+    assert found == dict.fromkeys(horizontal, vertical)
+    assert (without, left) == ({}, ["OTHER-UP.AT2"])
+
+
+def test_stations_whose_names_begin_alike():
+    horizontal = ["G1230.AT2", "G12030.AT2", "G1-030.AT2", "G12-030.AT2"]
+    found, without, _ = pairs_of(horizontal, ["G1-UP.AT2", "G12-UP.AT2"])
+    assert without == {}
+    assert list(found.values()) == ["G1-UP.AT2", "G12-UP.AT2"] * 2
+
+
+def test_other_folders_and_other_stations_are_none():
+    found, without, left = pairs_of(["ABC090.AT2", "ABCD.AT2"], ["ABD-UP.AT2"])
+    assert (found, without, left) == ({}, {"ABC090.AT2": "", "ABCD.AT2": ""}, ["ABD-UP.AT2"])
+    both, *_ = paired({Path("a/X090.csv"): motion("h")}, {Path("b/X-UP.csv"): motion("v")})
+    assert both[Path("a/X090.csv")].vertical is None
+
+
+def test_headers_tell_what_names_do_not():
+    along = {Path("a/first.csv"): motion("1", rsn=7), Path("a/second.csv"): motion("2", event="E", year=1, station="S")}
+    upwards = {Path("b/up.csv"): motion("v7", rsn=7), Path("b/v.csv"): motion("vs", event="E", year=1, station="S")}
+    both, without, left = paired(along, upwards)
+    assert [each.metadata.vertical_source for each in both.values()] == ["v7", "vs"]
+    assert (without, left) == ({}, [])
+    nothing = paired({Path("c.csv"): motion("3", event="E", station="S")}, upwards)
+    assert nothing[1] == {Path("c.csv"): ""}
+
+
+def test_of_two_none_is_chosen():
+    found, without, left = pairs_of(["ABC090.AT2"], ["ABC-UP.AT2", "ABC-V.AT2"])
+    assert (found, left) == ({}, [])
+    assert without == {"ABC090.AT2": "ABC-UP.AT2, ABC-V.AT2 could each belong to it"}
+
+
+def test_a_record_with_both_stays_as_it_is():
+    own = GroundMotion([0.0, 1.0, 0.0], 0.1, "ABC090", vertical=[0.0, 2.0, 0.0])
+    both, without, left = paired({Path("ABC090.csv"): own}, {Path("ABC-UP.csv"): motion("ABC-UP")})
+    assert both[Path("ABC090.csv")] is own
+    assert (without, left) == ({}, [Path("ABC-UP.csv")])
+
+
+def test_many_names_are_shortened():
+    assert named(Path(f"{k}.txt") for k in range(12)).endswith(", 9.txt and 2 more")
+
+
+def test_folder(tmp_path):
+    for component, peak in (("000", 0.1), ("090", 0.2), ("-UP", 0.3)):
+        write(tmp_path, f"RSN1_X_ABC{component}", component.strip("-"), peak)
+    write(tmp_path, "RSN2_X_DEF000", "0", 0.4)
+    write(tmp_path, "RSN3_X_GHI-V", "V", 0.5)
+    with pytest.warns(RecordWarning) as caught:
+        suite = read_suite(tmp_path, vertical="pair")
+    assert [each.message.args[0] for each in caught] == [
+        "Without a vertical component: 1 of 3 records, RSN2_X_DEF000.AT2.",
+        "Left out: 1 vertical component, RSN3_X_GHI-V.AT2.",
+    ]
+    assert {each.filename for each in caught} == {__file__}
+    assert suite.names == ("RSN1_X_ABC000", "RSN1_X_ABC090", "RSN2_X_DEF000")
+    assert [each.pva / 9.81 for each in suite] == pytest.approx([0.3, 0.3, float("nan")], nan_ok=True)
+    (tmp_path / "RSN2_X_DEF000.AT2").unlink()
+    (tmp_path / "RSN3_X_GHI-V.AT2").unlink()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(read_suite(tmp_path, vertical="pair")) == 2
+
+
+def test_another_step_is_a_fault(tmp_path):
+    for name, component, dt in (("A000", "0", 0.1), ("A-UP", "UP", 0.1), ("B000", "0", 0.1), ("B-UP", "UP", 0.2)):
+        write(tmp_path, name, component, 0.1, dt=dt)
+    said = r"1 of 2 records cannot be paired with a vertical component\. B000\.AT2: B-UP\.AT2: Both components need"
+    with pytest.raises(InputError, match=said + r'.* on_error="skip" keeps them without it\.$') as error:
+        read_suite(tmp_path, vertical="pair")
+    assert error.value.field == "vertical"
+    with pytest.warns(RecordWarning, match=said):
+        suite = read_suite(tmp_path, vertical="pair", on_error="skip")
+    assert [each.vertical is None for each in suite] == [False, True]
+
+
+def test_folders_without_pairs(tmp_path):
+    write(tmp_path, "A000", "0", 0.1)
+    write(tmp_path, "A090", "90", 0.1, event="Another")
+    with pytest.raises(
+        InputError, match=r"No vertical component was found for any of the 2 records, such as A000\.AT2"
+    ):
+        read_suite(tmp_path, vertical="pair")
+    (tmp_path / "A090.AT2").unlink()
+    with pytest.raises(InputError, match=r"No vertical component was found for A000\.AT2\. It is recognised by"):
+        read_suite(tmp_path, vertical="pair")
+    with pytest.raises(
+        InputError, match=r'vertical must be "pair" or None, but .*B\.AT2.* was given\. A file of its own'
+    ):
+        read_suite(tmp_path, vertical="B.AT2")
