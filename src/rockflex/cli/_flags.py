@@ -1,4 +1,4 @@
-"""Options generated from the keys of the frame, the impact law, the hysteresis and the initial state."""
+"""Options generated from the keys of the frame, the impact law, the hysteresis, the initial state and the ground."""
 
 import inspect
 from collections.abc import Generator, Mapping
@@ -10,9 +10,20 @@ import typer
 from typer.core import TyperCommand
 
 from rockflex._errors import InputError
-from rockflex._schema import BoucWenKeys, FrameFlags, ImpactKeys, InitialKeys, Key, flag_of, keys_of
+from rockflex._schema import (
+    BedKeys,
+    BoucWenKeys,
+    FrameFlags,
+    GroundKeys,
+    ImpactKeys,
+    InitialKeys,
+    Key,
+    flag_of,
+    keys_of,
+)
 
 FRAME = "Structure by flags (all eight), in place of a file"
+GROUND = "Ground: springs under the base, and friction"
 ASSUMPTIONS = "Impact, hysteresis, start and sliding"
 
 
@@ -62,6 +73,7 @@ class RunCommand(FrameCommand):
 
     panels: ClassVar[dict[str, tuple[type, ...]]] = {
         ASSUMPTIONS: (ImpactKeys, BoucWenKeys, InitialKeys),
+        GROUND: (GroundKeys, BedKeys),
         FRAME: (FrameFlags,),
     }
 
