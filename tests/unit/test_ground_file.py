@@ -82,7 +82,8 @@ SPRINGS = "[ground]\nbase_inertia = 3e4\n[ground.springs]\nstiffness = 4e8\n"
         ("[ground]\nbed = { n = 3.5 }", "[ground.bed] breadth is missing: the dimension of the base perpendicular to "
          "the plane of rocking, a number in m. [ground.bed] n must be the number of springs, a whole number, but 3.5 "
          "was given.", None),
-        (SPRINGS + "damping = -1.0", "[ground.springs]: damping must be zero or positive, but", "ground.springs.damping"),
+        (SPRINGS + "damping = -1.0", "[ground.springs]: damping must be zero or positive, but",
+         "ground.springs.damping"),
         (SPRINGS.replace("base_inertia = 3e4", ""), "[ground]: A base without rotary inertia on springs has no inertia",
          "ground.base_inertia"),
         (SPRINGS.replace("base", "mat_mass = 4e4\nbase"), "[ground]: mat_mass was given besides the base_inertia. "

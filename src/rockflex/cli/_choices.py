@@ -1,30 +1,22 @@
 """The models and assumptions of ``rockflex run``, from its flags and the structure file."""
 
-import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from rockflex._errors import InputError
-from rockflex._schema import BedKeys, BoucWenKeys, GroundKeys, ImpactKeys, InitialKeys
+from rockflex._schema import BoucWenKeys, ImpactKeys, InitialKeys
 from rockflex.cli._flags import flags_of, naming
+from rockflex.cli._ground import ground_remarks, make_ground
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Restitution, parse_model
 from rockflex.structure.file import checked
 from rockflex.study import WORK_LIMIT, InitialState
 from rockflex.study._arguments import work_limit_of
-from rockflex.study._ground_table import GroundTable
 from rockflex.study._yielding import labelled_hysteresis, yielding
 from rockflex.study.assumed import Assumed, name_of
 
-_INERTIA = {"base_inertia", "mat_mass"}
-_GROUND_FIELDS = {
-    **{f"ground.{name}": flag for name, flag in flags_of(GroundKeys).items()},
-    **{f"ground.bed.{name}": flag for name, flag in flags_of(BedKeys).items()},
-}
 USUAL = ("2DOF-S", "MDOF-S", "fixed")
 RIGID = ("rigid", "rigid-C")
 YIELDING = ("2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW")
@@ -37,11 +29,9 @@ class Assumptions:
     law: ImpactLaw | None = None
     bouc_wen: BoucWen | None = None
     initial: InitialState | None = None
-    ground: GroundTable | None = None
-
-    def ground_under(self, properties: RockingProperties) -> Ground | None:
-        """Return the ground under a structure."""
-        return None if self.ground is None else self.ground.under(properties)
+    ground: Ground | None = None
+    ground_values: dict[str, Any] = field(default_factory=dict[str, Any])
+    """The ground as given."""
 
     def describe(self) -> dict[str, Any]:
         """Return the given assumptions, for a document."""
@@ -54,7 +44,7 @@ class Assumptions:
         if self.initial is not None:
             described["initial_rotation"] = self.initial.rotation
         if self.ground is not None:
-            described["ground"] = self.ground.model_dump(exclude_none=True)
+            described["ground"] = self.ground_values
         return described
 
     def remarks(self, properties: RockingProperties) -> list[str]:
@@ -71,17 +61,8 @@ class Assumptions:
             )
         if self.initial is not None:
             lines.append(f"At rest at θ = {self.initial.rotation:g} rad at t = 0")
-        ground = self.ground_under(properties)
-        if ground is not None and ground.springs is not None:
-            springs, per_heave = ground.springs, math.sqrt(ground.springs.total_stiffness * properties.m_tot)
-            lines.append(
-                f"Ground: {springs.n} springs, Σk = {springs.total_stiffness:.4g} N/m, Σc = "
-                f"{springs.total_damping:.4g} N s/m ({springs.total_damping / (2.0 * per_heave):.3g} of critical in "
-                f"heave), Σk x² = {springs.rotational_stiffness:.4g} N m/rad, I_b = {ground.base_inertia:.4g} kg m²"
-            )
-        if ground is not None and ground.friction is not None:
-            least, most = np.min(ground.friction), np.max(ground.friction)
-            lines.append(f"Friction: μ = {least:g}" + ("" if least == most else f" to {most:g}"))
+        if self.ground is not None:
+            lines += ground_remarks(self.ground, properties)
         return lines
 
 
@@ -92,6 +73,7 @@ def make_assumptions(
     bouc_wen: dict[str, Any],
     initial: dict[str, Any],
     ground: dict[str, Any],
+    properties: RockingProperties,
 ) -> Assumptions:
     """Combine the assumptions of a structure file with those given by flags, which take precedence.
 
@@ -101,6 +83,8 @@ def make_assumptions(
         The structure file, and its `impact`, `restitution`, `bouc_wen` and `ground` as far as it has them.
     law, bouc_wen, initial, ground
         Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialKeys`, and in `GroundKeys` and `BedKeys`.
+    properties
+        The structure, whose base the ground is under.
 
     Raises
     ------
@@ -112,8 +96,8 @@ def make_assumptions(
         chosen = checked(Assumed, {**below, **law}).law()
     with naming(flags_of(InitialKeys) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
-    below = in_file.get("ground", {})
-    return Assumptions(chosen, _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen), start, _ground(below, ground))
+    hysteresis = _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen)
+    return Assumptions(chosen, hysteresis, start, *make_ground(file, in_file.get("ground", {}), ground, properties))
 
 
 def choose_models(
@@ -128,12 +112,10 @@ def choose_models(
     InputError
         If a label is unknown, needs more modes than there are, or contradicts the assumptions.
     """
-    with naming(_GROUND_FIELDS):
-        ground = assumptions.ground_under(properties)
     if given is None:
         usual = USUAL if properties.n_modes else RIGID
         labels: list[str] = [*(usual if assumptions.bouc_wen is None else YIELDING)]
-        if ground is not None and not ground.rigid:
+        if assumptions.ground is not None and not assumptions.ground.rigid:
             labels = [label for label in labels if (each := parse_model(label)).lifts and not each.complete]
             labels = [label for label in labels if not parse_model(label).yields]
         if assumptions.initial is not None:
@@ -148,7 +130,7 @@ def choose_models(
             f"{yields[0]} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file."
         )
     for model, bouc_wen in zip(models, labelled_hysteresis(models, assumptions.bouc_wen), strict=True):
-        tied = model.of(properties, assumptions.law, bouc_wen, ground)
+        tied = model.of(properties, assumptions.law, bouc_wen, assumptions.ground)
         if assumptions.initial is not None:
             assumptions.initial.state(tied)
     if by_flag and not yields:
@@ -177,26 +159,6 @@ def parse_work_limit(given: str | None) -> float | None:
     """
     with naming({"work_limit": "--work-limit"}):
         return WORK_LIMIT if given is None else work_limit_of(number_or_word(given))
-
-
-def _ground(in_file: dict[str, Any], flags: dict[str, Any]) -> GroundTable | None:
-    """Return the ground of a file with the values of flags, which take precedence; None for rigid ground."""
-    if not in_file and not flags:
-        return None
-    own = {name: flags[name] for name in flags_of(GroundKeys) if name in flags}
-    below = {name: value for name, value in in_file.items() if not (own.keys() & _INERTIA and name in _INERTIA)}
-    bed = {name: flags[name] for name in flags_of(BedKeys) if name in flags}
-    if not bed:
-        return checked(GroundTable, {**below, **own})
-    if "springs" in below:
-        raise InputError(
-            "The ground of the structure file has springs, and a bed was given on the command line. Leave one of them "
-            "out."
-        )
-    whole = {**below.get("bed", {}), **bed}
-    if "breadth" not in whole:
-        raise InputError("A bed of springs needs the breadth of the base. Give --breadth M in m.", field="breadth")
-    return checked(GroundTable, {**below, **own, "bed": whole})
 
 
 def _bouc_wen(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:

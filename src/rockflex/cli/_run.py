@@ -110,7 +110,7 @@ def run(
     loaded = load_structure(file, given(context, FrameFlags))
     law, bouc_wen, initial = (given(context, table) for table in (ImpactKeys, BoucWenKeys, InitialKeys))
     ground = given(context, GroundKeys) | given(context, BedKeys)
-    assumptions = make_assumptions(file, loaded.assumed, law, bouc_wen, initial, ground)
+    assumptions = make_assumptions(file, loaded.assumed, law, bouc_wen, initial, ground, loaded.properties)
     models = choose_models(model, loaded.properties, assumptions, by_flag=bool(bouc_wen))
     if assumptions.bouc_wen is not None and not yielding(models):
         note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
