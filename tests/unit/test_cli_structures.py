@@ -170,7 +170,7 @@ def test_unknown_table(failing):
     message = failing(toml(FRAME, "frmae"))
     keys = (
         "name, frame, fish_bone, wall_frame, tapered_tower, cantilever, beam, lumped, matrices, modes, properties, "
-        "block, eccentricity, tendons, elements, impact, restitution, bouc_wen"
+        "block, eccentricity, tendons, elements, impact, restitution, bouc_wen, ground"
     )
     assert message == f": frmae is not known; there are {keys}. Did you mean frame?"
 

@@ -124,8 +124,8 @@ COEFFICIENT = "friction must be a positive Coulomb coefficient, such as 0.4, or 
         (lambda: rf.Springs([0.0, 3.0], 1e8), "positions must be on both sides of the axis of the masses, x = 0, or "
          "the base falls over, but they reach from 0 to 3 m. Measure them from that axis, positive to the right.",
          "positions"),
-        (lambda: SPRINGS.damped(-0.1, 1e4), "damping_ratio must be a zero or positive, finite number in fractions of "
-         "critical damping, but -0.1 was given.", "damping_ratio"),
+        (lambda: SPRINGS.damped(-0.1, 1e4), "heave_damping_ratio must be a zero or positive, finite number in "
+         "fractions of critical damping, but -0.1 was given.", "heave_damping_ratio"),
         (lambda: SPRINGS.damped(0.1, 0.0), "mass must be a positive, finite number in kg, but 0.0 was given.", "mass"),
         (rf.Ground, "Ground needs friction, springs or both: Ground(friction=0.4), for example. Leave the ground out "
          "for a base on rigid ground that cannot slide.", None),

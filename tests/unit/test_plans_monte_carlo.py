@@ -343,7 +343,7 @@ def changed(structure=None, **variables):
         (
             changed({"wall_frame": WALL | {"mass": "= 0.1 * weight"}}),
             "[structure.wall_frame] mass: weight is known only "
-            "after the structure is built, so only formulas of elements and tendons may use it.",
+            "after the structure is built, so only formulas of elements, tendons and the ground may use it.",
         ),
         (
             changed({"wall_frame": WALL | {"damping_ratio": ["= 0.02", "= (x"]}}),

@@ -2,6 +2,7 @@
 
 from rockflex._schema._assumed import IMPACT, LAWS, BoucWenKeys, ImpactKeys, InitialKeys, LawName
 from rockflex._schema._frame import AspectRatio, BaseMass, Eccentricity, FrameFlags, FrameKeys, Period
+from rockflex._schema._ground import BedKeys, GroundKeys
 from rockflex._schema._key import NUMBER, PLAIN, WHOLE, Key, each, flag_of, keys_of
 
 __all__ = [
@@ -12,10 +13,12 @@ __all__ = [
     "WHOLE",
     "AspectRatio",
     "BaseMass",
+    "BedKeys",
     "BoucWenKeys",
     "Eccentricity",
     "FrameFlags",
     "FrameKeys",
+    "GroundKeys",
     "ImpactKeys",
     "InitialKeys",
     "Key",

@@ -1,14 +1,15 @@
 """The models and assumptions of ``rockflex run``, from its flags and the structure file."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from rockflex._errors import InputError
 from rockflex._schema import BoucWenKeys, ImpactKeys, InitialKeys
 from rockflex.cli._flags import flags_of, naming
-from rockflex.modal import RockingProperties
+from rockflex.cli._ground import ground_remarks, make_ground
+from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Restitution, parse_model
 from rockflex.structure.file import checked
 from rockflex.study import WORK_LIMIT, InitialState
@@ -28,6 +29,9 @@ class Assumptions:
     law: ImpactLaw | None = None
     bouc_wen: BoucWen | None = None
     initial: InitialState | None = None
+    ground: Ground | None = None
+    ground_values: dict[str, Any] = field(default_factory=dict[str, Any])
+    """The ground as given."""
 
     def describe(self) -> dict[str, Any]:
         """Return the given assumptions, for a document."""
@@ -39,10 +43,12 @@ class Assumptions:
             described["bouc_wen"] = asdict(self.bouc_wen)
         if self.initial is not None:
             described["initial_rotation"] = self.initial.rotation
+        if self.ground is not None:
+            described["ground"] = self.ground_values
         return described
 
-    def remarks(self) -> list[str]:
-        """Return the same in lines, for the head of a table."""
+    def remarks(self, properties: RockingProperties) -> list[str]:
+        """Return the same in lines, for the head of a table of runs of a structure."""
         lines: list[str] = []
         if self.law is not None:
             e = f", e = {self.law.e:g}" if isinstance(self.law, Restitution) else ""
@@ -55,20 +61,30 @@ class Assumptions:
             )
         if self.initial is not None:
             lines.append(f"At rest at θ = {self.initial.rotation:g} rad at t = 0")
+        if self.ground is not None:
+            lines += ground_remarks(self.ground, properties)
         return lines
 
 
 def make_assumptions(
-    file: Path | None, in_file: dict[str, Any], law: dict[str, Any], bouc_wen: dict[str, Any], initial: dict[str, Any]
+    file: Path | None,
+    in_file: dict[str, Any],
+    law: dict[str, Any],
+    bouc_wen: dict[str, Any],
+    initial: dict[str, Any],
+    ground: dict[str, Any],
+    properties: RockingProperties,
 ) -> Assumptions:
     """Combine the assumptions of a structure file with those given by flags, which take precedence.
 
     Parameters
     ----------
     file, in_file
-        The structure file, and its `impact`, `restitution` and `bouc_wen` as far as it has them.
-    law, bouc_wen, initial
-        Values by flags, named as in `ImpactKeys`, `BoucWenKeys` and `InitialKeys`.
+        The structure file, and its `impact`, `restitution`, `bouc_wen` and `ground` as far as it has them.
+    law, bouc_wen, initial, ground
+        Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialKeys`, and in `GroundKeys` and `BedKeys`.
+    properties
+        The structure, whose base the ground is under.
 
     Raises
     ------
@@ -80,7 +96,8 @@ def make_assumptions(
         chosen = checked(Assumed, {**below, **law}).law()
     with naming(flags_of(InitialKeys) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
-    return Assumptions(chosen, _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen), start)
+    hysteresis = _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen)
+    return Assumptions(chosen, hysteresis, start, *make_ground(file, in_file.get("ground", {}), ground, properties))
 
 
 def choose_models(
@@ -98,6 +115,9 @@ def choose_models(
     if given is None:
         usual = USUAL if properties.n_modes else RIGID
         labels: list[str] = [*(usual if assumptions.bouc_wen is None else YIELDING)]
+        if assumptions.ground is not None and not assumptions.ground.rigid:
+            labels = [label for label in labels if (each := parse_model(label)).lifts and not each.complete]
+            labels = [label for label in labels if not parse_model(label).yields]
         if assumptions.initial is not None:
             labels = [label for label in labels if parse_model(label).lifts]
     else:
@@ -110,7 +130,7 @@ def choose_models(
             f"{yields[0]} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file."
         )
     for model, bouc_wen in zip(models, labelled_hysteresis(models, assumptions.bouc_wen), strict=True):
-        tied = model.of(properties, assumptions.law, bouc_wen)
+        tied = model.of(properties, assumptions.law, bouc_wen, assumptions.ground)
         if assumptions.initial is not None:
             assumptions.initial.state(tied)
     if by_flag and not yields:

@@ -1,4 +1,4 @@
-"""Options generated from the keys of the frame, the impact law, the hysteresis and the initial state."""
+"""Options generated from the keys of the frame, the impact law, the hysteresis, the initial state and the ground."""
 
 import inspect
 from collections.abc import Generator, Mapping
@@ -10,9 +10,20 @@ import typer
 from typer.core import TyperCommand
 
 from rockflex._errors import InputError
-from rockflex._schema import BoucWenKeys, FrameFlags, ImpactKeys, InitialKeys, Key, flag_of, keys_of
+from rockflex._schema import (
+    BedKeys,
+    BoucWenKeys,
+    FrameFlags,
+    GroundKeys,
+    ImpactKeys,
+    InitialKeys,
+    Key,
+    flag_of,
+    keys_of,
+)
 
 FRAME = "Structure by flags (all eight), in place of a file"
+GROUND = "Ground: springs under the base, and friction"
 ASSUMPTIONS = "Impact, hysteresis, start and sliding"
 
 
@@ -28,7 +39,7 @@ class FrameCommand(TyperCommand):
     def generated(self) -> list[Any]:
         """The options of all tables, which typer reads from the signature of a function."""
         found = {
-            name: Annotated[_kind(kind) | None, _option(table, name, key, panel)]
+            _destination(name, key): Annotated[_kind(kind) | None, _option(table, name, key, panel)]
             for panel, tables in self.panels.items()
             for table in tables
             for name, kind, key in keys_of(table)
@@ -62,13 +73,15 @@ class RunCommand(FrameCommand):
 
     panels: ClassVar[dict[str, tuple[type, ...]]] = {
         ASSUMPTIONS: (ImpactKeys, BoucWenKeys, InitialKeys),
+        GROUND: (GroundKeys, BedKeys),
         FRAME: (FrameFlags,),
     }
 
 
 def given(ctx: typer.Context, table: type) -> dict[str, Any]:
     """Return the values that the flags of a table give, by key."""
-    return {name: ctx.obj[name] for name, _, _ in keys_of(table) if name in ctx.obj}
+    flags = ((name, _destination(name, key)) for name, _, key in keys_of(table))
+    return {name: ctx.obj[flag] for name, flag in flags if flag in ctx.obj}
 
 
 def flags_of(*tables: type) -> dict[str, str]:
@@ -90,6 +103,11 @@ def naming(flags: Mapping[str, str]) -> Generator[None]:
             message = f"{text} On the command line this is {flags[field]}."
             raise InputError(message, field=field) from error
         raise
+
+
+def _destination(name: str, key: Key) -> str:
+    """Return the name of an option among those of its command, where keys of several tables may be the same."""
+    return key.flag or name
 
 
 def _kind(annotation: Any) -> type:

@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
-from rockflex._schema import BoucWenKeys, FrameFlags, ImpactKeys, InitialKeys
+from rockflex._schema import BedKeys, BoucWenKeys, FrameFlags, GroundKeys, ImpactKeys, InitialKeys
 from rockflex.cli import _options as options
 from rockflex.cli._flags import given, naming
 
@@ -24,6 +24,11 @@ rockflex run structure.toml el-centro-1940 --model 2DOF-S,2DOF-S-BW,1DOF-fixed-B
 
 rockflex run structure.toml --model 2DOF-C --initial-rotation 0.05 --free-vibration 20 --impact restitution \
 --restitution 0.9
+
+rockflex run structure.toml el-centro-1940 --model MDOF-S --ground-friction 0.3
+
+rockflex run structure.toml el-centro-1940 --model MDOF-S --subgrade-modulus 40e6 --breadth 3 \
+--heave-damping-ratio 0.3 --mat-mass 40e3
 
 rockflex run --stories 5 --story-height 3 --story-mass 40e3 --base-mass 40e3 --stiffness-ratio inf \
 --period 1 --aspect-ratio 10 --damping-ratio 0.02 fema-p695-far-field/FF-2-a --scale 1 --scale 1.5 --json"""
@@ -56,7 +61,8 @@ def run(
             "MDOF-C, 3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; fixed base: fixed, 5DOF-fixed; one "
             "mode that yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of omitted modes in V_b and M_b: "
             "2DOF-S-R, 5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
-            "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation, those of these that rock.",
+            "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation, those of these that rock; on springs or with "
+            "--ground-friction, those that are simplified and elastic and rock.",
             show_default=False,
         ),
     ] = None,
@@ -106,7 +112,8 @@ def run(
     file, names = split_arguments(structure, arguments or [])
     loaded = load_structure(file, given(context, FrameFlags))
     law, bouc_wen, initial = (given(context, table) for table in (ImpactKeys, BoucWenKeys, InitialKeys))
-    assumptions = make_assumptions(file, loaded.assumed, law, bouc_wen, initial)
+    ground = given(context, GroundKeys) | given(context, BedKeys)
+    assumptions = make_assumptions(file, loaded.assumed, law, bouc_wen, initial, ground, loaded.properties)
     models = choose_models(model, loaded.properties, assumptions, by_flag=bool(bouc_wen))
     if assumptions.bouc_wen is not None and not yielding(models):
         note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")

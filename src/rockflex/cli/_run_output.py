@@ -40,6 +40,16 @@ UNITS = {
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",
     "initial_rotation": "rad",
+    "ground.base_inertia": "kg m²",
+    "ground.mat_mass": "kg",
+    "ground.springs.positions": "m",
+    "ground.springs.stiffness": "N/m",
+    "ground.springs.damping": "N s/m",
+    "ground.bed.breadth": "m",
+    "ground.bed.subgrade_modulus": "N/m³",
+    "ground.bed.shear_modulus": "N/m²",
+    "ground.bed.damping": "N s/m",
+    "ground.bed.end_zone": "m",
 }
 SERIES = (
     "time", "side", "ground_acceleration", "rotation", "rotation_velocity", "top_displacement",

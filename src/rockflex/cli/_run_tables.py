@@ -35,7 +35,7 @@ Columns = list[tuple[str, list[str]]]
 def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *, times: bool) -> None:
     """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
     console = output()
-    for line in (title, *batch.assumptions.remarks()):
+    for line in (title, *batch.assumptions.remarks(batch.properties)):
         console.print(line, markup=False, soft_wrap=True)
     peaks, ground = _peaks(runs), _ground(runs)
     tables, elements = [(peaks + ground, 1)], batch.properties.elements

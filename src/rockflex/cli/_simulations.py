@@ -44,7 +44,7 @@ class Batch:
         """Return the case of one model, with its history where that is written or the friction is needed."""
         chosen, given, whole = parse_model(model), self.assumptions, self.history or self.friction is not None
         (bouc_wen,) = labelled_hysteresis([chosen], given.bouc_wen)
-        tied = chosen.of(self.properties, given.law, bouc_wen)
+        tied = chosen.of(self.properties, given.law, bouc_wen, given.ground)
         free = free_vibration_time(self.free_vibration)
         return Case(tied, free, given.initial, work_limit_of(self.work_limit), history=whole, floors=whole)
 

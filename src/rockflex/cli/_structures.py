@@ -31,7 +31,7 @@ class LoadedStructure:
     values: dict[str, Any]
     built: Built
     assumed: dict[str, Any] = field(default_factory=dict[str, Any])
-    """`impact`, `restitution` and `bouc_wen`, as far as the file has them."""
+    """`impact`, `restitution`, `bouc_wen` and `ground`, as far as the file has them."""
 
     @property
     def properties(self) -> RockingProperties:

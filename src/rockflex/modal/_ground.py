@@ -110,12 +110,12 @@ class Springs(Value):
         """Σ k x² - (Σ k x)²/Σ k in N m/rad: rotational stiffness of a base that is free to heave."""
         return self.rotational_stiffness - float(self.stiffness @ self.positions) ** 2 / self.total_stiffness
 
-    def damped(self, damping_ratio: float, mass: float) -> "Springs":
+    def damped(self, heave_damping_ratio: float, mass: float) -> "Springs":
         """Return the same springs with dashpots in proportion to their stiffness.
 
         Parameters
         ----------
-        damping_ratio
+        heave_damping_ratio
             Fraction of the critical damping of the heave mode: Σ c = 2 ζ (m Σ k)^½. Zero or positive; a stiff footing
             on soil may exceed 1.
         mass
@@ -126,7 +126,7 @@ class Springs(Value):
         InputError
             If a value is outside its range.
         """
-        ratio = positive("damping_ratio", damping_ratio, "fractions of critical damping", zero=True)
+        ratio = positive("heave_damping_ratio", heave_damping_ratio, "fractions of critical damping", zero=True)
         frequency = math.sqrt(self.total_stiffness / positive("mass", mass, "kg"))
         return Springs(self.positions, self.stiffness, 2.0 * ratio / frequency * self.stiffness, self.area)
 

@@ -1,4 +1,4 @@
-"""The assumptions of a run besides its model, as a file or a link gives them: impact law and hysteresis."""
+"""The assumptions of a run besides its model, as a file or a link gives them: impact law, hysteresis and ground."""
 
 from collections.abc import Callable
 from typing import Annotated
@@ -11,6 +11,7 @@ from rockflex._shown import shown
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified
 from rockflex.structure.file import Table
 from rockflex.study._arguments import check_options
+from rockflex.study._ground_table import GroundTable
 
 _LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "simplified": VVELSimplified,
@@ -24,13 +25,16 @@ class BoucWenTable(BoucWenKeys, Table):
 
 
 class Assumed(ImpactKeys, Table):
-    """Keys for the impact law and the hysteresis; by default each model has its own law and nothing yields.
+    """Keys for the impact law, the hysteresis and the ground.
+
+    By default each model has its own law, nothing yields, and the base cannot slide on rigid ground.
 
     In Python `impact` may also be any `ImpactLaw`, in place of a name.
     """
 
     impact: Annotated[LawName | InstanceOf[ImpactLaw] | None, IMPACT] = None  # pyright: ignore[reportIncompatibleVariableOverride]
     bouc_wen: Annotated[BoucWenTable | None, Key("a table", form=PLAIN)] = None
+    ground: Annotated[GroundTable | None, Key("a table", form=PLAIN)] = None
 
     @field_validator("impact", mode="before")
     @classmethod

@@ -11,7 +11,7 @@ from rockflex.structure.file._entry import StructureEntry
 from rockflex.structure.file._table import checked
 from rockflex.structure.file._tables import Built
 
-_FOR_RUNS = ("impact", "restitution", "bouc_wen")  # only for `rockflex run`
+_FOR_RUNS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
 
 
 def read_structure(path: str | Path) -> Built:
@@ -30,8 +30,8 @@ def read_structure(path: str | Path) -> Built:
     Parameters
     ----------
     path
-        The file. The keys ``impact``, ``restitution`` and ``[bouc_wen]`` are for ``rockflex run`` and are ignored; in
-        Python they are arguments of `simulate`.
+        The file. The keys ``impact``, ``restitution``, ``[bouc_wen]`` and ``[ground]`` are for ``rockflex run`` and are
+        ignored; in Python they are arguments of `simulate`.
 
     Returns
     -------

@@ -6,9 +6,10 @@ from typing import Any, cast
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.modal import RockingProperties
+from rockflex.modal import Ground, RockingProperties
 from rockflex.structure.file import StructureEntry, Table, checked, label_of
 from rockflex.study._arguments import properties_of
+from rockflex.study._ground_table import GroundTable
 from rockflex.study.monte_carlo._formula import is_formula, names_of, value_of
 from rockflex.study.monte_carlo._variables import Variables, check_known
 
@@ -19,13 +20,17 @@ FACTS = {
     "half_width": "the half width B of the base in m",
     "l0r_g": "the moment L_0^r g of the weight, a radian, in N m",
 }
-"""What formulas of tendons and elements may use besides the variables."""
+"""What formulas of tendons, elements and the ground may use besides the variables."""
 
 Place = tuple[str | int, ...]
 
 
 class _Holder(Table):
     structure: StructureEntry
+
+
+class _GroundHolder(Table):
+    ground: GroundTable
 
 
 class Population:
@@ -39,6 +44,8 @@ class Population:
         A structure as a file describes it, with formulas such as "= 0.3 * weight" in place of some numbers.
     folder
         Where relative paths of files of numbers start.
+    ground
+        The ground as a file describes it, with formulas in place of some numbers; None for rigid ground.
 
     Raises
     ------
@@ -46,18 +53,20 @@ class Population:
         If a formula cannot be read, or refers to unknown names.
     """
 
-    def __init__(self, variables: Variables, structure: Mapping[str, Any], folder: Path) -> None:
-        self.variables, self._structure, self._folder = variables, structure, folder
-        for place, formula in _formulas(structure, ("structure",)):
-            label, held = label_of(place), place[1] in HELD
+    def __init__(
+        self, variables: Variables, structure: Mapping[str, Any], folder: Path, ground: Mapping[str, Any] | None = None
+    ) -> None:
+        self.variables, self._structure, self._folder, self._ground = variables, structure, folder, ground
+        for place, formula in (*_formulas(structure, ("structure",)), *_formulas(ground, ("ground",))):
+            label, held = label_of(place), place[0] == "ground" or place[1] in HELD
             try:
                 needed = names_of(formula)
             except InputError as error:
                 raise InputError(f"{label}: {error}") from error
             if not held and (early := sorted(needed & FACTS.keys())):
                 raise InputError(
-                    f"{label}: {early[0]} is known only after the structure is built, so only formulas of elements and "
-                    "tendons may use it."
+                    f"{label}: {early[0]} is known only after the structure is built, so only formulas of elements, "
+                    "tendons and the ground may use it."
                 )
             check_known(label, needed, variables.kinds | (FACTS if held else {}))
 
@@ -83,6 +92,19 @@ class Population:
         if not any(self._structure.get(key) for key in HELD):
             return free
         return properties_of(_checked(self._structure, {**values, **facts_of(free)}).hold(free))
+
+    def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
+        """Return the ground under a structure for values of the variables.
+
+        Raises
+        ------
+        InputError
+            If a formula has no value, a key is unknown, missing, or of the wrong kind, or a value is out of range.
+        """
+        if self._ground is None:
+            return None
+        content = _filled(self._ground, {**values, **facts_of(properties)}, ("ground",))
+        return checked(_GroundHolder, {"ground": content}).ground.under(properties)
 
 
 def facts_of(properties: RockingProperties) -> dict[str, float]:

@@ -1,13 +1,14 @@
 """The study of a random population of structures."""
 
 from collections.abc import Iterator
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from rockflex._errors import InputError
-from rockflex.modal import RockingProperties
+from rockflex._schema import PLAIN, Key
+from rockflex.modal import Ground, RockingProperties
 from rockflex.motion import Suite, intensities
 from rockflex.study._arguments import factors_of
 from rockflex.study._results import RESULTS
@@ -32,8 +33,9 @@ class MonteCarloStudy(RunsSpec):
     `variables` are distributions (`uniform`, `log_uniform`, `whole`, `normal`, `lognormal` or `one_of`), formulas of
     other variables, and numbers. `structure` is a structure as a file describes it; any number in it may be a formula,
     a text that begins with "=": numbers, names of variables, + - * / **, parentheses, min, max, sqrt, exp and log.
-    Formulas of tendons and elements may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width`
-    (B, m) and `l0r_g` (L_0^r g, N m), so that strengths can be shares of the weight.
+    `ground` is the ground as a file describes it, and may have formulas too. Formulas of tendons, elements and the
+    ground may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width` (B, m) and `l0r_g`
+    (L_0^r g, N m), so that strengths can be shares of the weight.
 
     The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
     `run_cloud`, with the name of the study as `structure`; `number`, which counts the structures from 0; each variable;
@@ -70,6 +72,7 @@ class MonteCarloStudy(RunsSpec):
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     variables: dict[str, Any] = Field(description="a table of random variables")
     structure: dict[str, Any] = Field(description="a table of a structure, such as [structure.frame]")
+    ground: Annotated[dict[str, Any] | None, Key("a table", form=PLAIN)] = None  # pyright: ignore[reportIncompatibleVariableOverride]
     scales: Factors = Field([1.0])
     records_per_structure: int | None = Field(
         None, ge=1, description="how many records to draw for each structure, a whole number (default: all records)"
@@ -84,7 +87,7 @@ class MonteCarloStudy(RunsSpec):
             If a variable or a formula is wrong.
         """
         taken = dict.fromkeys(_COLUMNS, "a column of the table")
-        return Population(Variables(self.variables, taken | FACTS), self.structure, self._folder)
+        return Population(Variables(self.variables, taken | FACTS), self.structure, self._folder, self.ground)
 
     def structure_of(self, number: int) -> RockingProperties:
         """Return the random structure of a number from 0.
@@ -96,6 +99,21 @@ class MonteCarloStudy(RunsSpec):
         """
         population = self.population()
         return population.build(population.variables.draw(self.seed, number))
+
+    def ground_of(self, number: int) -> Ground | None:
+        """Return the ground under the random structure of a number from 0; None for rigid ground without sliding.
+
+        Raises
+        ------
+        InputError
+            If the structure or its ground cannot be built.
+        """
+        population = self.population()
+        values = population.variables.draw(self.seed, number)
+        return population.ground_under(population.build(values), values)
+
+    def ground_rule(self) -> None:
+        """Return None: each structure has a ground of its own."""
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of the numbers in each file that the structure names, and of a user-defined impact law.
@@ -147,9 +165,13 @@ class MonteCarloPlan(ChunkedPlan):
         first: InputError | None = None
         for number in range(min(count, TRIED)):
             try:
-                return self.population.build(self.population.variables.draw(self.seed, number))
+                values = self.population.variables.draw(self.seed, number)
+                built = self.population.build(values)
+                self.population.ground_under(built, values)
             except InputError as error:
                 first = first or error
+            else:
+                return built
         raise InputError(f"None of the first {min(count, TRIED)} structures can be built. Number 0: {first}")
 
     @property
@@ -178,13 +200,14 @@ class MonteCarloPlan(ChunkedPlan):
         try:
             row |= self.population.variables.draw(self.seed, unit)
             properties = self.population.build(row)
+            ground = self.population.ground_under(properties, row)
         except InputError as error:
             for run in self._runs(unit):
                 yield self.bench.head(*run) | row | {"error": str(error)}
             return
         row |= facts_of(properties)
         row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
-        bench = self.bench.with_structure(properties)
+        bench = self.bench.with_structure(properties, ground)
         for run in self._runs(unit):
             yield bench.run(*run) | row
 

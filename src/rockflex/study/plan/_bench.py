@@ -8,7 +8,7 @@ from typing import Any, Literal
 from rockflex._checks import instance
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
-from rockflex.modal import RockingProperties
+from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import Suite, intensities
 from rockflex.response import Response
@@ -78,10 +78,11 @@ class Bench:
         given = dict(zip(self.names, self.structures, strict=True))
         return Bench(given, self.motions, replace(self.assumptions, work_limit=work_limit))
 
-    def with_structure(self, properties: RockingProperties) -> "Bench":
-        """Return a bench of the same records and models with another structure in place of the only one."""
+    def with_structure(self, properties: RockingProperties, ground: Ground | None) -> "Bench":
+        """Return a bench of the same records and models with another structure and ground in place of the only one."""
         other = copy(self)
         other.structures, other._cases, other._measures = [properties], {}, {}
+        other.assumptions = replace(self.assumptions, ground=ground)
         return other
 
     @property

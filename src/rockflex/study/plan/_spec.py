@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex._shown import shown
-from rockflex.modal import RockingProperties
+from rockflex.modal import Ground, RockingProperties
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, problems
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, properties_of, work_limit_of
@@ -127,7 +127,11 @@ class RunsSpec(Assumed, Spec):
         free = free_vibration_time(self.free_vibration)
         models = tuple(map(parse_model, self.models))
         limit = work_limit_of(self.work_limit)
-        return Assumptions(models, free, self.law(), self.hysteresis(), friction, limit)
+        return Assumptions(models, free, self.law(), self.hysteresis(), friction, limit, self.ground_rule())
+
+    def ground_rule(self) -> Callable[[RockingProperties], Ground] | None:
+        """Return the function that gives each structure its ground; None for rigid ground without sliding."""
+        return None if self.ground is None else self.ground.under
 
 
 class StructuresSpec(RunsSpec):
@@ -163,9 +167,11 @@ class StructuresSpec(RunsSpec):
         properties: dict[str, RockingProperties] = {}
         for place, entry in enumerate(self.structures, start=1):
             try:
-                properties[names[place - 1]] = properties_of(entry.build(self._folder))
+                built = properties[names[place - 1]] = properties_of(entry.build(self._folder))
             except InputError as error:
                 raise InputError(
                     f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"
                 ) from error
+            if self.ground is not None:
+                self.ground.under(built)  # before any run
         return Bench(properties, self.records.load(self._folder), self.assumptions(friction=friction))
