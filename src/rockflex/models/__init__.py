@@ -26,7 +26,7 @@ from rockflex.models._kept import accelerations, acting_side, phases_at, pulls_a
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
-from rockflex.models._named import floor_quantities, modal_displacement, quantities, rotation_by_side, swing_by_side
+from rockflex.models._named import element_moves, element_speeds, floor_quantities, modal_displacement, quantities, rotation_by_side, swing_by_side
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import (
     HORIZONTAL,
@@ -61,7 +61,7 @@ from rockflex.models._phase import (
 )
 from rockflex.models._pulls import SUMS, pulls_of
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
-from rockflex.models._reactions import Reactions, printed_reactions, reactions, spring_forces
+from rockflex.models._reactions import Reactions, lifted_springs, printed_reactions, reactions, spring_forces
 from rockflex.models._slider import Slider
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._springs import SpringModel
@@ -134,6 +134,8 @@ __all__ = [
     "arms",
     "element_energies",
     "element_forces",
+    "element_moves",
+    "element_speeds",
     "elements_of",
     "elongations",
     "field_rates",
@@ -144,6 +146,7 @@ __all__ = [
     "inertia_left",
     "kinetic_energy",
     "layout_of",
+    "lifted_springs",
     "lost_support_row",
     "may_pass",
     "modal_displacement",

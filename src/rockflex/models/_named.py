@@ -100,6 +100,19 @@ def rotation_by_side(model: ModalModel) -> Quantities:
     return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])
 
 
+def element_moves(model: ModalModel) -> Quantities:
+    """Return the elongation of each element of a base on springs and its negative in m, less what it had at rest."""
+    places = np.repeat([each.position for each in model.elements], 2)
+    signs = np.tile([1.0, -1.0], len(model.elements))
+    return Quantities.of(places.size, model.properties.n_modes, heave=signs, rotation=-signs * places)
+
+
+def element_speeds(model: ModalModel) -> Quantities:
+    """Return the rate of elongation of each element of a base on springs in m/s."""
+    places = np.array([each.position for each in model.elements])
+    return Quantities.of(places.size, model.properties.n_modes, heaving=1.0, swing=-places)
+
+
 def swing_by_side(model: ModalModel) -> Quantities:
     """Return δ'/r, the rate of an element's elongation per unit distance from the pivot, in rad/s, to each side.
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._kept import acting_side, by_phase, pulls_at, rates_of
@@ -15,7 +15,7 @@ from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
-from rockflex.models._springs import SpringModel
+from rockflex.models._springs import LIFTED, SpringModel
 
 
 class Reactions(NamedTuple):
@@ -47,6 +47,12 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
         on = side == each
         vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]
     return Reactions(horizontal, vertical)
+
+
+def lifted_springs(model: SpringModel, states: Array) -> Bools:
+    """Return which springs the base has left at the states of a history, shape (n, n_springs)."""
+    branches = model.branches_at(states[:, SIDE], states[:, SIDE], states)
+    return branches[:, 1 : model.springs.n + 1] == LIFTED
 
 
 def spring_forces(model: SpringModel, states: Array) -> Array:

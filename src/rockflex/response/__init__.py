@@ -4,7 +4,7 @@ from rockflex.response._base_path import base_path
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
-from rockflex.response._global import GLOBAL, asked_of
+from rockflex.response._global import GLOBAL, asked_of, extremes_of
 from rockflex.response._history import History
 from rockflex.response._moment_rotation import MomentRotation
 from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
@@ -24,6 +24,7 @@ __all__ = [
     "asked_of",
     "base_path",
     "element_resistance",
+    "extremes_of",
     "friction_coefficient",
     "large_resistance",
     "respond",

@@ -6,6 +6,7 @@ bars follow from the largest rotation to each side, and those of viscous dampers
 """
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex.modal import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
-from rockflex.models import HEADER, SIDE, RockingModel, plastic_stretches
+from rockflex.models import HEADER, SIDE, RockingModel, SpringModel, plastic_stretches
 
 
 class Reach(NamedTuple):
@@ -47,13 +48,19 @@ EMPTY: Array = _fixed(np.zeros(0))
 NONE = ElementPeaks(EMPTY, EMPTY, _fixed(np.zeros(0, dtype=np.bool_)), EMPTY, 0.0, 0.0, False, False)
 
 
-def element_peaks(model: RockingModel, reach: Reach, final_state: Array) -> ElementPeaks:
+class Moves(NamedTuple):
+    """Extremes of the elongation δ of one element in m, zero included, and the largest |δ'| in m/s."""
+
+    low: float
+    high: float
+    speed: float
+
+
+def element_peaks(model: RockingModel, moves: Sequence[Moves], final_state: Array) -> ElementPeaks:
     """Return the peaks of the elements of a run, and what is left of them in its last state."""
     given = model.properties.elements
     if not given:
         return NONE
-    stretch = model.stretch_per_arm(np.array(reach.rotation)).tolist()
-    moves = [_moves(model, each, stretch, reach.swing) for each in given]
     forces = [_largest_force(each, move) for each, move in zip(given, moves, strict=True)]
     yielded = [_yields(each, move) for each, move in zip(given, moves, strict=True)]
     tendons = [
@@ -74,21 +81,30 @@ def element_peaks(model: RockingModel, reach: Reach, final_state: Array) -> Elem
     )
 
 
-class _Moves(NamedTuple):
-    """Extremes of the elongation δ of one element in m, zero included, and the largest |δ'| in m/s."""
-
-    low: float
-    high: float
-    speed: float
+def moves_about_pivots(model: RockingModel, reach: Reach) -> list[Moves]:
+    """Return the extremes of the elements of a base that rotates about its edges."""
+    stretch = model.stretch_per_arm(np.array(reach.rotation)).tolist()
+    return [_moves(model, each, stretch, reach.swing) for each in model.properties.elements]
 
 
-def _moves(model: RockingModel, element: BaseElement, stretch: list[float], swing: tuple[float, float]) -> _Moves:
+def moves_on_springs(model: SpringModel, extremes: Array, speeds: Array) -> list[Moves]:
+    """Return the extremes of the elements of a base on springs, from the peaks of `element_moves` and their speeds."""
+    rotation, heave = model.rest
+    found = list[Moves]()
+    for place, each in enumerate(model.elements):
+        rest = heave - each.position * rotation
+        high, low = extremes[2 * place] - rest, extremes[2 * place + 1] + rest
+        found.append(Moves(min(0.0, -float(low)), max(0.0, float(high)), float(speeds[place])))
+    return found
+
+
+def _moves(model: RockingModel, element: BaseElement, stretch: list[float], swing: tuple[float, float]) -> Moves:
     arms = [model.properties.pivot(side).arm - side * element.position for side in (1, -1)]
     ends = [r * each for r, each in zip(arms, stretch, strict=True)]
-    return _Moves(min(0.0, *ends), max(0.0, *ends), max(abs(r) * each for r, each in zip(arms, swing, strict=True)))
+    return Moves(min(0.0, *ends), max(0.0, *ends), max(abs(r) * each for r, each in zip(arms, swing, strict=True)))
 
 
-def _largest_force(element: BaseElement, move: _Moves) -> float:
+def _largest_force(element: BaseElement, move: Moves) -> float:
     if isinstance(element, ViscousDamper):
         return element.coefficient * move.speed
     if isinstance(element, FrictionDamper):
@@ -108,7 +124,7 @@ def _first_loading(element: Tendon | YieldingDissipator, stretch: float) -> floa
     return elastic if elastic <= limit else max(ratio * elastic + (1.0 - ratio) * limit, limit)
 
 
-def _yields(element: BaseElement, move: _Moves) -> bool:
+def _yields(element: BaseElement, move: Moves) -> bool:
     """Return whether an element yields or slides; of an elastic tendon, whether it exceeds its yield force."""
     if isinstance(element, ViscousDamper):
         return False
@@ -128,7 +144,8 @@ def _pulls_only(element: Tendon | YieldingDissipator) -> bool:
 def _remaining_prestress(model: RockingModel, final_state: Array) -> list[float]:
     """Return the force of each tendon in contact after the end of a run, in N; zero if it is slack or broken."""
     row = np.concatenate((np.zeros(HEADER), final_state))
-    row[SIDE] = np.sign(final_state[model.layout.rotation])
+    if not isinstance(model, SpringModel):
+        row[SIDE] = np.sign(final_state[model.layout.rotation])
     plastic = plastic_stretches(model, row[None])[0]
     found: list[float] = []
     for each, lost in zip(model.properties.elements, plastic.tolist(), strict=True):

@@ -36,7 +36,7 @@ from rockflex.models import (
     VVELComplete,
     VVELSimplified,
 )
-from rockflex.response._element_peaks import ELEMENT_PEAKS, NONE, Reach, element_peaks
+from rockflex.response._element_peaks import ELEMENT_PEAKS, NONE, Reach, element_peaks, moves_about_pivots
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
 
@@ -173,7 +173,8 @@ def _later(scalars: dict[str, Any], history: History | None) -> dict[str, Any]:
         sides = max(float(rotation.max()), 0.0), max(-float(rotation.min()), 0.0)
         largest = [scalars["max_rotation"] if side == max(sides) else side for side in sides]
         reach = Reach((largest[0], largest[1]), (0.0, 0.0))
-        of_elements = element_peaks(history.model, reach, history.states[-1, HEADER:])
+        moves = moves_about_pivots(history.model, reach)
+        of_elements = element_peaks(history.model, moves, history.states[-1, HEADER:])
     return found | {name: getattr(of_elements, name) for name in ELEMENT_PEAKS}
 
 

@@ -5,10 +5,11 @@ import math
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models import RockingModel, floor_accelerations, swing_by_side
-from rockflex.response._element_peaks import Reach, element_peaks
+from rockflex.models import RockingModel, SpringModel, floor_accelerations, swing_by_side
+from rockflex.response._edges import edges_of
+from rockflex.response._element_peaks import Reach, element_peaks, moves_about_pivots, moves_on_springs
 from rockflex.response._floor_peaks import FloorPeaks
-from rockflex.response._global import GLOBAL, is_damped, is_sided, tracked_of_floors
+from rockflex.response._global import EDGES, GLOBAL, is_damped, is_sided, tracked_of_floors
 from rockflex.response._history import History
 from rockflex.response._response import Response
 from rockflex.solve import Solution
@@ -28,14 +29,27 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         count = len(swing_by_side(model))
         swing = float(peaks[end]), float(peaks[end + count - 1])
         end += count
-    left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0 or rotation > 0.0
+    slid = 0.0
+    if model.layout.slip >= 0:
+        slid = float(peaks[end])
+        end += 1
+    if isinstance(model, SpringModel):
+        count = len(model.elements)
+        moves = moves_on_springs(model, solution.extremes[len(EDGES) :], peaks[end : end + count])
+        end += count
+    else:
+        moves = moves_about_pivots(model, Reach((right, left), swing))
+    edges = edges_of(model, (right, left), solution)
+    left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0
+    left_ground = left_ground or (rotation > 0.0 and not isinstance(model, SpringModel))
     status = "rocking" if left_ground else "no_uplift"
     known = {f"max_{name}": value for name, value in zip(GLOBAL, peaks[: len(GLOBAL)].tolist(), strict=True)}
     at = solution.peak_times[1 : 1 + len(GLOBAL)].tolist()
     times = {f"time_of_max_{name}": value for name, value in zip(GLOBAL, at, strict=True)}
     if p.top_height is None:
         known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
-    of_elements = element_peaks(model, Reach((right, left), swing), solution.final_state)
+    of_elements = element_peaks(model, moves, solution.final_state)
+    final = solution.final_state
     return Response(
         model=model.label,
         motion=motion,
@@ -47,7 +61,11 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         min_vertical_reaction=p.resting_reaction - solution.lost_support,
         time_of_min_vertical_reaction=solution.time_of_lost_support,
         **of_elements._asdict(),
-        residual_rotation=math.nan if solution.overturned else float(solution.final_state[model.layout.rotation]),
+        residual_rotation=math.nan if solution.overturned else float(final[model.layout.rotation]),
+        max_slip=slid,
+        residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
+        max_edge_uplift=max(edges.uplift),
+        max_edge_settlement=max(edges.settlement),
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
         nominal_overturning=right > p.pivot(1).nominal_overturning_rotation

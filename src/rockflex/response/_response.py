@@ -49,7 +49,8 @@ class Response(Value):
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
     `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
     `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `element_force`,
-    `element_elongation`, `element_energy`, `tendon_force`, `horizontal_reaction`, `vertical_reaction`,
+    `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
+    `soil_pressure`, `tendon_force`, `horizontal_reaction`, `vertical_reaction`,
     `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see
     `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
     `InputError`.
@@ -92,9 +93,16 @@ class Response(Value):
     residual_rotation
         θ at the end of the run in rad: zero if the base is closed, NaN if it overturned. A run that does not settle
         (``free_vibration="settle"``) may end while the base still rocks.
+    max_slip, residual_slip
+        Largest displacement |x| of the base along the ground in m, and x at the end of the run, positive to the right;
+        zero unless the ground has a `friction`.
+    max_edge_uplift, max_edge_settlement
+        How far an edge of the base rises above the ground, and how far it sinks into it, in m: on springs measured from
+        the level at which they are unloaded, on rigid ground 2 B |θ| (2 B sin |θ| for large rotations) and zero.
     n_uplifts, n_impacts
         Numbers of uplifts and of impacts during the run. An initial rotation does not count as an uplift, so there can
-        be one more impact than uplifts.
+        be one more impact than uplifts. On springs: how often an edge rises above the level of the unloaded springs, and
+        how often it comes back.
     nominal_overturning
         Whether |θ| exceeded 0.7 atan(B/h*_1) (Section 3.3).
     end_time
@@ -154,6 +162,10 @@ class Response(Value):
     tendon_yield: bool
     tendon_overload: bool
     residual_rotation: float
+    max_slip: float
+    residual_slip: float
+    max_edge_uplift: float
+    max_edge_settlement: float
     n_uplifts: int
     n_impacts: int
     nominal_overturning: bool
@@ -189,6 +201,13 @@ class Response(Value):
     element_force = _OfHistory[Array]()
     element_elongation = _OfHistory[Array]()
     element_energy = _OfHistory[Array]()
+    slip = _OfHistory[Array]()
+    slip_velocity = _OfHistory[Array]()
+    heave = _OfHistory[Array]()
+    edge_uplift = _OfHistory[Array]()
+    spring_force = _OfHistory[Array]()
+    soil_pressure = _OfHistory[Array]()
+    vertical_ground_acceleration = _OfHistory[Array]()
     tendon_force = _OfHistory[Array]()
     horizontal_reaction = _OfHistory[Array]()
     vertical_reaction = _OfHistory[Array]()

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from rockflex._errors import InputError
 from rockflex.models import Quantities, RockingModel
 from rockflex.motion import GroundMotion
-from rockflex.response import Response, asked_of, respond
+from rockflex.response import Response, asked_of, extremes_of, respond
 from rockflex.solve import Engine, Solution, Task, preparing
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
@@ -58,7 +58,7 @@ class Case:
             )
         with preparing(self.model):
             asked = asked_of(self.model, floors=self.floors)
-            engine = Engine(self.model, asked if self.extra is None else asked + self.extra)
+            engine = Engine(self.model, asked if self.extra is None else asked + self.extra, extremes_of(self.model))
         object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
@@ -82,6 +82,7 @@ class Case:
             state=None if self.initial is None else self.initial.state(self.model),
             history=self.history,
             work_limit=self.work_limit,
+            vertical=motion.vertical * scale if motion.vertical is not None and motion.vertical.any() else None,
         )
 
     def run(self, motion: GroundMotion, scale: float = 1.0) -> Response:

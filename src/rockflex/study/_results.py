@@ -12,6 +12,7 @@ RESULTS: dict[str, type] = {  # every number and flag of a Response, by its name
     name: kind for name in PEAKS if (kind := Response.__annotations__[name]) in (float, int, bool)
 }
 OF_ELEMENTS = ("tendon_yield", "tendon_overload", "residual_rotation")
+OF_GROUND = ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement")
 
 
 def results_of(response: Response, suffix: str = "") -> dict[str, Any]:

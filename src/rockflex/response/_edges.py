@@ -1,0 +1,31 @@
+"""How far the edges of the base rise above the ground, and how far they sink into it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rockflex.models import RockingModel, SpringModel
+from rockflex.solve import Solution
+
+
+class Edges(NamedTuple):
+    """Largest uplift and settlement of the right and of the left edge in m, neither below zero."""
+
+    uplift: tuple[float, float]
+    settlement: tuple[float, float]
+
+
+def edges_of(model: RockingModel, rotation: tuple[float, float], solution: Solution) -> Edges:
+    """Return the extremes of the edges of a run, with its largest |θ| to the right and to the left in rad.
+
+    On rigid ground an edge rises by the width of the base times the rotation about the other edge; on springs the peaks
+    of `extremes_of` tell, measured from the level at which the springs are unloaded.
+    """
+    if isinstance(model, SpringModel):
+        right_up, right_down, left_up, left_down = (max(value, 0.0) for value in solution.extremes[:4].tolist())
+        return Edges((right_up, left_up), (right_down, left_down))
+    width = 2.0 * model.properties.half_width
+    right, left = rotation
+    if model.complete:
+        right, left = float(np.sin(right)), float(np.sin(left))
+    return Edges((width * left, width * right), (0.0, 0.0))
