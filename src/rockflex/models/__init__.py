@@ -26,7 +26,15 @@ from rockflex.models._kept import accelerations, acting_side, phases_at, pulls_a
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
-from rockflex.models._named import element_moves, element_speeds, floor_quantities, modal_displacement, quantities, rotation_by_side, swing_by_side
+from rockflex.models._named import (
+    element_moves,
+    element_speeds,
+    floor_quantities,
+    modal_displacement,
+    quantities,
+    rotation_by_side,
+    swing_by_side,
+)
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import (
     HORIZONTAL,

@@ -74,7 +74,11 @@ def is_sided(model: RockingModel) -> bool:
 
 def is_damped(model: RockingModel) -> bool:
     """Return whether viscous dampers act on a base that can lift."""
-    return not isinstance(model, SpringModel) and model.lifts and any(isinstance(each, ViscousDamper) for each in model.properties.elements)
+    return (
+        not isinstance(model, SpringModel)
+        and model.lifts
+        and any(isinstance(each, ViscousDamper) for each in model.properties.elements)
+    )
 
 
 def tracked_of_floors(model: RockingModel) -> tuple[str, ...]:
