@@ -6,7 +6,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import Ground, RockingProperties, Springs
 from rockflex.models._elements import elements_of
-from rockflex.models._impact import ImpactLaw
+from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._linear import LinearModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._springs import Pose, SpringModel
@@ -22,14 +22,15 @@ def grounded(
     Raises
     ------
     InputError
-        If the structure topples on its springs under its own weight, or some but not all springs have infinite friction.
+        If the structure topples on its springs under its own weight, or if some but not all springs have infinite
+        friction.
     """
     if ground.springs is None:
-        slides = ground.slides and ground.friction is not None
-        if not slides:
-            return LinearModel(label, kept, law=law, missing_mass=missing_mass) if law else LinearModel(label, kept)
-        given = {} if law is None else {"law": law}
-        return SlidingModel(label, kept, missing_mass=missing_mass, friction=float(np.max(ground.friction)), **given)
+        given = VVELSimplified() if law is None else law
+        if not ground.slides:
+            return LinearModel(label, kept, law=given, missing_mass=missing_mass)
+        friction = float(np.max(np.asarray(ground.friction)))
+        return SlidingModel(label, kept, law=given, missing_mass=missing_mass, friction=friction)
     friction = None
     if ground.slides:
         friction = np.broadcast_to(np.asarray(ground.friction, dtype=np.float64), ground.springs.n).copy()
@@ -75,7 +76,7 @@ def pose_at_rest(label: str, properties: RockingProperties, springs: Springs) ->
         pressed = depth < 0.0
     raise InputError(
         f"{label} topples on its springs under its own weight: their rotational stiffness of "
-        f"{springs.tilting_stiffness:.4g} N m/rad is too small for L_0^r g = {p.l0r * GRAVITY:.4g} N m/rad. Give stiffer "
-        "springs, or springs farther from the axis of the masses.",
+        f"{springs.tilting_stiffness:.4g} N m/rad is too small for L_0^r g = {p.l0r * GRAVITY:.4g} N m/rad. Give "
+        "stiffer springs, or springs farther from the axis of the masses.",
         field="springs",
     )

@@ -1,8 +1,6 @@
 """Accelerations and values of quantities at the states of a history."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
@@ -40,29 +38,22 @@ def accelerations(model: RockingModel, states: Array) -> Array:
         motion = np.ascontiguousarray(states[:, HEADER:])
         _rates_at(model.field(), pulls_at(model, states), side, states[:, GROUND].copy(), motion, rates)
         return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
-    heavier = under_more_gravity(model)
+    heavier = under_more_gravity(model, states)
     found = np.zeros((states.shape[0], n + layout.freedoms))
     for chosen, key, vector in by_phase(model, states, side):
-        found[chosen] = at_gravity(
-            states[chosen], vector, model.accelerations(key), lambda: heavier().accelerations(key)
-        )
+        found[chosen] = vector @ model.accelerations(key).T
+        if heavier is not None:
+            more = heavier.accelerations(key) - model.accelerations(key)
+            found[chosen] += states[chosen, RISE, None] * (vector @ more.T)
     return found
 
 
-def under_more_gravity(model: RockingModel) -> Callable[[], RockingModel]:
-    """Return a function that returns the model under a gravity greater by 1 m/s²."""
-    return cache(lambda: replace(model, gravity=model.gravity + 1.0))
+def under_more_gravity(model: RockingModel, states: Array) -> RockingModel | None:
+    """Return the model under a gravity greater by 1 m/s²; None if the ground does not move vertically.
 
-
-def at_gravity(states: Array, vector: Array, rows: Array, heavier: Callable[[], Array]) -> Array:
-    """Return the values of rows, shape (n, F), which vary linearly with the vertical acceleration of the ground.
-
-    `heavier` returns the rows under a gravity greater by 1 m/s².
+    The rows of a model vary linearly with gravity, and so with the vertical acceleration of the ground.
     """
-    values = vector @ rows.T
-    if states[:, RISE].any():
-        values += states[:, RISE, None] * (vector @ (heavier() - rows).T)
-    return values
+    return replace(model, gravity=model.gravity + 1.0) if states[:, RISE].any() else None
 
 
 def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
@@ -75,10 +66,13 @@ def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
 def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
     """Return the values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
     side = acting_side(states)
-    values, heavier = np.zeros((states.shape[0], len(quantities))), under_more_gravity(model)
+    values, heavier = np.zeros((states.shape[0], len(quantities))), under_more_gravity(model, states)
     for chosen, key, vector in by_phase(model, states, side):
         rows = rows_of(model, quantities, key)
-        values[chosen] = at_gravity(states[chosen], vector, rows, lambda: rows_of(heavier(), quantities, key))
+        values[chosen] = vector @ rows.T
+        if heavier is not None:
+            more = rows_of(heavier, quantities, key) - rows
+            values[chosen] += states[chosen, RISE, None] * (vector @ more.T)
     curved = np.flatnonzero(quantities.kinds != LINEAR)
     rocking = side != 0.0
     if curved.size and rocking.any() and isinstance(model, NonlinearModel) and model.complete:

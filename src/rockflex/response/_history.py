@@ -111,8 +111,9 @@ class History(Value):
 
     @property
     def heave(self) -> Array:
-        """Rise of the base at the axis of the masses in m, shape (n_states,): on springs from the level at which they
-        are unloaded, on rigid ground the distance to the pivot times |θ|.
+        """Rise of the base at the axis of the masses in m, shape (n_states,).
+
+        On springs from the level at which they are unloaded, on rigid ground the distance to the pivot times |θ|.
         """
         if isinstance(self.model, SpringModel):
             return self._of_base(self.model.layout.heave)
@@ -131,7 +132,7 @@ class History(Value):
 
     @property
     def spring_force(self) -> Array:
-        """Force of each spring under the base in N, upwards, shape (n_states, n_springs); no springs on rigid ground."""
+        """Upward force of each spring under the base in N, shape (n_states, n_springs); none on rigid ground."""
         if not isinstance(self.model, SpringModel):
             return np.zeros((self.states.shape[0], 0))
         return spring_forces(self.model, self.states)
@@ -148,8 +149,8 @@ class History(Value):
         area = self.model.springs.area if isinstance(self.model, SpringModel) else None
         if area is None:
             raise MissingQuantityError(
-                "The springs under the base have no area, so there is no soil pressure. Give Springs the area that each "
-                "supports, in m², or use winkler_bed."
+                "The springs under the base have no area, so there is no soil pressure. Give Springs the area that "
+                "each supports, in m², or use winkler_bed."
             )
         return self.spring_force / area
 

@@ -101,8 +101,8 @@ class Response(Value):
         the level at which they are unloaded, on rigid ground 2 B |θ| (2 B sin |θ| for large rotations) and zero.
     n_uplifts, n_impacts
         Numbers of uplifts and of impacts during the run. An initial rotation does not count as an uplift, so there can
-        be one more impact than uplifts. On springs: how often an edge rises above the level of the unloaded springs, and
-        how often it comes back.
+        be one more impact than uplifts. On springs: how often an edge rises above the level of the unloaded springs,
+        and how often it comes back.
     nominal_overturning
         Whether |θ| exceeded 0.7 atan(B/h*_1) (Section 3.3).
     end_time

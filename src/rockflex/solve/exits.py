@@ -133,8 +133,8 @@ def fence_exit(
 ) -> tuple[float, int]:
     """Return where a fence first falls to zero before `stop`, and which one; `stop` and -1 if none does.
 
-    A fence may be zero at the start, since the previous phase ended there: then the sign of its first derivative that is
-    not zero decides. Its place is 0 if it is negative from the start.
+    A fence may be zero at the start, since the previous phase ended there: then the sign of its first derivative that
+    is not zero decides. Its place is 0 if it is negative from the start.
     """
     found = -1
     for e in range(system.phases[at.phase].fences):

@@ -172,7 +172,7 @@ class Motion(NamedTuple):
     state: Array  # (S',)
     w: Array  # (3, S): now, after the step under examination, and the same while peaks are searched inside that step
     norms: Array  # (K,)
-    values: Array  # (4, F + E): lower and upper limits of the rows, and their values at the start and at the end of the step
+    values: Array  # (4, F + E): lower and upper limits of the rows, and their values at both ends of the step
     flags: Bools  # (2, F + E): rows that may leave their limits inside the step, and rows to examine
     clear: NDArray[np.int64]  # (F + E,): point of the grid up to which the search for peaks is done
     series: Array  # (N + b, terms)
