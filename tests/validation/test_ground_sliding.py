@@ -35,7 +35,8 @@ def compared(structure, model, friction, a, vertical=None, *, rel=1e-8, free=0.0
     assert found == pytest.approx(expected.peaks, rel=rel, abs=1e-13)
     assert run.residual_slip == pytest.approx(expected.y[SLIP], rel=rel, abs=rel * run.max_slip)
     assert run.rotation[-1] == pytest.approx(expected.y[TURN], abs=10.0 * rel * max(run.max_rotation, 1e-9))
-    assert (run.n_uplifts, run.n_impacts) == (len(uplifts(expected)), len(impacts(expected)))
+    assert run.n_impacts == len(impacts(expected))
+    assert restitution or run.n_uplifts == len(uplifts(expected))  # a block that rocks on does not lift anew
     parts = twin.energies(expected)
     size = max(abs(parts["input"]), parts["modes"], parts["friction"])
     assert abs(parts["error"]) < 1e-10 * size

@@ -166,8 +166,8 @@ class Model:
         if ground is not None and not ground.rigid:
             self._check_ground(label, ground, impact, bouc_wen)
             check_base(kept, ground)
-            own = None if ground.springs is not None else self._law(kept)
-            return grounded(label, kept, ground, impact if impact is not None else own, self.missing_mass)
+            given = impact if impact is not None or ground.springs is not None else self._law(kept)
+            return grounded(label, kept, ground, given, self.missing_mass)
         law = impact if impact is not None else self._law(kept)
         linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
         if self.complete or bouc_wen is not None or linear.neutral:

@@ -121,7 +121,7 @@ class SlidingModel(LinearModel):
         return accelerations_of(self, self.arrow(key))
 
     def pressure(self, key: Key) -> Array:
-        """Return the vertical reaction in N, m_tot (g + s B θ'') plus the tensions of the elements: a row, shape (C,)."""
+        """Return the vertical reaction in N, m_tot (g + s B θ'') and the tensions of the elements: a row, shape (C,)."""
         p, side, known, layout = self.properties, key[0], memories(self.elements), self.layout
         row = np.zeros(layout.columns)
         row[-1] = p.m_tot * self.gravity
@@ -185,7 +185,7 @@ class SlidingModel(LinearModel):
         going = np.zeros(self.layout.columns)
         going[self.layout.slip + 1] = way
         if abs(slip) == LOST:
-            return (Fence(going, CHANGES, (*before, -slip)), Fence(-pressure, CHANGES, (*before, way)))
+            return (Fence(going, STICKS, (*before, -slip)), Fence(-pressure, CHANGES, (*before, way)))
         return (Fence(going, STICKS, (*before, STICK)), Fence(pressure, CHANGES, (*before, LOST * way)))
 
 

@@ -51,10 +51,11 @@ def work_between(model: RockingModel, states: Array) -> Work:
     span = np.diff(states[:, TIME])
     places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
     total: Work | None = None
-    rows, shaken = states[:-1].copy(), np.diff(states[:, [GROUND, RISE]], axis=0)
+    linear = [TIME, GROUND, RISE]
+    rows, moved = states[:-1].copy(), np.diff(states[:, linear], axis=0)
     for place, weight in zip(places, weights, strict=True):
         rows[:, HEADER:] = intervals.at(float(place))
-        rows[:, [GROUND, RISE]] = states[:-1, [GROUND, RISE]] + place * shaken
+        rows[:, linear] = states[:-1, linear] + place * moved
         power = _power(model, rows)
         parts = (weight * (span * each.T).T for each in power)
         total = Work(*parts) if total is None else Work(*(one + more for one, more in zip(total, parts, strict=True)))

@@ -104,6 +104,8 @@ def pass_fence(system: System, at: Progress, fence: int, stop: float, motion: Mo
     # A slip grows like t³ from the instant at which the friction is just used up, like t² if it never sufficed.
     at.slip_onset = (TOUCHED if stop > 0.0 else LIFTED) if event == SLIPS else INSIDE
     at.slide = 0.0 if event == SLIPS and stop > 0.0 else np.nan
+    if at.onset >= LIFTED:  # an uplift at this instant continues with the forces of the next phase
+        at.onset, at.lift = LIFTED, np.nan
     enter(system, at, system.links[p, system.fenced + fence], motion)
 
 
@@ -236,23 +238,23 @@ def cross(
         now = min(sample.time + at.begun, sample.until)
         rise = sample.rise + sample.rise_slope * at.begun
         if fence >= 0:
-            if at.onset == INSIDE:  # otherwise an uplift is yet to be recorded
+            if at.onset < LIFTED:  # otherwise an uplift is yet to be recorded
                 keep(log, now, side, here, rise, motion.state)
             log.tally[EVENTS] += 1
             log.tally[UPLIFTS] += event == OPENS
             log.tally[IMPACTS] += event == CLOSES
             pass_fence(system, at, fence, stop, motion)
-            if at.onset == INSIDE:
+            if at.onset < LIFTED:
                 keep(log, now, side, here, rise, motion.state)
         elif event in (CHANGES, TURNS):
-            if at.onset == INSIDE:  # otherwise an uplift is yet to be recorded
+            if at.onset < LIFTED:  # otherwise an uplift is yet to be recorded
                 keep(log, now, side, here, rise, motion.state)
             log.tally[EVENTS] += 1
             remember(system, p, motion)
             if event == TURNS:
                 motion.state[system.layout.spin] = 0.0
             enter(system, at, system.links[p, TURNED if event == TURNS else CHANGED + owner], motion)
-            if at.onset == INSIDE:
+            if at.onset < LIFTED:
                 keep(log, now, side, here, rise, motion.state)
         elif tipped:
             limit = motion.limits[bound]
