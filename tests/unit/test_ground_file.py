@@ -1,6 +1,7 @@
 """The ground in files: structure files, studies, and random populations."""
 
 import math
+import pickle
 import tomllib
 
 import numpy as np
@@ -168,6 +169,24 @@ def test_a_bed_follows_the_width_of_each_design(made, tmp_path):
     path.write_text(f'study = "design"\n{KINDS["design"]}{STUDY.replace("friction = 0.15", bed)}')
     rf.run_study(rf.load_study(path), tmp_path / "out", workers=1)
     assert {round(ground.springs.area.sum() / 4.0, 9) for ground in made} == {0.4, 0.6}
+
+
+def test_a_plan_takes_its_ground_to_other_processes(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(f'study = "cloud"\n{STUDY}')
+    plan = rf.load_study(path).plan()
+    bench = pickle.loads(pickle.dumps(plan)).bench
+    assert bench.assumptions.ground(PROPERTIES) == rf.Ground(0.15)
+
+
+def test_friction_that_prevents_sliding_is_resumed(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(f'study = "cloud"\n{STUDY.replace("0.15", "inf")}')
+    first, again = (rf.run_study(rf.load_study(path), tmp_path / "out", workers=1) for _ in range(2))
+    assert first.equals(again)
+    path.write_text(f'study = "cloud"\n{STUDY.replace("0.15", "inf").partition("[ground]")[0]}')
+    rigid = rf.run_study(rf.load_study(path), workers=1)
+    assert first["max_rotation"].tolist() == rigid["max_rotation"].tolist()
 
 
 def test_a_ground_that_no_structure_can_have_stops_a_study(tmp_path):

@@ -65,6 +65,19 @@ def test_the_bed_of_asce_41_against_integrals_over_its_zones():
     assert 0.0 < errors[-1] < 1e-4
 
 
+def test_the_zones_of_asce_41_are_footings_of_gazetas():
+    shear, poisson, half_length = 20e6, 0.35, BREADTH / 2.0
+
+    def per_length(shape):  # Gazetas (1991): K_z = 2 G L/(1 - ν) (0.73 + 1.54 χ^0.75) of a base 2 L × 2 L χ
+        heave = 2.0 * shear * half_length / (1.0 - poisson) * (0.73 + 1.54 * shape**0.75)
+        return heave / (2.0 * half_length)
+
+    bed = rf.asce41_bed(B, BREADTH, shear, poisson, n=16)
+    along = bed.stiffness / (bed.area / BREADTH)
+    assert along[0] == pytest.approx(6.0 * per_length(1.0 / 6.0), rel=0.01)  # given to three digits
+    assert along[8] == pytest.approx(per_length(0.0), rel=1e-12)
+
+
 def test_only_the_end_zones_are_stiffer():
     bed = rf.winkler_bed(B, BREADTH, MODULUS, n=16, end_zone=0.5, end_ratio=3.0)
     modulus = bed.stiffness / bed.area

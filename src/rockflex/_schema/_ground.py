@@ -1,5 +1,6 @@
 """The keys of the ground that are also flags."""
 
+import math
 from typing import Annotated
 
 from rockflex._schema._key import Key
@@ -16,7 +17,7 @@ class GroundKeys:
             "the Coulomb coefficient between base and ground",
             form=_PER_SPRING,
             low=1e-3,
-            high=1e6,
+            high=math.inf,
             flag="ground_friction",
             metavar="MU",
             hint="The base slides on the ground. Default: it cannot.",

@@ -96,10 +96,12 @@ def asce41_bed(
     n: int = 20,
     eccentricity: float = 0.0,
 ) -> Springs:
-    """Return a Winkler bed with the stiffened ends of ASCE/SEI 41-17, Section 8.4.2.
+    """Return a Winkler bed with the stiffened ends of ASCE/SEI 41-17, Section 8.4.2.3 (FEMA 356, Figure 4-5).
 
     For a footing that is rigid relative to the soil. The stiffness per unit length is 6.83 G/(1 - ν) in end zones of
-    length breadth/6, and 0.73 G/(1 - ν) between them, so that the bed is stiff enough both in heave and in rotation.
+    length breadth/6, and 0.73 G/(1 - ν) between them. The former is that of a separate footing of the size of the zone,
+    the latter that of an endless strip (Gazetas 1991, J. Geotech. Eng. 117(9), 1363-1381), so the bed is stiff enough
+    both in heave and in rotation.
 
     Parameters
     ----------

@@ -8,6 +8,7 @@ from pydantic.fields import FieldInfo
 
 from rockflex._json import plain
 from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, Table, inner_table, key_of, parts
+from rockflex.study._ground_table import GroundTable
 from rockflex.study.assumed import BoucWenTable
 from rockflex.web._presets import PRESETS
 
@@ -20,6 +21,7 @@ def forms() -> dict[str, Any]:
             "eccentricity": _field("eccentricity", StructureEntry.model_fields["eccentricity"]),
             "elements": {name: {"title": table.title, "fields": _fields(table)} for name, table in ELEMENTS.items()},
             "bouc_wen": _fields(BoucWenTable),
+            "ground": _fields(GroundTable),
             "presets": PRESETS,
         }
     )

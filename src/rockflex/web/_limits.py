@@ -12,6 +12,7 @@ from rockflex.motion import GroundMotion
 from rockflex.solve import Task
 from rockflex.structure.file import ELEMENTS, ElementTable, Table, inner_table, key_of, parts
 from rockflex.study import Case
+from rockflex.study._arguments import ground_under
 from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._refusal import Refusal, refusing
 
@@ -131,7 +132,7 @@ def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, p
     assumptions, model = plan.bench.assumptions, parse_model(label)
     (bouc_wen,) = labelled_hysteresis([model], assumptions.bouc_wen)
     with refusing(path):
-        model.of(properties, assumptions.impact, bouc_wen)
+        model.of(properties, assumptions.impact, bouc_wen, ground_under(properties, assumptions.ground))
 
 
 def check_runs(plan: "CloudPlan", path: str) -> None:

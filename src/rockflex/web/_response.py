@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import plain
-from rockflex.modal import RockingProperties
+from rockflex.modal import Ground, RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
@@ -42,16 +42,23 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     motion = motion_of(state.record, uploads).scaled(state.scale)
     law, cases, found = state.law(), dict[str, Case](), list[Response]()
     models = [parse_model(label) for label in state.models]
-    given = labelled_hysteresis(models, state.hysteresis())
+    given, ground = labelled_hysteresis(models, state.hysteresis()), _ground(state, built.properties)
     for label, model, bouc_wen in zip(state.models, models, given, strict=True):
         with refusing("models", f"{label}: "):
-            tied = model.of(built.properties, law, bouc_wen)
+            tied = model.of(built.properties, law, bouc_wen, ground)
             cases[label] = Case(tied, state.free_vibration, work_limit=STOP, history=True, floors=True)
     check_together(list(cases.values()), motion)
     for label, case in cases.items():
         with refusing("models", f"{label}: "):
             found.append(case.run(motion))
     return built, motion, found
+
+
+def _ground(state: State, properties: RockingProperties) -> Ground | None:
+    try:
+        return None if state.ground is None else state.ground.under(properties)
+    except InputError as error:
+        raise Refusal({error.field or "ground": str(error)}) from error
 
 
 def response_view(state: State, uploads: Uploads, focus: object = "", element: object = 0) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import BaseElement
 from rockflex.structure import LumpedMasses
 from rockflex.structure.file import StructureEntry
+from rockflex.study._ground_table import BedTable, GroundTable, SpringsTable
 from rockflex.study._yielding import yielding
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
@@ -21,7 +22,7 @@ from rockflex.web._state import PulseChoice, State
 
 def response_script(state: State, upload_name: str = "record") -> str:
     """Return a program that repeats the simulations of the Response tab, in `responses` by model."""
-    extra = f", free_vibration={state.free_vibration!r}{_law(state)}"
+    extra = f", free_vibration={state.free_vibration!r}{_law(state)}{_on_ground(state)}"
     yields = bool(yielding(state.models))
     if yields:
         extra += ', bouc_wen=yielding if "-BW" in model else None'
@@ -111,15 +112,54 @@ def _law(state: State) -> str:
     return "" if state.impact is None else f", impact=rf.{state.law()!r}"
 
 
+def _on_ground(state: State) -> str:
+    """The argument for the ground; empty if it is rigid and the base cannot slide."""
+    return "" if state.ground is None else ", ground=ground"
+
+
+def _ground(given: GroundTable | None) -> list[str]:
+    """The lines of a function that returns the ground of a structure; none without a ground."""
+    if given is None:
+        return []
+    lines, table = ["def ground(properties):"], given.springs or given.bed
+    if table is not None:
+        lines += [f"    springs = {_springs(table)}"]
+        if table.heave_damping_ratio is not None:
+            lines += [f"    springs = springs.damped({table.heave_damping_ratio!r}, properties.m_tot)"]
+    inertia = "" if given.base_inertia is None else f"base_inertia={given.base_inertia!r}"
+    if given.mat_mass is not None:
+        inertia = f"base_inertia={given.mat_mass!r} * (2 * properties.half_width) ** 2 / 12"
+    parts = (_named({"friction": given.friction}), "" if table is None else "springs=springs", inertia)
+    return ["", "", *lines, f"    return rf.Ground({', '.join(filter(None, parts))})", "", ""]
+
+
+def _springs(table: SpringsTable | BedTable) -> str:
+    """The call that makes the springs of a file under the base of `properties`."""
+    if isinstance(table, SpringsTable):
+        edges = "[side * properties.half_width - properties.eccentricity for side in (-1, 1)]"
+        positions = edges if table.positions is None else _literal(table.positions)
+        return f"rf.Springs({positions}, {_named({'stiffness': table.stiffness, 'damping': table.damping})})"
+    named = _named(table.model_dump(exclude={"heave_damping_ratio"}))
+    maker = "asce41_bed" if table.subgrade_modulus is None else "winkler_bed"
+    return f"rf.{maker}(properties.half_width, {named}, eccentricity=properties.eccentricity)"
+
+
 def _options(state: State, study: CloudStudy | DesignStudy, scales: Sequence[float]) -> str:
     """The last arguments of a study."""
     yields = "" if study.bouc_wen is None else ", bouc_wen=yielding"
-    return f"scales={list(scales)!r}, free_vibration={study.free_vibration!r}{_law(state)}{yields}"
+    return f"scales={list(scales)!r}, free_vibration={study.free_vibration!r}{_law(state)}{_on_ground(state)}{yields}"
 
 
 def _program(state: State, motions: list[str], lines: list[str], *, yields: bool) -> str:
     hysteresis = [f"yielding = rf.{state.hysteresis()!r}"] if yields else []
-    head = ["import numpy as np", "import rockflex as rf", "", *_structure(state.structure), *motions]
+    head = [
+        "import numpy as np",
+        "import rockflex as rf",
+        "",
+        *_structure(state.structure),
+        *motions,
+        *_ground(state.ground),
+    ]
     return "\n".join([*head, *hysteresis, *lines, ""])
 
 

@@ -9,6 +9,7 @@ from pydantic import AliasChoices, Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
 from rockflex.structure.file import StructureEntry, Table, expected, spot_of
+from rockflex.study._ground_table import GroundTable
 from rockflex.study._yielding import yielding
 from rockflex.study.assumed import Assumed, BoucWenTable
 from rockflex.web._limit_states import DesignLimit, LimitName
@@ -111,8 +112,8 @@ class State(Assumed):
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
 
     def assumed(self, labels: Sequence[str]) -> dict[str, Any]:
-        """Return the impact law, and the hysteresis if one of the models yields, as keys of a study."""
-        names = {"impact", "restitution", *(["bouc_wen"] if yielding(labels) else [])}
+        """Return the impact law, the ground, and the hysteresis if one of the models yields, as keys of a study."""
+        names = {"impact", "restitution", "ground", *(["bouc_wen"] if yielding(labels) else [])}
         return self.model_dump(include=names, exclude_none=True)
 
 
@@ -179,6 +180,8 @@ def _check_models(state: State) -> None:
 def _check_assumed(state: State) -> None:
     with refusing("restitution"):
         state.law()
+    if state.ground is not None:
+        check_numbers("ground", state.ground.model_dump(), GroundTable)
     if state.bouc_wen is None:
         return
     check_numbers("bouc_wen", state.bouc_wen.model_dump(), BoucWenTable)

@@ -17,8 +17,8 @@ const SHOWN = 400; // ms between two polls while the tab is shown
 const ASIDE = 5000; // and while it is not: the server stops a study that is not polled
 
 // Everything that determines the runs of these models, apart from the study's own choices.
-export function assumed({ structure, impact, restitution, bouc_wen }, labels) {
-  return [structure, impact, restitution, labels.some(yields) ? bouc_wen : null, labels];
+export function assumed({ structure, impact, restitution, bouc_wen, ground }, labels) {
+  return [structure, impact, restitution, ground, labels.some(yields) ? bouc_wen : null, labels];
 }
 
 // Controls of the choices of a study.

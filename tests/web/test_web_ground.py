@@ -1,0 +1,85 @@
+"""The ground of a state: it reaches the runs, the program and the files of the page."""
+
+import math
+
+import pytest
+
+import rockflex as rf
+from builders import frame_values
+from rockflex.models import LinearModel, _label
+from rockflex.web._refusal import Refusal
+from rockflex.web._response import responses
+from rockflex.web._script import response_script
+from rockflex.web._state import parse_state
+from rockflex.web._studies import shared
+from rockflex.web._uploads import Uploads
+
+FRAME = {"frame": frame_values(n_stories=2, period=0.5, aspect_ratio=8.0)}
+BED = {"breadth": 3.0, "n": 8}
+GROUNDS = [
+    {"friction": 0.3},
+    {"friction": [0.3, "inf"], "base_inertia": 2e4, "springs": {"stiffness": 5e8, "damping": [1e6, 2e6]}},
+    {"base_inertia": 2e4, "springs": {"positions": [-0.4, 0.4], "stiffness": 9e8, "heave_damping_ratio": 0.2}},
+    {"mat_mass": 4e4, "bed": BED | {"subgrade_modulus": 9e8, "damping": 2e6, "end_zone": 0.1, "end_ratio": 2.0}},
+    {"mat_mass": 4e4, "bed": BED | {"breadth": 1.0, "shear_modulus": 3e8, "poisson_ratio": 0.3}},
+]
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """Return the grounds that reach a model, which is then built without them."""
+    grounds = []
+
+    def grounded(label, kept, ground, law, missing_mass):
+        grounds.append(ground)
+        return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
+
+    monkeypatch.setattr(_label, "grounded", grounded)
+    return grounds
+
+
+def state_of(ground, **other):
+    return parse_state({"structure": FRAME, "models": ["2DOF-S"], "free_vibration": 0.0, "ground": ground, **other})
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("eccentricity", [None, 0.05])
+def test_runs_programs_and_studies_have_the_ground(made, tmp_path, monkeypatch, ground, eccentricity):
+    monkeypatch.chdir(tmp_path)
+    state = state_of(ground, structure=FRAME | ({"eccentricity": eccentricity} if eccentricity else {}))
+    built, _, (response,) = responses(state, Uploads())
+    assert made == [state.ground.under(built.properties)]
+    exec(compile(response_script(state), "response.py", "exec"), space := {})
+    assert made[1] == made[0]
+    assert space["responses"]["2DOF-S"].max_rotation == pytest.approx(response.max_rotation, rel=1e-12)
+    study = rf.CloudStudy(**shared(state, state.cloud, ["2DOF-S"], "Cloud"))
+    assert study.ground == state.ground
+
+
+@pytest.mark.parametrize(
+    ("ground", "path", "text"),
+    [
+        ({"friction": -1.0}, "ground.friction", "it must be from 0.001 to inf, but -1 was given."),
+        ({"springs": {"stiffness": 0.0}}, "ground.springs.stiffness", "it must be from 1 to 1e+15, but 0 was given."),
+        ({"bed": {}}, "ground.bed.breadth", "it is missing: the dimension of the base perpendicular to the plane"),
+        ({"frction": 0.3}, "ground.frction", "it is not known here."),
+    ],
+)
+def test_wrong_values_are_refused(ground, path, text):
+    with pytest.raises(Refusal) as raised:
+        state_of(ground)
+    ((found, said),) = raised.value.errors.items()
+    assert (found, said[: len(text)]) == (path, text)
+
+
+def test_contradictions_name_their_field():
+    state = state_of({"springs": {"stiffness": 5e8}})
+    with pytest.raises(Refusal) as raised:
+        responses(state, Uploads())
+    ((path, said),) = raised.value.errors.items()
+    assert path == "ground.base_inertia"
+    assert said.startswith("[ground]: A base without rotary inertia")
+
+
+def test_friction_that_prevents_sliding_may_be_infinite():
+    assert state_of({"friction": "inf"}).ground.friction == math.inf
