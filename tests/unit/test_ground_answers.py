@@ -44,7 +44,9 @@ def test_newmarks_block(sign, a, seconds, friction):
 
 def test_a_grip_that_is_enough_moves_nothing():
     motion = rf.GroundMotion(np.full(50, 2.9), 0.01)
-    run = rf.simulate(rigid(3.0, 1.0), motion, "rigid", impact=LANDS, ground=rf.Ground(friction=0.3), free_vibration=1.0)
+    run = rf.simulate(
+        rigid(3.0, 1.0), motion, "rigid", impact=LANDS, ground=rf.Ground(friction=0.3), free_vibration=1.0
+    )
     assert (run.max_slip, run.residual_slip, run.status) == (0.0, 0.0, "no_uplift")
 
 

@@ -11,7 +11,8 @@ Key = tuple[int, ...]  # the branch of every element, the base first
 
 # Events that end a phase. RELEASES: a base that friction dampers held begins to rotate. CHANGES: an element takes
 # another branch. TURNS: the rotation turns back while an element yields or slides. SLIPS and STICKS: the base begins
-# and ends to slide, or turns back without friction. OPENS and CLOSES: an edge of a base on springs leaves its spring and comes back to it.
+# and ends to slide, or turns back without friction. OPENS and CLOSES: an edge of a base leaves its spring, and comes
+# back to it.
 LIFTS, LANDS, OVERTURNS, RELEASES, CHANGES, TURNS, SLIPS, STICKS, OPENS, CLOSES = range(10)
 
 

@@ -121,7 +121,7 @@ class SlidingModel(LinearModel):
         return accelerations_of(self, self.arrow(key))
 
     def pressure(self, key: Key) -> Array:
-        """Return the vertical reaction in N, m_tot (g + s B θ'') and the tensions of the elements: a row, shape (C,)."""
+        """Return the vertical reaction m_tot (g + s B θ'') and the tensions of the elements in N: a row, shape (C,)."""
         p, side, known, layout = self.properties, key[0], memories(self.elements), self.layout
         row = np.zeros(layout.columns)
         row[-1] = p.m_tot * self.gravity

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Springs
-from rockflex.models._based import accelerations_of, arrow_of, blank_border, horizontal_reaction
+from rockflex.models._based import accelerations_of, arrow_of, blank_border
 from rockflex.models._branch_code import code_of, codes_for, decoded
 from rockflex.models._element import Element
 from rockflex.models._elements import CLOSED, memories
@@ -18,27 +18,17 @@ from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
 from rockflex.models._modal_model import QUARTER_TURN
 from rockflex.models._phase import (
-    CHANGES,
-    CLOSES,
-    OPENS,
     OVERTURNS,
-    SLIPS,
-    STICKS,
     Arrow,
     Border,
     Exit,
-    Fence,
     Guard,
     Key,
     Phase,
 )
 from rockflex.models._pulls import SUMS
-
-# Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
-LOADED, LIFTED, RECEDING = 0, 1, 2
-STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
-
-Pose = tuple[float, float]  # rotation in rad and heave in m
+from rockflex.models._rest_on_springs import Pose, heave_at
+from rockflex.models._spring_fences import LIFTED, LOADED, RECEDING, STICK, fences_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +79,7 @@ class SpringModel(LinearModel):
         """Always 0: the elements change their branches at fences."""
         return 0
 
-    @cached_property
+    @property
     def most_fences(self) -> int:
         """Largest number of fences of a phase."""
         of_elements = sum(
@@ -143,7 +133,7 @@ class SpringModel(LinearModel):
         branches = np.where(depth >= 0.0, LIFTED, np.where(force > 0.0, LOADED, RECEDING))
         known, kept, of_elements = memories(self.elements), list[float](), list[int]()
         for place, each in enumerate(self.elements):
-            stretch = self._stretch(each)
+            stretch = self.stretch(each)
             elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
             memory = each.memory_at(elongation)
             of_elements.append(int(each.branch_at(np.array([elongation]), np.array([memory]))[0]))
@@ -172,28 +162,28 @@ class SpringModel(LinearModel):
         rows = np.zeros((self.springs.n, self.layout.columns))
         for j, branch in enumerate(key[1 : self.springs.n + 1]):
             if branch == LOADED:
-                rows[j] = self._push(j)
+                rows[j] = self.push(j)
         return rows
 
-    def _push(self, j: int) -> Array:
+    def push(self, j: int) -> Array:
         """Return -k z_j - c z_j' of one spring as a row, shape (C,)."""
-        place, speed = self._depth(j)
+        place, speed = self.depth(j)
         return -self.springs.stiffness[j] * place - self.springs.damping[j] * speed
 
-    def _depth(self, j: int) -> tuple[Array, Array]:
+    def depth(self, j: int) -> tuple[Array, Array]:
         """Return z_j = z - x_j θ above one spring, and its rate, as rows, shape (C,)."""
-        return self._risen(float(self.springs.positions[j]))
+        return self.risen(float(self.springs.positions[j]))
 
-    def _risen(self, position: float) -> tuple[Array, Array]:
+    def risen(self, position: float) -> tuple[Array, Array]:
         layout = self.layout
         place, speed = np.zeros((2, layout.columns))
         place[layout.heave], place[layout.rotation] = 1.0, -position
         speed[layout.heave + 1], speed[layout.spin] = 1.0, -position
         return place, speed
 
-    def _stretch(self, element: Element) -> Array:
+    def stretch(self, element: Element) -> Array:
         """Return the elongation of an element as a row, shape (C,): zero at rest."""
-        place, _ = self._risen(element.position)
+        place, _ = self.risen(element.position)
         place[-1] = element.position * self.rest[0] - self.rest[1]
         return place
 
@@ -201,7 +191,7 @@ class SpringModel(LinearModel):
         """Return the tension of an element on a branch in N as a row, shape (C,)."""
         each, known = self.elements[place], memories(self.elements)
         pull = each.pull(branch)
-        row = pull.stiffness * self._stretch(each) + pull.damping * self._risen(each.position)[1]
+        row = pull.stiffness * self.stretch(each) + pull.damping * self.risen(each.position)[1]
         row[-1] += pull.force
         if place in known:
             row[self.layout.memory + known[place]] += pull.recall
@@ -229,7 +219,7 @@ class SpringModel(LinearModel):
             self._add_force(border, -self.tension(place, branch), (-self.elements[place].position, z))
         if self.friction is not None:
             slip = key[self.springs.n + 1]
-            self._add_to(border, 1, -slip * self._grip(key))
+            self._add_to(border, 1, -slip * self.grip(key))
         return border
 
     def _add_force(self, border: Border, row: Array, levers: tuple[float, int]) -> None:
@@ -247,7 +237,7 @@ class SpringModel(LinearModel):
         border.constant[freedom] += force[-1]
         border.recall[freedom] += force[layout.memory : layout.memory + layout.remembered]
 
-    def _grip(self, key: Key) -> Array:
+    def grip(self, key: Key) -> Array:
         """Return Σ μ_j N_j as a row, shape (C,)."""
         return self.friction @ self.spring_forces(key) if self.friction is not None else np.zeros(self.layout.columns)
 
@@ -271,69 +261,6 @@ class SpringModel(LinearModel):
             turned=key,
             beside=(key, key, key),
             free=True,
-            fences=(*self._spring_fences(key), *self._slip_fences(key), *self._element_fences(key)),
+            fences=fences_of(self, key),
             marks=tuple((first + k, code) for k, code in enumerate(code_of(key[1:]))),
         )
-
-    def _spring_fences(self, key: Key) -> list[Fence]:
-        found, last = list[Fence](), self.springs.n - 1
-        for j, branch in enumerate(key[1 : self.springs.n + 1]):
-            depth, push, edge = self._depth(j)[0], self._push(j), j in (0, last)
-            damped = self.springs.damping[j] > 0.0
-            if branch == LOADED:
-                following = RECEDING if damped else LIFTED
-                event = OPENS if edge and not damped else CHANGES
-                found.append(Fence(push, event, _with(key, 1 + j, following)))
-            elif branch == LIFTED:
-                found.append(Fence(depth, CLOSES if edge else CHANGES, _with(key, 1 + j, LOADED)))
-            else:
-                found.append(Fence(-push, CHANGES, _with(key, 1 + j, LOADED)))
-                found.append(Fence(-depth, OPENS if edge else CHANGES, _with(key, 1 + j, LIFTED)))
-        return found
-
-    def _slip_fences(self, key: Key) -> list[Fence]:
-        if self.friction is None:
-            return []
-        place = self.springs.n + 1
-        if key[place] == STICK:
-            held, grip = horizontal_reaction(self, self.accelerations(key)), self._grip(key)
-            # The ground pushes to the right on a base that would slide to the left.
-            return [Fence(grip - held, SLIPS, _with(key, place, -1)), Fence(grip + held, SLIPS, _with(key, place, 1))]
-        going = np.zeros(self.layout.columns)
-        going[self.layout.slip + 1] = key[place]
-        return [Fence(going, STICKS, _with(key, place, STICK))]
-
-    def _element_fences(self, key: Key) -> list[Fence]:
-        found, known = list[Fence](), memories(self.elements)
-        for k, each in enumerate(self.elements):
-            place = self.springs.n + 2 + k
-            branch, stretch = key[place], self._stretch(each)
-            offset, value = each.turning(branch), None
-            if offset is not None:
-                value = stretch.copy()
-                value[-1] -= offset
-            memory = known[k] if value is not None else -1
-            for stop in each.stops(branch):
-                row = -stretch
-                row[-1] += stop.place
-                row[self.layout.memory + known[k]] += stop.recall
-                way = 1.0 if stop.upper else -1.0
-                found.append(Fence(way * row, CHANGES, _with(key, place, stop.branch), memory, value))
-            if each.direction(branch) != 0:
-                row = each.direction(branch) * self._risen(each.position)[1]
-                found.append(Fence(row, CHANGES, _with(key, place, each.stopped(branch)), memory, value))
-        return found
-
-
-def _with(key: Key, place: int, branch: int) -> Key:
-    return (*key[:place], branch, *key[place + 1 :])
-
-
-def heave_at(springs: Springs, rotation: float, weight: float) -> float:
-    """Return the heave in m at which the springs carry a weight in N at a rotation in rad."""
-    ends = springs.positions * rotation  # a spring is compressed while the heave is below its end
-    order = np.argsort(-ends)
-    stiffness = np.cumsum(springs.stiffness[order])
-    heaves = (np.cumsum(springs.stiffness[order] * ends[order]) - weight) / stiffness
-    fits = np.append(heaves[:-1] >= ends[order][1:], True)
-    return float(heaves[np.argmax(fits)])

@@ -11,6 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import check_regular, write_whole
 from rockflex._shown import shown
@@ -19,12 +20,14 @@ from rockflex.modal import (
     FloorModes,
     FrictionDamper,
     RockingProperties,
+    Springs,
     Tendon,
     ViscousDamper,
     YieldingDissipator,
 )
 from rockflex.models import (
     HEADER,
+    RISE,
     BoucWen,
     ForgottenLaw,
     ImpactLaw,
@@ -33,6 +36,8 @@ from rockflex.models import (
     Restitution,
     RockingModel,
     SidedRestitution,
+    SlidingModel,
+    SpringModel,
     VVELComplete,
     VVELSimplified,
 )
@@ -42,7 +47,7 @@ from rockflex.response._history import History
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 
-FORMAT, OLDER = "rockflex-response-3", "rockflex-response-2"
+FORMAT, OLDER, OLDEST = "rockflex-response-4", "rockflex-response-3", "rockflex-response-2"
 PROPERTIES = (
     "omega",
     "effective_mass",
@@ -63,6 +68,7 @@ LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "SidedRestitution": SidedRestitution,
     "ForgottenLaw": ForgottenLaw,
 }
+SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")
 ELEMENTS: dict[str, Callable[..., BaseElement]] = {
     kind.__name__: kind for kind in (Tendon, YieldingDissipator, ViscousDamper, FrictionDamper)
@@ -97,6 +103,13 @@ def save(
         if model.integrated:
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
+        scalars["gravity"] = model.gravity
+        if isinstance(model, SlidingModel):
+            scalars["friction"] = model.friction
+        if isinstance(model, SpringModel):
+            scalars |= {"inertia": model.inertia, "rest": list(model.rest)}
+            parts = {name: getattr(model.springs, name) for name in SPRINGS} | {"friction": model.friction}
+            arrays |= {f"springs.{name}": value for name, value in parts.items() if value is not None}
         scalars["elements"] = [{"kind": type(each).__name__, **asdict(each)} for each in model.properties.elements]
         arrays["states"] = history.states
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
@@ -118,7 +131,7 @@ def load(path: Path, kinds: dict[str, type]) -> Kept:
             content = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
         arrays = {name: np.load(io.BytesIO(part)) for name, part in content.items()}
         scalars = json.loads(str(arrays["response"]))
-        known = scalars["format"] in (FORMAT, OLDER)
+        known = scalars["format"] in (FORMAT, OLDER, OLDEST)
         kept = _kept(scalars, arrays, kinds) if known else None
     except Exception as error:  # zipfile, zlib, NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"
@@ -136,9 +149,13 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
     if "nodes" in arrays:  # as older versions named the states
         arrays = arrays | {"states": arrays["nodes"]}
     if "states" in arrays:
-        history = History(_model(scalars, arrays), arrays["states"])
-    older = scalars["format"] == OLDER
-    later = _later(scalars, history) if older else _of_elements(arrays, history)
+        states = arrays["states"]
+        if scalars["format"] != FORMAT:  # without vertical acceleration
+            states = np.insert(states, RISE, 0.0, axis=1)
+        history = History(_model(scalars, arrays), states)
+    later = _later(scalars, history) if scalars["format"] == OLDEST else _of_elements(arrays, history)
+    if scalars["format"] != FORMAT:
+        later |= _of_ground(scalars, history)
     peaks = later | {name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in later}
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
@@ -178,6 +195,14 @@ def _later(scalars: dict[str, Any], history: History | None) -> dict[str, Any]:
     return found | {name: getattr(of_elements, name) for name in ELEMENT_PEAKS}
 
 
+def _of_ground(scalars: dict[str, Any], history: History | None) -> dict[str, float]:
+    """Return the peaks of the ground that older files lack: it was rigid, and the base could not slide."""
+    uplift = 0.0
+    if scalars["max_rotation"] > 0.0:
+        uplift = math.nan if history is None else float(history.edge_uplift.max())
+    return {"max_slip": 0.0, "residual_slip": 0.0, "max_edge_uplift": uplift, "max_edge_settlement": 0.0}
+
+
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
     if type(scalars[name]) is not kind:
         raise InputError(f"{name} must be of type {kind.__name__}, but is {shown(scalars[name])}.")
@@ -205,7 +230,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     floors = None
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
-    name = "tendons" if scalars["format"] == OLDER else "elements"
+    name = "tendons" if scalars["format"] == OLDEST else "elements"
     elements = [ELEMENTS[each.pop("kind", "Tendon")](**each) for each in map(dict, _typed(scalars, name, list))]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
     known["eccentricity"] = scalars.get("eccentricity", 0.0)  # files of symmetric bases may lack it
@@ -213,9 +238,27 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
     law = _law(parameters)
+    gravity = scalars.get("gravity", GRAVITY)
+    if "springs.positions" in arrays:
+        springs = Springs(*(arrays.get(f"springs.{name}") for name in SPRINGS))  # pyright: ignore[reportArgumentType]
+        rotation, heave = _typed(scalars, "rest", list)
+        return SpringModel(
+            scalars["model"],
+            properties,
+            missing_mass=missing,
+            gravity=gravity,
+            springs=springs,
+            inertia=_typed(scalars, "inertia", float),
+            friction=arrays.get("springs.friction"),
+            rest=(rotation, heave),
+        )
+    if "friction" in scalars:
+        return SlidingModel(
+            scalars["model"], properties, lifts, law, missing, gravity, _typed(scalars, "friction", float)
+        )
     if "complete" not in scalars:
-        return LinearModel(scalars["model"], properties, lifts, law, missing)
+        return LinearModel(scalars["model"], properties, lifts, law, missing, gravity)
     bouc_wen = None if scalars["bouc_wen"] is None else BoucWen(**scalars["bouc_wen"])
     return NonlinearModel(
-        scalars["model"], properties, lifts, law, _typed(scalars, "complete", bool), bouc_wen, missing
+        scalars["model"], properties, lifts, law, _typed(scalars, "complete", bool), bouc_wen, missing, gravity
     )

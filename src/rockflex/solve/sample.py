@@ -3,13 +3,14 @@
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.layout import Integrator
-from rockflex.solve.events import CROSSED, PAUSED, cross, start_crossing
+from rockflex.solve.events import CROSSED, PAUSED, cross
 from rockflex.solve.exact.grid import largest_step
 from rockflex.solve.exact.march import to_coordinates, to_state
 from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe, set_limits
 from rockflex.solve.exact.survey import survey
 from rockflex.solve.history import keep
 from rockflex.solve.layout import ENDS, FINAL, LEFT, LOOK, NOW, Log, Motion, Progress, Span, System, is_shaken, unit_of
+from rockflex.solve.passages import start_crossing
 from rockflex.solve.peaks import raise_peaks
 
 

@@ -20,14 +20,19 @@ def results_of(response: Response, suffix: str = "") -> dict[str, Any]:
     return {name + suffix: getattr(response, name) for name in ("status", *RESULTS)}
 
 
-def result_columns(structures: Iterable[RockingProperties] = (), suffix: str = "") -> dict[str, type]:
+def result_columns(
+    structures: Iterable[RockingProperties] = (), suffix: str = "", *, grounded: bool = False
+) -> dict[str, type]:
     """Return the kinds of the columns that `results_of` fills in a study of these structures.
 
-    Without elements other than elastic tendons the columns of `OF_ELEMENTS` would say nothing, and are left out.
+    Without elements other than elastic tendons the columns of `OF_ELEMENTS` would say nothing, and are left out; so are
+    those of `OF_GROUND` on rigid ground on which no base slides, unless the study is `grounded`.
     """
-    told = any(map(_is_controlled, structures))
+    silent: tuple[str, ...] = () if grounded else OF_GROUND
+    if not any(map(_is_controlled, structures)):
+        silent += OF_ELEMENTS
     kinds = {"status": str, **RESULTS}
-    return {name + suffix: kind for name, kind in kinds.items() if told or name not in OF_ELEMENTS}
+    return {name + suffix: kind for name, kind in kinds.items() if name not in silent}
 
 
 def _is_controlled(properties: RockingProperties) -> bool:

@@ -83,7 +83,7 @@ def _with_held(accelerations: Array, energy_scale: Array, arrow: Arrow) -> Basis
     modes, free, held = count - b, np.flatnonzero(arrow.freed), np.flatnonzero(~arrow.freed)
     kept = np.concatenate((np.arange(2 * modes), np.sort(np.concatenate((2 * (modes + free), 2 * (modes + free) + 1)))))
     rows = np.concatenate((np.arange(modes), modes + free))
-    part = _rocking_basis(accelerations[np.ix_(rows, [*kept, -2, -1])], energy_scale[kept], free.size)
+    part = _rocking_basis(accelerations[rows][:, [*kept, -2, -1]], energy_scale[kept], free.size)
     moving = part.moving
     pairs, roots = np.zeros((count, 2, 2)), np.zeros((count, 2), dtype=np.complex128)
     pairs[:moving], roots[:moving] = part.pairs, part.roots

@@ -64,7 +64,8 @@ class Developed:
         layout, arrow = self._layout, self._arrow
         n, b = layout.modes, layout.freedoms
         places = layout.rotation + 2 * np.arange(b)
-        where, speeds = [*range(n), *places], [*range(n, 2 * n), *(places + 1)]
+        modes = np.arange(n)
+        where, speeds = np.concatenate((modes, places)), np.concatenate((n + modes, places + 1))
         series = np.zeros((TERMS, states.shape[0], n + b))
         series[0], series[1] = states[:, where], states[:, speeds] * h[:, None]
         memory = states[:, layout.memory : layout.memory + layout.remembered]
@@ -94,4 +95,4 @@ class Developed:
         states[:, where] = series.sum(axis=0)
         rates = np.tensordot(np.arange(TERMS, dtype=np.float64), series, axes=1)
         moving = h > 0.0
-        states[np.ix_(moving, speeds)] = rates[moving] / h[moving, None]
+        states[np.ix_(np.flatnonzero(moving), speeds)] = rates[moving] / h[moving, None]

@@ -92,7 +92,9 @@ class Bench:
         found |= record_columns(self.motions)
         found |= {"model": self.labels, "scale": float}
         found |= dict.fromkeys((measure.name for measure in intensities()), float)
-        found |= result_columns(self.structures) | {"nominal_limit": float}
+        found |= result_columns(self.structures, grounded=self.assumptions.ground is not None) | {
+            "nominal_limit": float
+        }
         if self.assumptions.friction:
             found["required_friction"] = float
         return found | {"error": str}
