@@ -16,7 +16,7 @@ from rockflex.solve.adaptive.curves import is_curved, raise_curves
 from rockflex.solve.adaptive.layout import Flow, Integrator, Stages
 from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.turning import BARELY
-from rockflex.solve.exact.series import advance, expand, row_series
+from rockflex.solve.exact.series import advance, expand, largest, margin, measure, row_series
 from rockflex.solve.exits import fence_exit, phase_exit, turn_back
 from rockflex.solve.layout import (
     DAMPING,
@@ -109,8 +109,12 @@ def first_fence(
     if system.phases[p].fences == 0:
         return stop, -1
     if steps is None or system.phases[p].linear:
+        measure(system, p, motion, span.length)
         for row in range(system.fences, rows_in(system, p)):
-            row_series(system, p, row, motion, span)
+            if margin(system, p, row, motion, span) > 0.0:
+                motion.polys[row, 0] = np.inf  # it cannot fall to zero
+            else:
+                row_series(system, p, row, motion, span)
         return fence_exit(system, at, span, motion, motion.polys, stop)
     for row in range(system.fences, rows_in(system, p)):
         row_poly(system, p, row, span, steps.room)
@@ -149,7 +153,12 @@ def move_by_series(system: System, at: Progress, span: Span, stop: float, log: L
     advance(system, motion, stop, span.length)
     time, ground = span.time + span.length * stop, span.ground + span.slope * span.length * stop
     rise = span.rise + span.rise_slope * span.length * stop
+    measured = at.fresh_rows and system.phases[p].fences > 0
+    if at.fresh_rows and not measured:
+        measure(system, p, motion, span.length)
     for f in range(1, log.peaks.size):
+        if at.fresh_rows and largest(system, p, f, motion, span) <= log.peaks[f]:
+            continue
         if at.fresh_rows or motion.flags[DOUBT, f]:
             row_series(system, p, f, motion, span)
             raise_peak(motion.polys, f, stop, span, log)

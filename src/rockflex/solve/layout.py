@@ -61,6 +61,9 @@ NOW, ENDS, HELD = 0, 1, 2
 LOWER, UPPER, FIRST, FINAL = 0, 1, 2, 3
 DOUBT, ASKED = 0, 1
 
+# Indices in `Motion.reach`: of a coordinate and of its rate, and how far either moves away from its start
+SIZE, RATE, MOVES, TURNS_BY = 0, 1, 2, 3
+
 # Indices in `System.bounds`: largest deviation over a step of a row from its chord, of its slope from the chord of the
 # slope, and of the row from the cubic through the values and slopes at both ends.
 SAG, SWING, RIPPLE = 0, 1, 2
@@ -176,6 +179,7 @@ class Motion(NamedTuple):
     flags: Bools  # (2, F + E): rows that may leave their limits inside the step, and rows to examine
     clear: NDArray[np.int64]  # (F + E,): point of the grid up to which the search for peaks is done
     series: Array  # (N + b, terms)
+    reach: Array  # (4, N + b): how far the series reach, see `series.measure`
     polys: Array  # (F + E + 1, terms): polynomials of the rows, and one for work
     push: Array  # (b,): forces on the base, coefficient by coefficient
     # Of the present phase, with the memories as they are: see `memory.recollect`
@@ -256,6 +260,7 @@ def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motio
         flags=flags,
         clear=np.zeros(rows, dtype=np.int64),
         series=np.zeros((pairs, terms)),
+        reach=np.zeros((4, pairs)),
         polys=np.zeros((rows + 1, terms)),
         push=np.zeros(freedoms),
         limits=np.zeros(2),

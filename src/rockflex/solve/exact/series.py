@@ -16,14 +16,19 @@ from rockflex.solve.layout import (
     DRIVE,
     FLEXIBILITY,
     LEVERAGE,
+    MOVES,
     OMEGA2,
+    RATE,
+    SIZE,
     STIFFNESS,
+    TURNS_BY,
     Motion,
     Span,
     System,
     is_shaken,
     slip_in,
 )
+from rockflex.solve.peaks import row_at
 from rockflex.solve.polynomials import evaluate
 
 
@@ -109,6 +114,64 @@ def heavier(system: System, phase: int, freedom: int, k: int, span: Span, series
                 moved += span.rise_slope * step * series[n + m, k - 1]
             force -= stiffness * moved
     return force * step * step
+
+
+@kernel
+def measure(system: System, phase: int, motion: Motion, step: float) -> None:
+    """Set bounds of D and q and of their rates over the stretch of the series, and of how much they change."""
+    terms = system.phases[phase].terms
+    for i in range(motion.series.shape[0]):
+        moves = turns = 0.0
+        for k in range(terms - 1, 1, -1):
+            size = abs(motion.series[i, k])
+            moves += size
+            turns += k * size
+        first = abs(motion.series[i, 1])
+        motion.reach[SIZE, i] = abs(motion.series[i, 0]) + first + moves
+        motion.reach[RATE, i] = (first + turns) / step
+        motion.reach[MOVES, i] = first + moves
+        motion.reach[TURNS_BY, i] = turns / step
+
+
+@kernel
+def largest(system: System, phase: int, row: int, motion: Motion, span: Span) -> float:
+    """Return a bound of a row over the measured stretch."""
+    rise = max(abs(span.rise), abs(span.rise + span.rise_slope * span.length))
+    size = bound_of(system, system.plain_rows, phase, row, SIZE, motion, span)
+    if rise > 0.0:
+        size += rise * bound_of(system, system.heavier_rows, phase, row, SIZE, motion, span)
+    return size
+
+
+@kernel
+def margin(system: System, phase: int, row: int, motion: Motion, span: Span) -> float:
+    """Return a lower bound of a row over the measured stretch: its value at the start less what it may change."""
+    value = row_at(system.plain_rows, phase, row, span.ground, motion.state)
+    value -= bound_of(system, system.plain_rows, phase, row, MOVES, motion, span)
+    if is_shaken(span):
+        rise = max(abs(span.rise), abs(span.rise + span.rise_slope * span.length))
+        value += span.rise * row_at(system.heavier_rows, phase, row, span.ground, motion.state)
+        value -= rise * bound_of(system, system.heavier_rows, phase, row, MOVES, motion, span)
+        value -= (
+            abs(span.rise_slope) * span.length * abs(row_at(system.heavier_rows, phase, row, span.ground, motion.state))
+        )
+    return value
+
+
+@kernel
+def bound_of(system: System, rows: Array, phase: int, row: int, which: int, motion: Motion, span: Span) -> float:
+    """Return a bound of a row (`which` is `SIZE`) or of its change (`MOVES`) over the measured stretch."""
+    n, moving = system.layout.modes, rows.shape[2] - 2
+    size = abs(rows[phase, row, moving]) * abs(span.slope) * span.length
+    if which == SIZE:
+        size += abs(rows[phase, row, moving] * span.ground) + abs(rows[phase, row, moving + 1])
+        for i in range(system.layout.memory, system.layout.memory + system.layout.remembered):
+            size += abs(rows[phase, row, i] * motion.state[i])
+    for i in range(motion.series.shape[0]):
+        place, speed = (i, n + i) if i < n else (2 * i, 2 * i + 1)
+        size += abs(rows[phase, row, place]) * motion.reach[which, i]
+        size += abs(rows[phase, row, speed]) * motion.reach[which + 1, i]
+    return size
 
 
 @kernel
