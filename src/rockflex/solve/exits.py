@@ -165,13 +165,19 @@ def fence_exit(
 
 @kernel
 def sizes_at(system: System, phase: int, row: int, span: Span, motion: Motion) -> tuple[float, float]:
-    """Return the sum of the magnitudes of the terms of a row at the start of a stretch, and that of its known rates."""
+    """Return the sizes of a row and of its rate at the start of a stretch: the sums of the magnitudes of their terms.
+
+    Velocities count with what they change in a time step, since one that passes zero is far below its usual size.
+    """
     rows, moving, n = system.plain_rows, system.plain_rows.shape[2] - 2, system.layout.modes
     size, slope = abs(rows[phase, row, moving] * span.ground) + abs(rows[phase, row, moving + 1]), 0.0
     for i in range(moving):
         size += abs(rows[phase, row, i] * motion.state[i])
-    for i in range(n):
-        slope += abs(rows[phase, row, i] * motion.state[n + i])
-    for j in range(motion.push.size):
-        slope += abs(rows[phase, row, 2 * (n + j)] * motion.state[2 * (n + j) + 1])
+    for i in range(motion.series.shape[0]):
+        place, speed = (i, n + i) if i < n else (2 * i, 2 * i + 1)
+        change = 0.0
+        if system.phases[phase].linear:
+            change = 2.0 * abs(motion.series[i, 2]) / (span.length * span.length) * system.dt
+        size += abs(rows[phase, row, speed]) * change
+        slope += abs(rows[phase, row, place]) * (abs(motion.state[speed]) + change)
     return size, slope
