@@ -111,7 +111,7 @@ class CompiledPhases:
         changes = self._model.most_changes
         return phase.changes[place].key if place < changes else phase.fences[place - changes].key
 
-    def known_system(self, dt: float, *, shaken: bool) -> System | None:
+    def known_system(self, dt: float, *, shaken: bool = False) -> System | None:
         """Return the tables of all phases compiled so far, for one time step; None if they are not ready.
 
         `shaken` means that the ground moves vertically as well.
@@ -119,7 +119,7 @@ class CompiledPhases:
         system, entered = self._systems.get((dt, shaken), (None, 0))
         return system if entered == len(self._phases) else None
 
-    def system(self, dt: float, fastest: float, *, shaken: bool) -> System:
+    def system(self, dt: float, fastest: float, *, shaken: bool = False) -> System:
         """Return the tables of all phases compiled so far, for one time step.
 
         `fastest` is a bound for the frequencies of later phases in rad/s; if it is too low, the tables are enlarged.
