@@ -12,7 +12,7 @@ from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._kept import acting_side, pulls_at, rates_of
 from rockflex.models._label import RockingModel
-from rockflex.models._layout import GROUND, HEADER
+from rockflex.models._layout import GROUND, HEADER, RISE
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
 
@@ -27,16 +27,16 @@ class Reactions(NamedTuple):
 def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """Return Σ m_i (a + x''_i), Eq. 21, and Σ m_i (g + z''_i), Eq. 22 with the sign corrected, plus the elements' pull.
 
-    In the simplified models, consistent with Eq. 23 for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
-    m_tot (g + s B θ'') plus the tensions of the elements. `states` as in `History`; `rates` contains D''_n and θ'' at
-    each state, shape (n, N + 1).
+    z'' contains the vertical acceleration a_v of the ground. In the simplified models, consistent with Eq. 23 for small
+    rotations: m_tot a + L_0^r θ'' + Σ m* D'', and m_tot (g + a_v + s B θ'') plus the tensions of the elements. `states`
+    as in `History`; `rates` contains D''_n and θ'' at each state, shape (n, N + 1).
     """
     if model.complete:
         return _of_large_rotations(model, states, rates)
     p, side = model.properties, acting_side(states)
     n = p.n_modes
     turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
-    vertical = p.m_tot * GRAVITY + element_forces(model, states).sum(axis=1)
+    vertical = p.m_tot * (GRAVITY + states[:, RISE]) + element_forces(model, states).sum(axis=1)
     for each in (1, -1):
         on = side == each
         vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]
@@ -55,6 +55,7 @@ def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Rea
     moving = np.ascontiguousarray(rates_of(model, states, rates))
     pulls = pulls_at(model, states)
     x, z = np.zeros(side.size), np.zeros(side.size)
+    moved = states[:, GROUND].copy(), states[:, RISE].copy()
     for kind, values in ((HORIZONTAL, x), (VERTICAL, z)):
-        observe_all(field, pulls, kind, values, 0.0, 0.0, side, states[:, GROUND].copy(), motion, moving)
+        observe_all(field, pulls, kind, values, 0.0, 0.0, side, *moved, motion, moving)
     return Reactions(x, z)
