@@ -77,7 +77,7 @@ def run(
                     continue
                 # A phase in closed form has examined the whole sample.
                 at.stage, at.place, at.level = LOOKING, 0, 0
-                at.probed = system.phases[at.phase].marches and vertical.size == 0
+                at.probed = system.phases[at.phase].marches and level_samples(vertical, at.index) > 0
                 at.slope = (piece[at.index + 1] - piece[at.index]) * rate
                 log.tally[EVENTS] = 0
             i = at.index
@@ -203,6 +203,19 @@ def rise_at(vertical: Array, index: int) -> float:
     return vertical[index] if vertical.size > 0 else 0.0
 
 
+@kernel
+def level_samples(vertical: Array, index: int) -> int:
+    """Return over how many samples from one on the ground does not move vertically, at most `BLOCK`."""
+    if vertical.size == 0:
+        return BLOCK
+    count = 0
+    while count < BLOCK and index + count + 1 < vertical.size:
+        if vertical[index + count] != 0.0 or vertical[index + count + 1] != 0.0:
+            return count
+        count += 1
+    return count
+
+
 @inlined_kernel
 def carry(
     system: System,
@@ -218,10 +231,18 @@ def carry(
     p = at.phase
     if steps is not None and not system.phases[p].linear:
         return step_through(system, steps.flow, piece, vertical, dt, motion.limits, at, log, steps.room)
-    if not system.phases[p].marches or vertical.size > 0:
+    level = level_samples(vertical, at.index)
+    if not system.phases[p].marches or level == 0:
+        if at.tuned and not at.stated:
+            to_state(system, at, piece[at.index], motion)
+            at.stated = True
+        at.tuned = False
         return True
+    if not at.tuned:
+        to_coordinates(system, at, piece[at.index], motion)
+        at.tuned = True
     first = at.index
-    most = BLOCK
+    most = min(BLOCK, level)
     if log.history.shape[0] > 0:
         most = min(most, room_left(log) + MARGIN // 2)
     march(system, piece, dt, most, at, log, motion)
