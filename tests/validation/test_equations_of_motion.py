@@ -25,7 +25,7 @@ def right_hand_side(properties, side, a, state):
 def ground_forces(properties, side, a, state):
     """(F_x, F_z) that the ground gives the base, in N: what is under test."""
     model = NonlinearModel("MDOF-C", properties)
-    nodes = np.array([[0.0, side, a, *state, *np.zeros(EXTRA)]])
+    nodes = np.array([[0.0, side, a, 0.0, *state, *np.zeros(EXTRA)]])
     forces = reactions(model, nodes, accelerations(model, nodes))
     return np.array([forces.horizontal[0], forces.vertical[0]])
 
