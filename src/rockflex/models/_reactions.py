@@ -36,7 +36,7 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     p, side = model.properties, acting_side(states)
     n = p.n_modes
     turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
-    vertical = p.m_tot * (GRAVITY + states[:, RISE]) + element_forces(model, states).sum(axis=1)
+    vertical = p.m_tot * (model.gravity + states[:, RISE]) + element_forces(model, states).sum(axis=1)
     for each in (1, -1):
         on = side == each
         vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]
@@ -50,7 +50,7 @@ def printed_reactions(model: RockingModel, states: Array, rates: Array) -> React
 
 
 def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Reactions:
-    field = NonlinearModel(model.label, model.properties, model.lifts, model.law).field()
+    field = NonlinearModel(model.label, model.properties, model.lifts, model.law, gravity=model.gravity).field()
     side, motion = acting_side(states), np.ascontiguousarray(states[:, HEADER:])
     moving = np.ascontiguousarray(rates_of(model, states, rates))
     pulls = pulls_at(model, states)

@@ -234,12 +234,12 @@ def carry(
     level = level_samples(vertical, at.index)
     if not system.phases[p].marches or level == 0:
         if at.tuned and not at.stated:
-            to_state(system, at, piece[at.index], motion)
+            to_state(system, at, float(piece[at.index]), motion)
             at.stated = True
         at.tuned = False
         return True
     if not at.tuned:
-        to_coordinates(system, at, piece[at.index], motion)
+        to_coordinates(system, at, float(piece[at.index]), motion)
         at.tuned = True
     first = at.index
     most = min(BLOCK, level)
