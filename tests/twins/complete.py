@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
-from twins.complete_model import GRAVITY, BoucWen, CompleteModel, Rope, Structure
+from twins.complete_model import GRAVITY, BoucWen, CompleteModel, Ground, Rope, Shaking, Structure
 from twins.frame import frame_properties
 from twins.impact_laws import CompleteVVEL, Law
 from twins.result import Vector
@@ -31,9 +31,14 @@ class Sample(NamedTuple):
     length: float
     first: float
     slope: float
+    rise: float = 0.0
+    rise_slope: float = 0.0
 
-    def excitation(self, tau):
-        return self.first + self.slope * tau
+    def excitation(self, tau) -> Ground:
+        right = self.first + self.slope * tau
+        if self.rise == self.rise_slope == 0.0:
+            return right
+        return Shaking(right, self.rise + self.rise_slope * tau)
 
 
 @dataclass(frozen=True)
@@ -246,6 +251,7 @@ def simulate_complete(
     acceleration: ArrayLike,
     dt: float,
     *,
+    vertical: ArrayLike | None = None,
     eccentricity: float = 0.0,
     ropes: Iterable[Rope] = (),
     complete: bool = True,
@@ -278,7 +284,9 @@ def simulate_complete(
     run.note(0.0)
     parts = int(np.ceil(free / dt - 1e-9))
     rest = [(dt * (record.size - 1) + k * free / parts, free / parts, 0.0, 0.0) for k in range(parts)]
-    shaken = [(k * dt, dt, record[k], (record[k + 1] - record[k]) / dt) for k in range(record.size - 1)]
+    rise = np.zeros(record.size) if vertical is None else np.asarray(vertical, float)
+    slopes, rise_slopes = np.diff(record) / dt, np.diff(rise) / dt
+    shaken = [(k * dt, dt, record[k], slopes[k], rise[k], rise_slopes[k]) for k in range(record.size - 1)]
     for sample in shaken + rest:
         run.advance(Sample(*sample))
         if run.overturned:

@@ -6,6 +6,7 @@ at its end Bouc-Wen's z where there is one. N = 0 is the rigid block. A state ma
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,21 @@ from numpy.typing import ArrayLike
 from twins.result import Vector
 
 GRAVITY = 9.81
+
+
+class Shaking(NamedTuple):
+    """Acceleration of the ground to the right and upwards; a number stands for one to the right alone."""
+
+    right: Vector | float
+    up: Vector | float
+
+
+Ground = Shaking | Vector | float
+
+
+def split(a: Ground) -> tuple[Vector | float, Vector | float]:
+    """The horizontal acceleration, and the weight of a unit of mass on ground that moves upwards."""
+    return (a.right, GRAVITY + a.up) if isinstance(a, Shaking) else (a, GRAVITY)
 
 
 @dataclass(frozen=True)
@@ -119,11 +135,11 @@ class CompleteModel:
         damping = 2.0 * self.structure.zeta * self.structure.omega
         return -a - (damping * v.T).T - self.restoring(d, y)
 
-    def resisting(self, side: int) -> float:
+    def resisting(self, side: int, g: Vector | float = GRAVITY) -> Vector | float:
         """Moment about the pivot of what pulls the base down, each force at its place."""
         p = self.structure
         edge = p.edge(side)
-        return p.m_tot * GRAVITY * abs(edge) + sum(rope.force * abs(edge - rope.x) for rope in p.ropes)
+        return p.m_tot * g * abs(edge) + sum(rope.force * abs(edge - rope.x) for rope in p.ropes)
 
     def pull(self, turn: float, side: int) -> tuple[float, float]:
         """Sum of the ropes' forces, and of their moments about the pivot; along chords in the complete model."""
@@ -138,27 +154,28 @@ class CompleteModel:
             moment += (rope.force + rope.stiffness * chord) * lever
         return force, side * moment
 
-    def overturning(self, y: Vector, a: Vector | float) -> Vector:
+    def overturning(self, y: Vector, a: Ground) -> Vector:
         """The moment that lifts the base, to θ > 0 below -`resisting(1)` and to θ < 0 above `resisting(-1)`.
 
         In contact (Eqs. 16 and 24).
 
         Eq. 16 has D on both sides of the inequality; here both stand on the left.
         """
-        moment = self.arm @ self.free(y, a) + self.structure.l0r * a
+        right, g = split(a)
+        moment = self.arm @ self.free(y, right) + self.structure.l0r * right
         if self.complete:
-            moment = moment - GRAVITY * self.structure.effective_mass @ self.modal(y)[0]
+            moment = moment - g * (self.structure.effective_mass @ self.modal(y)[0])
         return moment
 
-    def room(self, y: Vector, a: Vector | float) -> Vector:
+    def room(self, y: Vector, a: Ground) -> Vector:
         """What the overturning moment has left to the nearer of its limits, in contact."""
-        moment = self.overturning(y, a)
-        return np.minimum(self.resisting(-1) - moment, self.resisting(1) + moment)
+        moment, g = self.overturning(y, a), split(a)[1]
+        return np.minimum(self.resisting(-1, g) - moment, self.resisting(1, g) + moment)
 
-    def side_wanted(self, y: Vector, a: float) -> int:
+    def side_wanted(self, y: Vector, a: Ground) -> int:
         """Side on which the base lifts at once, else 0."""
-        moment = self.overturning(y, a)
-        return 1 if moment < -self.resisting(1) else -1 if moment > self.resisting(-1) else 0
+        moment, g = self.overturning(y, a), split(a)[1]
+        return 1 if moment < -self.resisting(1, g) else -1 if moment > self.resisting(-1, g) else 0
 
     def inertia(self, d: Vector, side: int) -> float:
         """Factor of θ'' in its own equation: I_θ, with the masses where they are in the complete model."""
@@ -169,9 +186,9 @@ class CompleteModel:
             return inertia
         return inertia + float(p.effective_mass @ (d * d - 2.0 * p.edge(side) * d))
 
-    def accelerations(self, y: Vector, a: float, side: int) -> tuple[float, Vector]:
+    def accelerations(self, y: Vector, ground: Ground, side: int) -> tuple[float, Vector]:
         """(θ'', D'') under Eqs. 13 and 14, or 23; in contact (side 0) those of Eq. 15."""
-        p, g = self.structure, GRAVITY
+        p, (a, g) = self.structure, split(ground)
         d, v = self.modal(y)
         turn, spin = y[0], y[1]
         if side == 0:
@@ -193,7 +210,7 @@ class CompleteModel:
         rotation = (moment - self.arm @ modes) / left
         return rotation, modes - p.effective_height * rotation
 
-    def field(self, y: Vector, a: float, side: int) -> Vector:
+    def field(self, y: Vector, a: Ground, side: int) -> Vector:
         """y'."""
         rotation, modes = self.accelerations(y, a, side)
         v = self.modal(y)[1]
@@ -223,10 +240,10 @@ class CompleteModel:
         p = self.structure
         return np.stack([turn, p.top_ordinate @ d, self.arm @ force, p.effective_mass @ force])
 
-    def ground_forces(self, y: Vector, a: float, side: int) -> tuple[float, float]:
+    def ground_forces(self, y: Vector, ground: Ground, side: int) -> tuple[float, float]:
         """What the ground gives the base: Eq. 21, and Eq. 22 with the weight upward (its sign is a misprint)."""
-        p = self.structure
-        rotation, modes = self.accelerations(y, a, side)
+        p, (a, g) = self.structure, split(ground)
+        rotation, modes = self.accelerations(y, ground, side)
         d, v = self.modal(y)
         sin, cos, spin = np.sin(y[0]), np.cos(y[0]), y[1] if side else 0.0
         m, along, across = p.effective_mass, p.l0r, p.m_tot * p.edge(side) - p.effective_mass @ d
@@ -236,7 +253,7 @@ class CompleteModel:
         tension = self.pull(y[0], side)[0]
         return (
             p.m_tot * a + horizontal + along_rate * cos - along_speed * sin + tension * np.sin(0.5 * y[0]),
-            p.m_tot * GRAVITY + vertical - along_rate * sin - along_speed * cos + tension * np.cos(0.5 * y[0]),
+            p.m_tot * g + vertical - along_rate * sin - along_speed * cos + tension * np.cos(0.5 * y[0]),
         )
 
     def kinetic_energy(self, y: Vector, side: int) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from twins.complete import ATOL, ROOT, Run, Sample, first_root, sizes
-from twins.complete_model import BoucWen, CompleteModel, Structure
+from twins.complete_model import GRAVITY, BoucWen, CompleteModel, Structure
 from twins.controlled import DOWN, SLACK, UP, Bar, Dashpot
 from twins.impact_laws import CompleteVVEL, Law
 from twins.result import Vector
@@ -51,8 +51,8 @@ class ControlledModel(CompleteModel):
             return force
         return force + k * self.stretch(element, turn, side) + c * self.lever(element, turn, side) * spin
 
-    def resisting(self, side: int) -> float:
-        return super().resisting(side) + sum(each.tangent()[2] * self.reach(each, side) for each in self.elements)
+    def resisting(self, side: int, g: Vector | float = GRAVITY) -> Vector | float:
+        return super().resisting(side, g) + sum(each.tangent()[2] * self.reach(each, side) for each in self.elements)
 
     def accelerations(self, y: Vector, a: float, side: int) -> tuple[float, Vector]:
         rotation, modes = super().accelerations(y, a, side)

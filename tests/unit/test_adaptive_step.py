@@ -28,7 +28,7 @@ ENDLESS = np.array([np.inf, 0.0, 0.0, 0.0, 0.0])  # work
 def prepared(tolerance=1e30):
     """The engine of a complete model of two modes, whose steps are never refused."""
     model = Model(complete=True).of(Frame(**FRAME).rocking())
-    return Engine(model, Quantities.none(2), tolerance)
+    return Engine(model, Quantities.none(2), tolerance=tolerance)
 
 
 def flow(tolerance=1e30):
@@ -37,7 +37,7 @@ def flow(tolerance=1e30):
 
 def over(step, begun=0.0):
     """What is left of the sample, after some of it is done."""
-    return Span(begun, begun + step, A + SLOPE * begun, SLOPE, step)
+    return Span(begun, begun + step, A + SLOPE * begun, SLOPE, step, 0.0, 0.0)
 
 
 def room_of(motion, rows=1):
@@ -144,7 +144,7 @@ def test_rows_are_polynomials_over_the_step():
     h = 0.1
     engine = prepared()
     phase = engine._phases.place(engine.model.start(1))
-    system = engine._phases.system(1.0, 0.0)
+    system = engine._phases.system(1.0, 0.0, shaken=False)
     weights = np.random.default_rng(1).standard_normal(9)  # D, D', θ, θ', z, a, 1
     system.plain_rows[phase, 0] = weights
     room = stepped(h)
@@ -206,5 +206,5 @@ def test_the_branch_of_the_hysteresis(velocity):
         motion = np.zeros(4 + EXTRA)
         motion[1] = velocity
         room = room_of(motion)
-        take_step(given, 0.0, Span(0.0, 0.001, a, 0.0, 0.001), room)
+        take_step(given, 0.0, Span(0.0, 0.001, a, 0.0, 0.001, 0.0, 0.0), room)
         assert room.at.branch == (np.sign(velocity) or -np.sign(a))

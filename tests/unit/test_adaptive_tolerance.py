@@ -26,7 +26,8 @@ def test_peaks_do_not_depend_on_it(label, spring):
     motion = load_suite("fema-p695-far-field")["FF-1-a"].scaled(1.5)
     model = parse_model(label).of(FRAME.rocking(), None, spring)
     runs = [
-        Engine(model, asked_of(model), tolerance).run(motion.acceleration, motion.dt) for tolerance in (1e-7, 1e-12)
+        Engine(model, asked_of(model), tolerance=tolerance).run(motion.acceleration, motion.dt)
+        for tolerance in (1e-7, 1e-12)
     ]
     assert runs[0].n_impacts == runs[1].n_impacts
     np.testing.assert_allclose(runs[0].peaks, runs[1].peaks, rtol=2e-7)

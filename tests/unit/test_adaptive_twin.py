@@ -89,7 +89,8 @@ def test_the_peaks_follow_the_tolerance(tolerance):
 
     record = motion("el-centro-1940")
     model = parse_model("2DOF-C").of(rf.Frame(**FRAME).rocking())
-    loose, tight = (Engine(model, asked_of(model), t).run(record.acceleration, record.dt) for t in (tolerance, 1e-13))
+    engines = (Engine(model, asked_of(model), tolerance=each) for each in (tolerance, 1e-13))
+    loose, tight = (each.run(record.acceleration, record.dt) for each in engines)
     assert loose.n_impacts == tight.n_impacts
     error = np.abs(loose.peaks / tight.peaks - 1.0).max()
     assert error < 1e3 * tolerance

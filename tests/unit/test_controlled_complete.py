@@ -7,6 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
+from rockflex.models import HEADER
 from twins import impact_laws
 from twins.complete import complete_frame
 from twins.complete_model import BoucWen, Structure
@@ -177,7 +178,7 @@ def test_energy_balance(model, case):
     p, states, layout = run.history.model.properties, run.history.states, run.history.model.layout
     last = np.flatnonzero(run.side == 0.0)[-1]
     states = states[: last + 1]
-    known = states[:, 3 + layout.memory :]
+    known = states[:, HEADER + layout.memory :]
     taken, place = dissipated_by_dampers(p, layout, states), 0
     for element in p.elements:
         if isinstance(element, rf.YieldingDissipator) or getattr(element, "post_yield_ratio", None) is not None:

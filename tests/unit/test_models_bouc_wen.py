@@ -57,7 +57,7 @@ def rate(spring, velocity, z):
     field = Model(1, lifts=False).of(FRAME.rocking(), bouc_wen=spring).field()
     motion, rates = np.zeros(4 + EXTRA), np.full(4 + EXTRA, np.nan)
     motion[1], motion[4] = velocity, z
-    field_rates(field, 0.0, 1.0 if velocity >= 0.0 else -1.0, 0.0, motion, rates)
+    field_rates(field, 0.0, 1.0 if velocity >= 0.0 else -1.0, 0.0, 0.0, motion, rates)
     return rates[4]
 
 

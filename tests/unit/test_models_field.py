@@ -41,7 +41,7 @@ def rates_of(model, side, acceleration, motion):
     full = np.concatenate((motion, np.zeros(EXTRA - 1)))
     rates = np.full(full.size, np.nan)
     branch = 1.0 if n == 0 or motion[n] >= 0.0 else -1.0
-    field_rates(model.field(), side, branch, acceleration, full, rates)
+    field_rates(model.field(), side, branch, acceleration, 0.0, full, rates)
     return rates
 
 

@@ -17,7 +17,7 @@ def right_hand_side(properties, side, a, state):
     """(D'', θ'') of the complete model from [D, D', θ, θ'] on a side: what is under test."""
     motion = np.concatenate([state, np.zeros(EXTRA)])
     rates = np.empty_like(motion)
-    field_rates(NonlinearModel("MDOF-C", properties).field(), float(side), 1.0, a, motion, rates)
+    field_rates(NonlinearModel("MDOF-C", properties).field(), float(side), 1.0, a, 0.0, motion, rates)
     n = properties.n_modes
     return rates[n : 2 * n], rates[2 * n + 1]
 
@@ -25,7 +25,7 @@ def right_hand_side(properties, side, a, state):
 def ground_forces(properties, side, a, state):
     """(F_x, F_z) that the ground gives the base, in N: what is under test."""
     model = NonlinearModel("MDOF-C", properties)
-    nodes = np.array([[0.0, side, a, *state, *np.zeros(EXTRA)]])
+    nodes = np.array([[0.0, side, a, 0.0, *state, *np.zeros(EXTRA)]])
     forces = reactions(model, nodes, accelerations(model, nodes))
     return np.array([forces.horizontal[0], forces.vertical[0]])
 

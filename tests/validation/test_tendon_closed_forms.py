@@ -156,7 +156,7 @@ def test_the_field_holds_the_gradient_of_the_tendons_energy():
 def rates_of(properties: rf.RockingProperties, side: int, motion: np.ndarray) -> np.ndarray:
     coefficients: Field = NonlinearModel("MDOF-C", properties).field()
     rates = np.zeros(motion.size)
-    field_rates(coefficients, float(side), 1.0, 1.7, motion, rates)
+    field_rates(coefficients, float(side), 1.0, 1.7, 0.0, motion, rates)
     return rates
 
 

@@ -68,12 +68,16 @@ def inertia_left(field: Field, side: float, motion: Array) -> float:
 
 
 @kernel
-def field_rates(field: Field, side: float, branch: float, acceleration: float, motion: Array, rates: Array) -> None:
-    """Compute the rates of the motion on one side (0: in contact) for a ground acceleration.
+def field_rates(
+    field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
+) -> None:
+    """Compute the rates of the motion on one side (0: in contact) for a ground acceleration, horizontal and upwards.
 
-    `branch` is the sign of D'_1 used in the hysteresis law, which is therefore smooth up to the reversal.
+    The latter, `rise`, acts like more gravity. `branch` is the sign of D'_1 used in the hysteresis law, which is
+    therefore smooth up to the reversal.
     """
     n = field.modes.shape[1]
+    gravity = field.gravity + rise
     theta, spin = motion[2 * n], motion[2 * n + 1]
     sine, cosine = 0.0, 1.0
     if side != 0.0 and field.complete:
@@ -98,7 +102,7 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
             rates[2 * n + 2] = hysteresis(field, branch, float(v), float(motion[2 * n + 2]))
         rest = -restoring - drag - acceleration * cosine
         if side != 0.0 and field.complete:
-            rest += field.gravity * sine - spin * spin * (offset - d)
+            rest += gravity * sine - spin * spin * (offset - d)
             moment += 2.0 * spin * v * field.modes[MASS, i] * (d - offset)
         rates[i] = v
         rates[n + i] = rest
@@ -106,30 +110,33 @@ def field_rates(field: Field, side: float, branch: float, acceleration: float, m
         damped += field.modes[MASS, i] * drag * v
         displaced += field.modes[MASS, i] * d
         carried += field.modes[MASS, i] * v
-    angular = 0.0
+    angular = climb = 0.0  # θ'' and Σ m z'
     if side != 0.0:
         weight = field.total_mass * offset
         if field.complete:
             arm = weight * sine + field.weight_arm * cosine - displaced * sine
-            moment += field.gravity * (weight * cosine - field.weight_arm * sine - displaced * cosine)
+            across = weight * cosine - field.weight_arm * sine - displaced * cosine
+            moment += gravity * across
             # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
             lever = math.sqrt(0.5 + 0.5 * cosine)
             moment += side * field.pivots[pivot, PULLED] * lever + field.pivots[pivot, STIFFENED] * sine
         else:
             arm = field.weight_arm
-            moment += field.gravity * (weight - field.weight_arm * theta)
+            across = weight - field.weight_arm * theta
+            moment += gravity * across
             moment += side * field.pivots[pivot, PULLED] + field.pivots[pivot, STIFFENED] * theta
         if field.viscous:
             moment += field.pivots[pivot, DAMPED] * lever * lever * spin
         moment += acceleration * arm
         angular = -moment / inertia_left(field, side, motion) if field.pivots[pivot, HELD] == 0.0 else 0.0
         drive = arm * spin
+        climb = across * spin - carried * sine
         for i in range(n):
             rates[n + i] -= field.modes[HEIGHT, i] * angular
     rates[2 * n] = spin
     rates[2 * n + 1] = angular
     rates[2 * n + 3] = damped
-    rates[2 * n + 4] = -acceleration * (drive + cosine * carried)
+    rates[2 * n + 4] = -acceleration * (drive + cosine * carried) - rise * climb
     if field.viscous:
         rates[2 * n + 6] = (lever * spin) ** 2 if side != 0.0 else 0.0
 

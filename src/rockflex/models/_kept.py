@@ -36,7 +36,8 @@ def accelerations(model: RockingModel, states: Array) -> Array:
     if isinstance(model, NonlinearModel):
         rates = np.zeros((states.shape[0], layout.size))
         motion = np.ascontiguousarray(states[:, HEADER:])
-        _rates_at(model.field(), pulls_at(model, states), side, states[:, GROUND].copy(), motion, rates)
+        shaking = states[:, GROUND].copy(), states[:, RISE].copy()
+        _rates_at(model.field(), pulls_at(model, states), side, *shaking, motion, rates)
         return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
     heavier = under_more_gravity(model, states)
     found = np.zeros((states.shape[0], n + layout.freedoms))
@@ -77,7 +78,8 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
     rocking = side != 0.0
     if curved.size and rocking.any() and isinstance(model, NonlinearModel) and model.complete:
         rates = rates_of(model, states, accelerations(model, states))[rocking]
-        known = side[rocking], states[rocking, GROUND], np.ascontiguousarray(states[rocking, HEADER:]), rates
+        moved = states[rocking, GROUND], states[rocking, RISE]
+        known = side[rocking], *moved, np.ascontiguousarray(states[rocking, HEADER:]), rates
         pulls = pulls_at(model, states)[rocking]
         for f in curved:
             found, (near, far) = values[rocking, f], quantities.levers[f].tolist()
@@ -112,9 +114,11 @@ def pulls_at(model: RockingModel, states: Array) -> Array:
 
 
 @python_kernel
-def _rates_at(field: Field, pulls: Array, side: Array, acceleration: Array, motion: Array, rates: Array) -> None:
+def _rates_at(
+    field: Field, pulls: Array, side: Array, acceleration: Array, rise: Array, motion: Array, rates: Array
+) -> None:
     n = field.modes.shape[1]
     for k in range(side.size):
         branch = 1.0 if n == 0 or motion[k, n] >= 0.0 else -1.0
         take_pulls(field.pivots, side[k], pulls[k])
-        field_rates(field, side[k], branch, acceleration[k], motion[k], rates[k])
+        field_rates(field, side[k], branch, acceleration[k], rise[k], motion[k], rates[k])

@@ -26,16 +26,17 @@ class Posture(NamedTuple):
     sine: float
     cosine: float
     shift: float  # s B (1 - cos θ), horizontal displacement of the middle of the base
-    drive: float  # a cos θ - g sin θ + s B θ'^2, acceleration of the masses along the base
+    drive: float  # a cos θ - (g + a_v) sin θ + s B θ'^2, acceleration of the masses along the base
     turn: float  # θ''
     horizontal: float  # Σ F_x
     vertical: float  # Σ F_z
 
 
 @kernel
-def posture_of(field: Field, side: float, acceleration: float, motion: Array, rates: Array) -> Posture:
+def posture_of(field: Field, side: float, acceleration: float, rise: float, motion: Array, rates: Array) -> Posture:
     """Return the posture of a motion while rocking; `rates` contains D'' and θ''."""
     n = field.modes.shape[1]
+    gravity = field.gravity + rise
     spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
     sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
     upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
@@ -57,12 +58,13 @@ def posture_of(field: Field, side: float, acceleration: float, motion: Array, ra
         sine=sine,
         cosine=cosine,
         shift=2.0 * offset * half * half,
-        drive=acceleration * cosine - field.gravity * sine + square * offset,
+        drive=acceleration * cosine - gravity * sine + square * offset,
         turn=turn,
         horizontal=field.total_mass * acceleration
         + (turn * beside + push * cosine - coriolis * sine + square * along + pull * half),
         vertical=field.total_mass * field.gravity
-        + (turn * along - push * sine - coriolis * cosine - square * beside + pull * upright),
+        + (turn * along - push * sine - coriolis * cosine - square * beside + pull * upright)
+        + field.total_mass * rise,
     )
 
 
@@ -92,14 +94,16 @@ def observe_all(
     far: float,
     side: Array,
     acceleration: Array,
+    rise: Array,
     motion: Array,
     rates: Array,
 ) -> None:
     """Replace the `values` (n,) of a row by the quantity at many instants.
 
-    `pulls` has the shape (n, 7); `motion` and `rates` have 2N + 2 columns or more.
+    `pulls` has the shape (n, 7); `rise` is the vertical acceleration of the ground; `motion` and `rates` have 2N + 2
+    columns or more.
     """
     for k in range(side.size):
         take_pulls(field.pivots, side[k], pulls[k])
-        posture = posture_of(field, side[k], acceleration[k], motion[k], rates[k])
+        posture = posture_of(field, side[k], acceleration[k], rise[k], motion[k], rates[k])
         values[k] = observe(kind, values[k], near, far, posture)

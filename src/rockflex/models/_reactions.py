@@ -29,9 +29,9 @@ class Reactions(NamedTuple):
 def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """Return Σ m_i (a + x''_i), Eq. 21, and Σ m_i (g + z''_i), Eq. 22 with the sign corrected, plus the elements' pull.
 
-    In the simplified models, consistent with Eq. 23 for small rotations: m_tot a + L_0^r θ'' + Σ m* D'', and
-    m_tot (g + s B θ'') plus the tensions of the elements. `states` as in `History`; `rates` contains D''_n and θ'' at
-    each state, shape (n, N + 1).
+    z'' contains the vertical acceleration a_v of the ground. In the simplified models, consistent with Eq. 23 for small
+    rotations: m_tot a + L_0^r θ'' + Σ m* D'', and m_tot (g + a_v + s B θ'') plus the tensions of the elements. `states`
+    as in `History`; `rates` contains D''_n and θ'' at each state, shape (n, N + 1).
     """
     if model.complete:
         return _of_large_rotations(model, states, rates)
@@ -71,11 +71,12 @@ def printed_reactions(model: RockingModel, states: Array, rates: Array) -> React
 
 
 def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Reactions:
-    field = NonlinearModel(model.label, model.properties, model.lifts, model.law).field()
+    field = NonlinearModel(model.label, model.properties, model.lifts, model.law, gravity=model.gravity).field()
     side, motion = acting_side(states), np.ascontiguousarray(states[:, HEADER:])
     moving = np.ascontiguousarray(rates_of(model, states, rates))
     pulls = pulls_at(model, states)
     x, z = np.zeros(side.size), np.zeros(side.size)
+    moved = states[:, GROUND].copy(), states[:, RISE].copy()
     for kind, values in ((HORIZONTAL, x), (VERTICAL, z)):
-        observe_all(field, pulls, kind, values, 0.0, 0.0, side, states[:, GROUND].copy(), motion, moving)
+        observe_all(field, pulls, kind, values, 0.0, 0.0, side, *moved, motion, moving)
     return Reactions(x, z)

@@ -212,5 +212,5 @@ def turning_rate(
         return rate
     forget(steps.room)
     gather(system, phase, motion)
-    field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, motion.state, steps.room.rates[0])
+    field_rates(steps.flow.field, system.phases[phase].side, 1.0, ground, rise, motion.state, steps.room.rates[0])
     return steps.room.rates[0, system.layout.spin]

@@ -137,7 +137,7 @@ def begin_piece(
             raise_to_state(system, at.phase, ground, rise, time, log, motion)
         else:
             forget(steps.room)
-            values_of_rows(system, steps.flow, at.phase, ground, steps.room)
+            values_of_rows(system, steps.flow, at.phase, ground, rise, steps.room)
             for f in range(GUARD if system.phases[at.phase].free else 1, log.peaks.size):
                 raise_row(f, steps.room.rows[TOLD, f], time, log)
     return False
@@ -188,8 +188,8 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
 def still(system: System, flow: Flow, at: Progress, room: Stages) -> bool:
     """Return True if free vibration of an integrated phase has come to rest: its rates are tiny next to its largest."""
     if flow.field.hysteretic:
-        choose_branch(flow, system.phases[at.phase].side, 0.0, room)
-    field_rates(flow.field, system.phases[at.phase].side, room.at.branch, 0.0, room.motion, room.rates[0])
+        choose_branch(flow, system.phases[at.phase].side, 0.0, 0.0, room)
+    field_rates(flow.field, system.phases[at.phase].side, room.at.branch, 0.0, 0.0, room.motion, room.rates[0])
     forget(room)
     worst = 0.0
     for i in range(room.size.size):

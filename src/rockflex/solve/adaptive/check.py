@@ -10,7 +10,7 @@ from rockflex._kernel import inlined_kernel, kernel
 from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
-from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System
+from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System, is_shaken
 from rockflex.solve.peaks import raise_peaks, size_of
 
 
@@ -21,6 +21,23 @@ def turn_hides(system: System, phase: int, step: float, room: Stages) -> bool:
     first, last = sign * room.motion[spin], sign * room.vectors[TRIAL, spin]
     before, after = sign * room.rates[0, spin], sign * room.rates[LAST, spin]
     return stretch(first, last, step * before, step * after)[0] <= 0.0
+
+
+@kernel
+def heavier_ends(system: System, phase: int, row: int, span: Span, room: Stages) -> tuple[float, float, float, float]:
+    """Return what 1 m/s² of vertical acceleration adds to a row at both ends of a step, and the rates of that."""
+    rows = system.heavier_rows
+    n = rows.shape[2] - 2
+    first, before = rows[phase, row, n] * span.ground + rows[phase, row, n + 1], rows[phase, row, n] * span.slope
+    last, after = first + before * span.length, before
+    for i in range(n):
+        weight = rows[phase, row, i]
+        if weight != 0.0:
+            first += weight * room.motion[i]
+            last += weight * room.vectors[TRIAL, i]
+            before += weight * room.rates[0, i]
+            after += weight * room.rates[LAST, i]
+    return first, last, before, after
 
 
 @inlined_kernel
@@ -41,7 +58,12 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
         return False
     if system.phases[phase].turns != 0 and turn_hides(system, phase, step, room):
         return False
-    low_limit, high_limit = limits[LOW], limits[HIGH]
+    low_limit, high_limit, shaken = limits[LOW], limits[HIGH], is_shaken(span)
+    rise, risen = span.rise, span.rise + span.rise_slope * step
+    if shaken:
+        below, above = system.heavier_limits[phase, LOW], system.heavier_limits[phase, HIGH]
+        low_limit += max(below * rise, below * risen)
+        high_limit += min(above * rise, above * risen)
     for f in range(log.peaks.size):
         if is_curved(flow, f, side):
             continue
@@ -55,6 +77,11 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
                 last += weight * room.vectors[TRIAL, i]
                 before += weight * room.rates[0, i]
                 after += weight * room.rates[LAST, i]
+        if shaken:
+            start, end, start_rate, end_rate = heavier_ends(system, phase, f, span, room)
+            first, last = first + rise * start, last + risen * end
+            before += rise * start_rate + span.rise_slope * start
+            after += risen * end_rate + span.rise_slope * end
         low, high = stretch(first, last, step * before, step * after)
         if f != GUARD:
             # Peaks at the ends are known; they are recorded below.

@@ -25,7 +25,7 @@ from rockflex.solve.adaptive.layout import (
 from rockflex.solve.adaptive.step import choose_branch, place_at
 from rockflex.solve.exact.probe import cubic_range
 from rockflex.solve.layout import Log, Span, System, part_of
-from rockflex.solve.peaks import raise_row, size_of
+from rockflex.solve.peaks import raise_row, row_at, size_of
 
 STRAY = 0.2
 NEAR = 0.7  # fraction of its peak that a row must reach for the second evaluation
@@ -43,11 +43,11 @@ def is_curved(flow: Flow, f: int, side: float) -> bool:
 
 @inlined_kernel
 def tell(
-    system: System, flow: Flow, phase: int, acceleration: float, motion: Array, rates: Array, values: Array
+    system: System, flow: Flow, phase: int, acceleration: float, rise: float, motion: Array, rates: Array, values: Array
 ) -> None:
     """Compute the values of the curved rows; the last one is the loss of support, as in `Log`."""
     n, last, side = flow.field.modes.shape[1], system.plain_rows.shape[2] - 2, system.phases[phase].side
-    posture = posture_of(flow.field, side, acceleration, motion, rates)
+    posture = posture_of(flow.field, side, acceleration, rise, motion, rates)
     for f in range(1, values.size):
         kind = flow.kinds[f]
         if kind == LINEAR:
@@ -86,11 +86,11 @@ def curves_hide(
     Peaks at the start are recorded, because forces jump at events. The values at the end are stored in
     `room.rows[AT_ENDS]`, and `room.doubt` marks the rows in question.
     """
-    there = span.ground + span.slope * span.length
+    there, risen = span.ground + span.slope * span.length, span.rise + span.rise_slope * span.length
     if not room.at.told:
-        tell(system, flow, phase, span.ground, room.motion, room.rates[0], room.rows[AT_STARTS])
+        tell(system, flow, phase, span.ground, span.rise, room.motion, room.rates[0], room.rows[AT_STARTS])
     room.at.told = True
-    tell(system, flow, phase, there, end, end_rates, room.rows[AT_ENDS])
+    tell(system, flow, phase, there, risen, end, end_rates, room.rows[AT_ENDS])
     near = False
     for f in range(1, log.peaks.size):
         room.doubt[f] = False
@@ -105,8 +105,9 @@ def curves_hide(
         raise_row(f, room.rows[AT_STARTS, f], span.time, log)
     if not near:
         return False
-    look_ahead(system, flow, phase, span.ground, span, room.motion, room.rates[0], room.rows[AT_STARTS_AHEAD], room)
-    look_ahead(system, flow, phase, there, span, end, end_rates, room.rows[AT_ENDS_AHEAD], room)
+    last = part_of(span, span.time, span.length, span.length)
+    look_ahead(system, flow, phase, span, room.motion, room.rates[0], room.rows[AT_STARTS_AHEAD], room)
+    look_ahead(system, flow, phase, last, end, end_rates, room.rows[AT_ENDS_AHEAD], room)
     hidden = False
     for f in range(1, log.peaks.size):
         if room.doubt[f]:
@@ -127,21 +128,20 @@ def look_ahead(
     system: System,
     flow: Flow,
     phase: int,
-    ground: float,
     span: Span,
     motion: Array,
     rates: Array,
     values: Array,
     room: Stages,
 ) -> None:
-    """Compute the values of the curved rows shortly afterwards."""
-    later = ground + span.slope * AHEAD * span.length
+    """Compute the values of the curved rows shortly after the start of a stretch."""
+    later = span.ground + span.slope * AHEAD * span.length
+    rise = span.rise + span.rise_slope * AHEAD * span.length
     for i in range(motion.size):
         room.vectors[PLACE, i] = motion[i] + AHEAD * span.length * rates[i]
-    field_rates(
-        flow.field, system.phases[phase].side, room.at.branch, later, room.vectors[PLACE], room.vectors[PLACE_RATES]
-    )
-    tell(system, flow, phase, later, room.vectors[PLACE], room.vectors[PLACE_RATES], values)
+    place, rates = room.vectors[PLACE], room.vectors[PLACE_RATES]
+    field_rates(flow.field, system.phases[phase].side, room.at.branch, later, rise, place, rates)
+    tell(system, flow, phase, later, rise, place, rates, values)
 
 
 @kernel
@@ -149,11 +149,10 @@ def raise_curves(system: System, flow: Flow, phase: int, span: Span, stop: float
     """Raise the peaks of all curved rows over [0, stop] of the step whose extension is in `room.bends`."""
     side, length = system.phases[phase].side, span.length * stop
     place_at(stop, room, room.vectors[END])
-    field_rates(
-        flow.field, side, room.at.branch, span.ground + span.slope * length, room.vectors[END], room.vectors[END_RATES]
-    )
-    part = part_of(span, span.time, 0.0, length)
-    hidden = curves_hide(system, flow, phase, part, room.vectors[END], room.vectors[END_RATES], log, room)
+    ground, rise = span.ground + span.slope * length, span.rise + span.rise_slope * length
+    end, rates = room.vectors[END], room.vectors[END_RATES]
+    field_rates(flow.field, side, room.at.branch, ground, rise, end, rates)
+    hidden = curves_hide(system, flow, phase, part_of(span, span.time, 0.0, length), end, rates, log, room)
     for f in range(1, log.peaks.size):
         if is_curved(flow, f, side):
             raise_row(f, room.rows[AT_ENDS, f], span.time + length, log)
@@ -192,28 +191,25 @@ def raise_curve(
 @kernel
 def curve_at(system: System, flow: Flow, phase: int, f: int, u: float, span: Span, room: Stages) -> float:
     """Return the value of a curved row at the fraction `u` of a step."""
-    ground = span.ground + span.slope * span.length * u
-    place_at(u, room, room.vectors[PLACE])
-    field_rates(
-        flow.field, system.phases[phase].side, room.at.branch, ground, room.vectors[PLACE], room.vectors[PLACE_RATES]
-    )
-    tell(system, flow, phase, ground, room.vectors[PLACE], room.vectors[PLACE_RATES], room.rows[TOLD])
+    ground, rise = span.ground + span.slope * span.length * u, span.rise + span.rise_slope * span.length * u
+    place, rates = room.vectors[PLACE], room.vectors[PLACE_RATES]
+    place_at(u, room, place)
+    field_rates(flow.field, system.phases[phase].side, room.at.branch, ground, rise, place, rates)
+    tell(system, flow, phase, ground, rise, place, rates, room.rows[TOLD])
     return room.rows[TOLD, f]
 
 
 @kernel
-def values_of_rows(system: System, flow: Flow, phase: int, ground: float, room: Stages) -> None:
+def values_of_rows(system: System, flow: Flow, phase: int, ground: float, rise: float, room: Stages) -> None:
     """Compute all rows for the present motion, at the start of a stretch of acceleration, in `room.rows[TOLD]`."""
     side, rows = system.phases[phase].side, system.plain_rows
-    n = rows.shape[2] - 2
     if flow.field.hysteretic:
-        choose_branch(flow, side, ground, room)
-    field_rates(flow.field, side, room.at.branch, ground, room.motion, room.rates[0])
+        choose_branch(flow, side, ground, rise, room)
+    field_rates(flow.field, side, room.at.branch, ground, rise, room.motion, room.rates[0])
     if side != 0.0 and flow.field.complete:
-        tell(system, flow, phase, ground, room.motion, room.rates[0], room.rows[TOLD])
+        tell(system, flow, phase, ground, rise, room.motion, room.rates[0], room.rows[TOLD])
     for f in range(room.rows.shape[1]):
         if not is_curved(flow, f, side):
-            value = rows[phase, f, n] * ground + rows[phase, f, n + 1]
-            for i in range(n):
-                value += rows[phase, f, i] * room.motion[i]
-            room.rows[TOLD, f] = value
+            room.rows[TOLD, f] = row_at(rows, phase, f, ground, room.motion)
+            if rise != 0.0:
+                room.rows[TOLD, f] += rise * row_at(system.heavier_rows, phase, f, ground, room.motion)

@@ -14,6 +14,7 @@ from rockflex.solve.adaptive.tableau import STAGES
 from rockflex.solve.layout import Progress
 
 TERMS = 8  # of the polynomial over a step
+ROW_TERMS = TERMS + 1  # of a row, which may be multiplied by the vertical acceleration of the ground
 
 # Indices in `Stages.vectors`: the state at the end of the step, the state and its rates within the step, and the state
 # and its rates at the end of a part of the step. Indices in `Stages.rows`: at the start and the end of the step,
@@ -40,7 +41,7 @@ class Stages(NamedTuple):
     vectors: Array  # (5, S'): other states and rates, at the indices above
     rates: Array  # (16, S')
     bends: Array  # (7, S'): the continuous extension
-    polys: Array  # (F + 1, 8)
+    polys: Array  # (F + 1, 9)
     rows: Array  # (5, F): values of the rows, at the indices above
     doubt: NDArray[np.bool_]  # (F,): curved rows that may have a peak
     size: Array  # (2N + 3,): largest magnitude of each moving entry so far
@@ -59,7 +60,7 @@ def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) 
         np.zeros((5, n)),
         np.zeros((STAGES, n)),
         np.zeros((TERMS - 1, n)),
-        np.zeros((rows + 1, TERMS)),
+        np.zeros((rows + 1, ROW_TERMS)),
         np.zeros((5, rows)),
         np.zeros(rows, dtype=np.bool_),
         np.zeros(moving),

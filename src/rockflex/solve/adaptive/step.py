@@ -5,10 +5,10 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates
-from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, TERMS, TRIAL, Flow, Stages
+from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, ROW_TERMS, TERMS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
-from rockflex.solve.layout import LEFT, STEP, Span, System
+from rockflex.solve.layout import LEFT, STEP, Span, System, is_shaken
 
 SHORTEST = 1e-13  # s: if a shorter step is needed, the motion cannot be integrated
 FAILED = -1.0
@@ -27,8 +27,8 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     if not room.at.known:
         room.at.told = False
         if flow.field.hysteretic:
-            choose_branch(flow, side, rest.ground, room)
-        field_rates(flow.field, side, room.at.branch, rest.ground, room.motion, room.rates[0])
+            choose_branch(flow, side, rest.ground, rest.rise, room)
+        field_rates(flow.field, side, room.at.branch, rest.ground, rest.rise, room.motion, room.rates[0])
     room.at.known = True
     most = MOST
     while True:
@@ -40,6 +40,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
                 side,
                 room.at.branch,
                 rest.ground + rest.slope * step * C[stage],
+                rest.rise + rest.rise_slope * step * C[stage],
                 room.vectors[TRIAL],
                 room.rates[stage],
             )
@@ -58,12 +59,12 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
 
 
 @inlined_kernel
-def choose_branch(flow: Flow, side: float, acceleration: float, room: Stages) -> None:
+def choose_branch(flow: Flow, side: float, acceleration: float, rise: float, room: Stages) -> None:
     """Set the branch of the hysteresis to the sign of the velocity or, if that is zero, of its rate."""
     n = flow.field.modes.shape[1]
     velocity = room.motion[n]
     if velocity == 0.0:
-        field_rates(flow.field, side, 1.0, acceleration, room.motion, room.rates[0])
+        field_rates(flow.field, side, 1.0, acceleration, rise, room.motion, room.rates[0])
         velocity = room.rates[0, n]
     room.at.branch = 1.0 if velocity >= 0.0 else -1.0
 
@@ -97,6 +98,7 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
             side,
             room.at.branch,
             span.ground + span.slope * step * C[stage],
+            span.rise + span.rise_slope * step * C[stage],
             room.bends[0],
             room.rates[stage],
         )
@@ -152,20 +154,33 @@ def place_at(u: float, room: Stages, place: Array) -> None:
 @inlined_kernel
 def row_poly(system: System, phase: int, row: int, span: Span, room: Stages) -> None:
     """Compute the coefficients of one row over the step, with time in units of the step, in `room.polys[row]`."""
-    rows, polys = system.plain_rows, room.polys
+    combine(system.plain_rows, phase, row, row, span, room)
+    if not is_shaken(span):
+        return
+    polys, work = room.polys, room.polys.shape[0] - 1
+    combine(system.heavier_rows, phase, row, work, span, room)
+    for k in range(TERMS, 0, -1):
+        polys[row, k] += span.rise * polys[work, k] + span.rise_slope * span.length * polys[work, k - 1]
+    polys[row, 0] += span.rise * polys[work, 0]
+
+
+@kernel
+def combine(rows: Array, phase: int, row: int, place: int, span: Span, room: Stages) -> None:
+    """Compute the coefficients of one of `rows` in `room.polys[place]`, without vertical acceleration."""
+    polys = room.polys
     n = rows.shape[2] - 2
     start = rows[phase, row, n] * span.ground + rows[phase, row, n + 1]
-    for k in range(TERMS):
-        polys[row, k] = 0.0
+    for k in range(ROW_TERMS):
+        polys[place, k] = 0.0
     for i in range(n):
         weight = rows[phase, row, i]
         if weight != 0.0:
             start += weight * room.motion[i]
             for j in range(TERMS - 1):
-                polys[row, j] += weight * room.bends[j, i]
-    expand_nested(polys, row)
-    polys[row, 0] = start
-    polys[row, 1] += rows[phase, row, n] * span.slope * span.length
+                polys[place, j] += weight * room.bends[j, i]
+    expand_nested(polys, place)
+    polys[place, 0] = start
+    polys[place, 1] += rows[phase, row, n] * span.slope * span.length
 
 
 @kernel

@@ -18,6 +18,7 @@ def turning(flow: Flow, stages: Stages) -> float:
     for j in range(TERMS - 1):
         stages.polys[work, j] = stages.at.branch * stages.bends[j, n]
     expand_nested(stages.polys, work)
+    stages.polys[work, TERMS] = 0.0
     size = 0.0
     for k in range(TERMS):
         size += abs(stages.polys[work, k])
