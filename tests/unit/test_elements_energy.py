@@ -127,7 +127,7 @@ def test_a_full_cycle_of_a_fuse():
     rows, memory = [], 0.0
 
     def at(stretch, side, remembers):
-        rows.append([len(rows), side, 0.0, stretch / arms[side], 0.0, remembers])
+        rows.append([len(rows), side, 0.0, 0.0, stretch / arms[side], 0.0, remembers])
 
     for _ in range(2):
         for side in (1, -1):

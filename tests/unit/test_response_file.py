@@ -155,7 +155,7 @@ def test_any_other_file(tmp_path):
 def test_another_format(tmp_path):
     path = tmp_path / "old.npz"
     np.savez(path, response=np.array(json.dumps({"format": "rockflex-response-0"})))
-    with pytest.raises(InputError, match=r"has the format 'rockflex-response-0', but 'rockflex-response-3' is exp"):
+    with pytest.raises(InputError, match=r"has the format 'rockflex-response-0', but 'rockflex-response-4' is exp"):
         Response.load(path)
 
 
@@ -221,13 +221,13 @@ def test_a_file_of_an_older_version_is_read(saved, tmp_path):
 @pytest.mark.parametrize(
     ("name", "change", "text"),
     [
-        ("states", lambda a: a[:, :-1], r"InputError: states must have the shape \(\d+, 11\), but .* \(\d+, 10\)"),
+        ("states", lambda a: a[:, :-1], r"InputError: states must have the shape \(\d+, 12\), but .* \(\d+, 11\)"),
         (
             "states",
             lambda a: a[:0],
-            r"InputError: states must have the shape \(1, 11\), but an array of shape \(0, 11\)",
+            r"InputError: states must have the shape \(1, 12\), but an array of shape \(0, 12\)",
         ),
-        ("states", lambda a: a[0], r"InputError: states must have the shape \(1, 11\), but an array of shape \(11,\)"),
+        ("states", lambda a: a[0], r"InputError: states must have the shape \(1, 12\), but an array of shape \(12,\)"),
         ("states", lambda a: a * np.nan, r"InputError: states must be finite, but its entry \[0, 0\] is nan"),
         ("states", lambda a: a.astype(str), "InputError: states must be of type float64, but is of type <U32"),
         ("states", lambda a: a + 0j, "InputError: states must be of type float64, but is of type complex128"),

@@ -15,13 +15,13 @@ coefficients = st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=
 def log(*peaks):
     """Peaks of rows, and of the loss of support, which is the last."""
     times, work = np.full(len(peaks) + 1, -1.0), np.full(5, np.inf)
-    return Log(np.array([*peaks, -np.inf]), times, np.zeros(4, dtype=np.int64), work, np.zeros((0, 5)))
+    return Log(np.array([*peaks, -np.inf]), times, np.zeros(4, dtype=np.int64), work, np.zeros((0, 5)), len(peaks))
 
 
 def raised(poly, stop, before=0.0):
     """Peak and time of a polynomial in units of 0.5 s from t = 3 s on."""
     book = log(before)
-    raise_peak(np.array([poly, np.zeros(len(poly))]), 0, stop, Span(3.0, 3.5, 0.0, 0.0, 0.5), book)
+    raise_peak(np.array([poly, np.zeros(len(poly))]), 0, stop, Span(3.0, 3.5, 0.0, 0.0, 0.5, 0.0, 0.0), book)
     return float(book.peaks[0]), float(book.times[0])
 
 

@@ -46,7 +46,7 @@ def draw(n, *, rocking, seed=3):
 
 def room(system, state):
     terms = int(system.phases["terms"].max())
-    return motion_of(state.copy(), state.size, system.plain_rows.shape[1], terms, 1)
+    return motion_of(state.copy(), system.layout, system.plain_rows.shape[1], terms)
 
 
 def to_twin(state, n, side, acceleration, slope):
@@ -67,7 +67,7 @@ def test_series_is_the_exponential(n, rocking, u):
     step = 0.9 / twin.fastest  # as a unit of the grid: no mode turns by more than a radian
     motion = room(system, state)
     recollect(system, places[side], motion)
-    expand(system, places[side], motion, Span(0.0, step, acceleration, slope, step), np.nan)
+    expand(system, places[side], motion, Span(0.0, step, acceleration, slope, step, 0.0, 0.0), np.nan, np.nan)
     advance(system, motion, u, step)
     moved = motion.state
     z = to_twin(state, n, side, acceleration, slope)
@@ -86,8 +86,8 @@ def test_a_row_along_the_series(rocking):
     rows = np.random.default_rng(8).standard_normal((2, 2 * n + 4))
     rows[1, ::2] = 0.0
     system.plain_rows[phase, :2] = rows
-    motion, span = room(system, state), Span(0.0, step, acceleration, slope, step)
-    expand(system, phase, motion, span, np.nan)
+    motion, span = room(system, state), Span(0.0, step, acceleration, slope, step, 0.0, 0.0)
+    expand(system, phase, motion, span, np.nan, np.nan)
     for row in (0, 1):
         row_series(system, phase, row, motion, span)
         for u in (0.0, 0.4, 1.0):
@@ -104,7 +104,7 @@ def test_a_lift_that_is_known_replaces_the_equation_of_motion():
 
     def series(side, lift):
         motion = room(system, state)
-        expand(system, places[side], motion, Span(0.0, step, acceleration, slope, step), lift)
+        expand(system, places[side], motion, Span(0.0, step, acceleration, slope, step, 0.0, 0.0), lift, np.nan)
         return motion.series
 
     free = series(1.0, np.nan)

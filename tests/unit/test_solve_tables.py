@@ -9,7 +9,7 @@ from scipy.linalg import expm
 import rockflex as rf
 from builders import make_frame
 from rockflex import Frame, GroundMotion, InputError, simulate
-from rockflex.models import Model
+from rockflex.models import HEADER, Model
 from rockflex.response import asked_of
 from rockflex.solve import ClosedForm, Engine
 from rockflex.solve.exact import basis
@@ -191,10 +191,11 @@ def test_what_contact_can_still_bring_is_bounded(name):
             (1.001 * limit / wide[0], 1.001, False),
             (0.999 * limit / wide[0], 0.999, False),
         ):
-            motion = motion_of(np.zeros(2 * half), 2 * half, rows.shape[0], 4, 1)
+            motion = motion_of(np.zeros(2 * half), system.layout, rows.shape[0], 4)
             motion.w[0] = size * state
             recollect(system, CONTACT, motion)
-            log = Log(most * size * wide, np.zeros(wide.size), np.zeros(4, np.int64), np.zeros(5), np.zeros((0, 0)))
+            peaks, tally = most * size * wide, np.zeros(4, np.int64)
+            log = Log(peaks, np.zeros(wide.size), tally, np.zeros(5), np.zeros((0, 0)), wide.size - 1)
             assert settled(system, progress_at_start(CONTACT, stated=True), log, motion) == expected
 
 
@@ -204,13 +205,13 @@ def test_what_contact_can_still_bring_is_bounded(name):
 def test_states_between_nodes(side, fraction, dense):
     engine, _, twin = prepared("usual", dense=dense)
     n = engine.model.properties.n_modes
-    nodes = np.zeros((2, 5 + 2 * n))
+    nodes = np.zeros((2, HEADER + 2 + 2 * n))
     nodes[:, 0], nodes[:, 1], nodes[:, 2] = (1.0, 1.0 + DT), side, (0.7, -1.9)
-    nodes[0, 3:] = 0.02 * draws(2 * n + 2, 1)[0]
+    nodes[0, HEADER:] = 0.02 * draws(2 * n + 2, 1)[0]
     if side == 0.0:
         nodes[:, -2:] = 0.0
     slope = (nodes[1, 2] - nodes[0, 2]) / DT
-    start = np.concatenate((nodes[0, 3:], [nodes[0, 2], slope, side]))
+    start = np.concatenate((nodes[0, HEADER:], [nodes[0, 2], slope, side]))
     expected = expm(generator(twin, n, int(side != 0.0)) * DT * fraction) @ start
     with pytest.MonkeyPatch.context() as patch:
         if dense:
@@ -223,12 +224,12 @@ def test_states_between_nodes(side, fraction, dense):
 def test_between_the_two_sides_of_an_event_nothing_moves():
     engine, _, _ = prepared("usual")
     n = engine.model.properties.n_modes
-    nodes = np.zeros((2, 5 + 2 * n))
+    nodes = np.zeros((2, HEADER + 2 + 2 * n))
     nodes[:, 0], nodes[:, 2] = 3.0, (1.0, 0.0)  # a jump of the acceleration
-    nodes[:, 3:] = 0.01
+    nodes[:, HEADER:] = 0.01
     nodes[:, -2:] = 0.0
     np.testing.assert_allclose(
-        ClosedForm(engine.model).intervals(nodes).at(0.5)[0], nodes[0, 3:], rtol=1e-12, atol=1e-15
+        ClosedForm(engine.model).intervals(nodes).at(0.5)[0], nodes[0, HEADER:], rtol=1e-12, atol=1e-15
     )
 
 

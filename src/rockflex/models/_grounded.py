@@ -19,13 +19,20 @@ def grounded(
     Raises
     ------
     InputError
-        If the structure topples on its springs under its own weight, or if some but not all springs have infinite
-        friction.
+        If elements balance the weight of a base that slides, the structure topples on its springs under its own
+        weight, or some but not all springs have infinite friction.
     """
     if ground.springs is None:
         given = VVELSimplified() if law is None else law
         if not ground.slides:
             return LinearModel(label, kept, law=given, missing_mass=missing_mass)
+        if LinearModel(label, kept).neutral:
+            raise InputError(
+                f"The elements of {label} balance the weight on some of their branches, to within 1 % of L_0^r g. A model "
+                "that slides has no accurate solution then. Change the stiffness of the elements, or leave the friction "
+                "out.",
+                field="ground",
+            )
         friction = float(np.max(np.asarray(ground.friction)))
         return SlidingModel(label, kept, law=given, missing_mass=missing_mass, friction=friction)
     friction = None

@@ -13,6 +13,7 @@ from rockflex._shown import shown
 from rockflex.models import (
     GROUND,
     HEADER,
+    RISE,
     SIDE,
     TIME,
     Reactions,
@@ -208,7 +209,7 @@ class Friction:
         n = layout.modes
         rows = states[:-1].copy()
         rows[:, TIME] += place * np.diff(states[:, TIME])
-        rows[:, GROUND] += place * np.diff(states[:, GROUND])
+        rows[:, [GROUND, RISE]] += place * np.diff(states[:, [GROUND, RISE]], axis=0)
         if self._linear:
             rows[:, HEADER:] = self._linear.intervals(states).at(place)
             if not self._model.integrated:

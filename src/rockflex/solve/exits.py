@@ -5,7 +5,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
 from rockflex.models import STICKS
-from rockflex.solve.layout import GUARD, HIGH, KIND, LOW, Motion, Progress, Span, System, is_shaken
+from rockflex.solve.layout import GUARD, HIGH, KIND, LOW, Motion, Progress, Span, System, heavier_limits, is_shaken
 from rockflex.solve.polynomials import evaluate, first_descent
 
 BEFORE = -1.0  # the phase ended before it started
@@ -37,7 +37,7 @@ def phase_exit(system: System, at: Progress, span: Span, motion: Motion, polys: 
         return lands, inner, 0.0
     low_rate = high_rate = 0.0
     if is_shaken(span):
-        below, above = system.heavier_limits[at.phase, LOW], system.heavier_limits[at.phase, HIGH]
+        below, above = heavier_limits(system, at.phase, motion.state)
         low, high = low + span.rise * below, high + span.rise * above
         low_rate, high_rate = span.rise_slope * span.length * below, span.rise_slope * span.length * above
     if at.resume == 0.0:

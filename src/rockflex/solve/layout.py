@@ -122,7 +122,7 @@ class System(NamedTuple):
     # Increase for each m/s² of the vertical acceleration of the ground; no entries unless it moves vertically.
     heavier_push: Array  # (P, b): of the constant forces on the base
     heavier_base: Array  # (P, b, b): of its stiffness
-    heavier_limits: Array  # (P, 2): of the limits of the guard
+    heavier_limits: Array  # (P, 2, 2): of the limits of the guard, and of what the rotation adds to them
     heavier_rows: Array  # (P, F + E, C): of the rows
     # For the motion
     plain_rows: Array  # (P, F + E, C): the rows over the state, a and 1
@@ -289,6 +289,16 @@ def is_shaken(span: Span) -> bool:
 def rows_in(system: System, phase: int) -> int:
     """Return the number of rows of a phase, with its fences."""
     return int(system.fences + system.phases[phase].fences)
+
+
+@kernel
+def heavier_limits(system: System, phase: int, state: Array) -> tuple[float, float]:
+    """Return what the limits of the guard gain for each m/s² of vertical acceleration."""
+    more, rotation = system.heavier_limits, state[system.layout.rotation]
+    return (
+        more[phase, LOW, 0] + more[phase, LOW, 1] * rotation,
+        more[phase, HIGH, 0] + more[phase, HIGH, 1] * rotation,
+    )
 
 
 @kernel

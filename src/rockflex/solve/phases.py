@@ -1,5 +1,6 @@
 """The phases of a model, compiled as they are needed, and their tables for a time step."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from threading import RLock
@@ -43,6 +44,8 @@ class CompiledPhases:
         self._rows: list[Array] = []
         self._twins: list[int] = []  # index of a phase that differs only in constant forces; -1
         self._places: dict[Key, int] = {}
+        self._leading: dict[Key, list[tuple[int, int]]] = {}  # the places in the links from which a phase follows
+        self._linked = np.zeros((0, 0), dtype=np.int64), 0  # the last links, and how many phases they know
         # By time step, and whether the ground moves vertically; with the number of phases entered.
         self._systems: dict[tuple[float, bool], tuple[System, int]] = {}
 
@@ -179,18 +182,37 @@ class CompiledPhases:
         return max((basis.fastest for basis in self._bases if basis is not None), default=0.0)
 
     def _links(self, capacity: int) -> NDArray[np.int64]:
-        """Return the events at the limits of every phase, and the phases that follow, as far as they are compiled."""
-        model = self._model
+        """Return the events at the limits of every phase, and the phases that follow, as far as they are compiled.
+
+        The array is a new one, because runs keep using those that they were given.
+        """
+        model, (known, count) = self._model, self._linked
         links = np.full((capacity, CHANGED + model.most_changes + model.most_fences), -1, dtype=np.int64)
-        for p, phase in enumerate(self._phases):
-            for place in range(3):
-                links[p, BESIDE + place] = self._places.get(phase.beside[place], -1)
-            for bound, leads in enumerate((phase.guard.below, phase.guard.above)):
+        if count:
+            links[:count] = known[:count]
+        for p in range(count, len(self._phases)):
+            for column, key in _following(self._phases[p], model.most_changes):
+                self._leading.setdefault(key, []).append((p, column))
+                links[p, column] = self._places.get(key, -1)
+            for bound, leads in enumerate((self._phases[p].guard.below, self._phases[p].guard.above)):
                 if leads is not None:
-                    links[p, EVENT + bound], links[p, FOLLOWS + bound] = leads.event, self._places.get(leads.key, -1)
-            links[p, TURNED] = self._places.get(phase.turned, -1)
-            for x, change in enumerate(phase.changes):
-                links[p, CHANGED + x] = self._places.get(change.key, -1)
-            for e, fence in enumerate(phase.fences):
-                links[p, CHANGED + model.most_changes + e] = self._places.get(fence.key, -1)
+                    links[p, EVENT + bound] = leads.event
+        for p in range(count, len(self._phases)):
+            for place, column in self._leading.get(self._phases[p].key, ()):
+                links[place, column] = p
+        self._linked = links, len(self._phases)
         return links
+
+
+def _following(phase: Phase, changes: int) -> Iterator[tuple[int, Key]]:
+    """Yield the phases that may follow one, with their columns in the links."""
+    for place in range(3):
+        yield BESIDE + place, phase.beside[place]
+    for bound, leads in enumerate((phase.guard.below, phase.guard.above)):
+        if leads is not None:
+            yield FOLLOWS + bound, leads.key
+    yield TURNED, phase.turned
+    for x, change in enumerate(phase.changes):
+        yield CHANGED + x, change.key
+    for e, fence in enumerate(phase.fences):
+        yield CHANGED + changes + e, fence.key

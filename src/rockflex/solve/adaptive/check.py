@@ -10,7 +10,7 @@ from rockflex._kernel import inlined_kernel, kernel
 from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
-from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System, is_shaken
+from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System, heavier_limits, is_shaken
 from rockflex.solve.peaks import raise_peaks, size_of
 
 
@@ -61,7 +61,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
     low_limit, high_limit, shaken = limits[LOW], limits[HIGH], is_shaken(span)
     rise, risen = span.rise, span.rise + span.rise_slope * step
     if shaken:
-        below, above = system.heavier_limits[phase, LOW], system.heavier_limits[phase, HIGH]
+        below, above = heavier_limits(system, phase, room.motion)
         low_limit += max(below * rise, below * risen)
         high_limit += min(above * rise, above * risen)
     for f in range(log.peaks.size):

@@ -108,7 +108,7 @@ def empty_system(
         pulls=np.zeros((capacity, SUMS, 1 + memories)),
         heavier_push=np.zeros((moved, b)),
         heavier_base=np.zeros((moved, b, b)),
-        heavier_limits=np.zeros((moved, 2)),
+        heavier_limits=np.zeros((moved, 2, 2)),
         heavier_rows=np.zeros((moved, rows, columns)),
         plain_rows=np.zeros((capacity, rows, columns)),
         basis=np.zeros((capacity, 2, core, core)),
@@ -213,7 +213,8 @@ def put_heavier(system: System, p: int, phase: Phase, heavier: Phase, rows: Arra
     for bound, (more, limit) in enumerate(
         ((heavier.guard.low, phase.guard.low), (heavier.guard.high, phase.guard.high))
     ):
-        system.heavier_limits[p, bound] = more - limit if math.isfinite(limit) else 0.0
+        change = more - limit if math.isfinite(limit) else 0.0
+        system.heavier_limits[p, bound] = change, heavier.guard.turn - phase.guard.turn
 
 
 def _blocks(basis: Basis, steps: Array) -> Array:
