@@ -28,6 +28,7 @@ from rockflex.response._floors import floor_histories
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._global import global_histories
 from rockflex.response._missing import MissingQuantityError
+from rockflex.response._pressure import pressure_of
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -145,13 +146,7 @@ class History(Value):
         InputError
             If the springs have no `area`.
         """
-        area = self.model.springs.area if isinstance(self.model, SpringModel) else None
-        if area is None:
-            raise MissingQuantityError(
-                "The springs under the base have no area, so there is no soil pressure. Give Springs the area that each "
-                "supports, in m², or use winkler_bed."
-            )
-        return self.spring_force / area
+        return pressure_of(self.spring_force, self.model.springs if isinstance(self.model, SpringModel) else None)
 
     def _of_base(self, place: int) -> Array:
         return self.model.layout.of(self.states, place) if place >= 0 else np.zeros(self.states.shape[0])
