@@ -58,7 +58,7 @@ class MomentRotationOnSprings(StaticPath):
     >>> (curve.uplift_rotations * 1e3).round(2), (curve.uplift_moments / 1e3).round(1)
     (array([6.64]), array([907.8]))
     >>> (curve.edge_uplift[-1] * 1e3).round(1)  # left and right, in mm
-    array([31.6, -15.7])
+    array([ 31.6, -15.7])
     """
 
     springs: Springs

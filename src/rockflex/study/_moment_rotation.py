@@ -95,12 +95,12 @@ def moment_rotation(
     4    0.0167  1326.150           -150.0
     5    0.0000  1107.900           -150.0
 
-    The same wall without elements on a bed of soil: a part of the base is lifted from M = W B/3 on.
+    The same wall without elements on a bed of soil: a part of the base is lifted beyond M = W B/3, 294 kN m.
 
     >>> soil = rf.Ground(springs=rf.winkler_bed(1.5, 2.0, 100e6, n=100), base_inertia=8e3)
     >>> push = rf.moment_rotation(wall, [0.0, 0.005], ground=soil)
-    >>> print((push.uplift_moments / 1e3).round(1), push.contact_length[-1].round(2))
-    [284.6] 1.08
+    >>> print((push.uplift_moments / 1e3).round(1), push.contact_length[-1].round(3))
+    [294.] 1.085
     """
     path = finite_vector("rotations", rotations, "rad")
     if path.size == 0:
