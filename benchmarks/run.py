@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import controlled
+import ground
 import nonlinear
 import numpy as np
 import opensees
@@ -49,6 +50,7 @@ def main() -> None:
     console.print(table)
     console.print(nonlinear.table(motion))
     console.print(controlled.table(rf.load_suite("fema-p695-far-field")))
+    console.print(ground.table(rf.load_suite("fema-p695-far-field")))
     console.print(studies.table())
     console.print(opensees.table())
     console.print(web_latency.table())

@@ -14,6 +14,7 @@ class Order:
         "first_run",
         "models_compared",
         "uplift_and_modes",
+        "shenton_map",
         "chimney",
         "restrained_pier",
         "controlled_rocking",

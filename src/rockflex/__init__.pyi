@@ -105,6 +105,7 @@ from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History
 from .response import MomentRotation as MomentRotation
+from .response import MomentRotationOnSprings as MomentRotationOnSprings
 from .response import Response as Response
 from .store import StudyFolder as StudyFolder
 from .structure import Beam as Beam

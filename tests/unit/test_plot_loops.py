@@ -64,6 +64,39 @@ def test_a_run_is_drawn_without_its_states_in_contact(run):
     assert rf.plot_loops(run, title="mine $1").legends[0].get_title().get_text() == r"mine \$1"
 
 
+def test_a_base_on_springs_is_drawn_with_its_edges():
+    springs = rf.Springs([-ARM, 0.3, ARM], 1e8, 2e6)
+    ground = rf.Ground(springs=springs, base_inertia=2e4)
+    curve = rf.moment_rotation(HELD, [0.01, -0.01], ground=ground)
+    for result in (curve, rf.simulate(HELD, PULSE, "2DOF-S", ground=ground)):
+        base, edges, *elements = drawn(rf.plot_loops(result)).axes
+        names = ["total", "weight", "springs", "1 tendon, x = 0 m", "2 fuse, x = −0.5 m", "3 fuse, x = 0.5 m"]
+        assert [line.get_label() for line in base.get_lines()] == names
+        total, weight, soil, *parts = (line.get_ydata() for line in base.get_lines())
+        np.testing.assert_allclose(weight + soil + sum(parts), total, atol=1e-9 * np.abs(total).max())
+        np.testing.assert_allclose(weight * 1e6, -SLOPE * result.rotation, atol=1e-9 * SLOPE)
+        np.testing.assert_allclose(soil * 1e6, result.spring_force @ springs.positions, atol=1e-6 * WEIGHT)
+        assert (edges.get_title(), edges.get_ylabel()) == ("edges of the base", "rise [mm]")
+        _, left, right = (line.get_ydata() for line in edges.get_lines())
+        np.testing.assert_allclose(np.stack((left, right), axis=1), 1e3 * result.edge_uplift)
+        assert len(elements) == 3
+
+
+def test_the_static_line_on_springs_is_that_of_a_push():
+    ground = rf.Ground(springs=rf.Springs([-ARM, ARM], 1e8, 2e6), base_inertia=2e4)
+    run = rf.simulate(WALL, PULSE, "2DOF-S", ground=ground)
+    figure = drawn(rf.plot_moment_rotation(run))
+    assert legend(figure) == ["static, on the springs"]
+    theta, moment = figure.axes[0].get_lines()[1].get_data()
+    push = rf.moment_rotation(WALL, [theta.max(), theta.min()], ground=ground)
+    np.testing.assert_allclose(moment, push.moment / 1e6)
+    np.testing.assert_array_equal(theta, push.rotation)
+    held = rf.simulate(HELD, PULSE, "2DOF-S", ground=ground)
+    path = drawn(rf.plot_moment_rotation(held)).axes[0].get_lines()[1]
+    total = rf.plot_loops(held).axes[0].get_lines()[0]
+    np.testing.assert_array_equal(path.get_xydata(), total.get_xydata())
+
+
 def test_many_elements_fill_rows_and_a_free_base_has_none():
     many = rf.Restrained(
         WALL, [TENDON, *FUSES, rf.FrictionDamper(5e4, -1.0), rf.ViscousDamper(1e5), rf.Tendon(1e5, 1e6, 1.2)]

@@ -120,6 +120,9 @@ VALUES = {
     rf.OverturningScales: lambda: rf.overturning_scales(frame(), motion(), [0.01, 0.02]),
     rf.PinnedBeam: lambda: rf.pinned_beam("flexure", 0.5),
     rf.MomentRotation: lambda: rf.moment_rotation(frame(), [0.01, -0.01]),
+    rf.MomentRotationOnSprings: lambda: rf.moment_rotation(
+        frame(), [0.01], ground=rf.Ground(springs=rf.Springs([-0.2, 0.2], 1e9), base_inertia=1e3)
+    ),
     rf.Pivot: lambda: rf.Eccentric(frame(), 0.1).rocking().pivot(-1),
     rf.PopulationStatistics: statistics,
     rf.Progress: lambda: rf.Progress(3, 2, 1, 64),

@@ -20,6 +20,7 @@ from later_cycles import CASES, impact_share, later_cycles
 from newton import by_newton
 from references import absolute_damping, reference
 from speed import speeds
+from springs import DAMPED_GROUND, PARALLEL_GROUND, STIFF_GROUND, compare, explained, speeds_on_springs
 from stepping import Scheme, march, settle
 
 try:
@@ -140,6 +141,44 @@ def test_an_absorbing_contact_is_vvel_an_elastic_one_bounces():
     assert elastic.rebound == pytest.approx(1.0, abs=0.05)
     assert absorbing.rebound < 0.3
     assert absorbing.errors[-1] < 0.01 < 0.03 < elastic.errors[1]
+
+
+@needs_opensees
+@both
+def test_two_springs_without_dashpots_are_the_same_law(prototype):
+    coarse, fine = compare(prototype, pulse(), [(STIFF_GROUND, 2e-3), (STIFF_GROUND, 5e-4)])
+    assert abs(fine.late) < 1e-5
+    assert abs(fine.peak) < 5e-5
+    assert fine.rotation < 5e-4
+    assert abs(coarse.peak) < 1e-3
+    assert coarse.rotation > 3.0 * fine.rotation
+
+
+@needs_opensees
+@both
+def test_a_dashpot_behind_a_contact_is_nearly_the_same_one_beside_it_pulls(prototype):
+    series, parallel = compare(prototype, pulse(), [(DAMPED_GROUND, 5e-4), (PARALLEL_GROUND, 1e-3)])
+    assert abs(series.late) < 1e-4
+    assert abs(series.peak) < 1e-3
+    assert series.rotation < 2e-3
+    assert parallel.peak < -0.1
+
+
+@needs_opensees
+def test_a_footing_that_is_left_behind_explains_the_difference():
+    motion = pulse()
+    (series,) = compare(SHEAR, motion, [(DAMPED_GROUND, 5e-4)])
+    peak, rotation = explained(SHEAR, motion, DAMPED_GROUND, 5e-4)
+    assert abs(peak) < 2e-5
+    assert rotation < 0.3 * series.rotation
+
+
+@needs_opensees
+def test_speeds_on_springs_name_the_largest_step_that_meets_the_target():
+    (found,) = speeds_on_springs(SHEAR, (1e-3,), (1e-2, 1e-3))
+    assert found.dt == 1e-3
+    assert abs(found.error) < 1e-3
+    assert speeds_on_springs(SHEAR, (1e-12,), (1e-2,)) == []
 
 
 @needs_opensees

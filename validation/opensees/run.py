@@ -23,6 +23,7 @@ from references import reference as excursion_reference
 from rich.console import Console
 from rich.table import Table
 from speed import speeds
+from springs import DAMPED_GROUND, PARALLEL_GROUND, STIFF_GROUND, compare, explained, speeds_on_springs
 
 import rockflex as rf
 
@@ -52,6 +53,7 @@ def main() -> None:
         first_excursions(console, shaking, folder),
         impacts(console, record, folder),
     ]
+    springs(console, record, shaking)
     times(console)
     console.print("\n".join(f"wrote {path}" for path in written))
     console.print(f"{time.perf_counter() - started:.0f} s in all")
@@ -161,12 +163,32 @@ def impacts(console: Console, record: rf.GroundMotion, folder: Path) -> Path:
     return cycles_figure(shown, folder / "later_cycles.png")
 
 
-def times(console: Console) -> None:
+def springs(console: Console, record: rf.GroundMotion, shaking: rf.GroundMotion) -> None:
     """Part (d)."""
-    columns = ("structure", "against", "error ≤", "k (N/m)", "dt (s)", "error", "OpenSees ms", "rockflex ms", "ratio")
-    table = Table(*columns, title="one excursion, ζ = 0, at the same error of θ_max")
+    columns = ("motion", "contact", "dt (s)", "uplift (s)", "θ_max", "θ(t)", "OpenSees ms", "rockflex ms", "ratio")
+    grounds = (STIFF_GROUND, DAMPED_GROUND, PARALLEL_GROUND)
     for prototype in PROTOTYPES:
-        for each in speeds(prototype):
+        title = f"{prototype.name} on two springs of {STIFF_GROUND.stiffness:g} N/m: OpenSees minus rockflex"
+        table = Table(*columns, title=title)
+        for motion, steps in ((shaking, (5e-4,)), (record, (1e-3, 2.5e-4))):
+            for each in compare(prototype, motion, [(ground, dt) for ground in grounds for dt in steps]):
+                table.add_row(
+                    motion.name, each.ground.kind, f"{each.dt:g}", f"{each.late:.1e}", f"{each.peak:.1e}",
+                    f"{each.rotation:.1e}", f"{each.opensees * 1e3:.0f}", f"{each.rockflex * 1e3:.1f}",
+                    f"{each.opensees / each.rockflex:.0f}",
+                )  # fmt: skip
+        console.print(table)
+        for motion, dt in ((shaking, 5e-4), (record, 2.5e-4)):
+            peak, rotation = explained(prototype, motion, DAMPED_GROUND, dt)
+            console.print(f"{motion.name}, series, against its own law by LSODA: θ_max {peak:.1e}, θ(t) {rotation:.1e}")
+
+
+def times(console: Console) -> None:
+    """Part (e)."""
+    columns = ("structure", "against", "error ≤", "k (N/m)", "dt (s)", "error", "OpenSees ms", "rockflex ms", "ratio")
+    table = Table(*columns, title="under the pulse, at the same error of θ_max")
+    for prototype in PROTOTYPES:
+        for each in (*speeds(prototype), *speeds_on_springs(prototype)):
             table.add_row(
                 prototype.name, each.model, f"{each.target:g}", f"{each.contact:.0e}", f"{each.dt:g}",
                 f"{each.error:.1e}", f"{each.opensees * 1e3:.0f}", f"{each.rockflex * 1e3:.2f}", f"{each.ratio:.0f}",

@@ -6,14 +6,17 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.models import SpringModel
 from rockflex.plot._curves import curves_of, title_of
 from rockflex.plot._style import GREEN, ORANGE, PURPLE, RED, SKY
 from rockflex.plot._units import short
 from rockflex.response import (
     History,
     MomentRotation,
+    MomentRotationOnSprings,
     Response,
     element_resistance,
     large_resistance,
@@ -45,6 +48,10 @@ class BaseLoops:
         Contributions to the resisting moment in N m: of the weight, shape (n,), and of the elements, shape (n, E).
     elongation, force
         δ in m and F in N of the elements, also in contact, shape (m, E).
+    springs
+        Contribution of the springs under the base in N m, shape (n,); None on rigid ground.
+    edges
+        Rise of the left and of the right edge of a base on springs in m, shape (n, 2); None on rigid ground.
     """
 
     title: str
@@ -54,14 +61,17 @@ class BaseLoops:
     parts: Array
     elongation: Array
     force: Array
+    springs: Array | None = None
+    edges: Array | None = None
 
     @property
     def moment(self) -> Array:
         """Resisting moment in N m, shape (n,)."""
-        return self.weight + self.parts.sum(axis=1)
+        held = self.weight + self.parts.sum(axis=1)
+        return held if self.springs is None else held + self.springs
 
 
-def base_loops(result: MomentRotation | Response) -> BaseLoops:
+def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> BaseLoops:
     """Return the path of a base from a cyclic pushover, or from the history of a run.
 
     Raises
@@ -69,7 +79,8 @@ def base_loops(result: MomentRotation | Response) -> BaseLoops:
     InputError
         If `result` is neither, has no history, or is of a base that cannot lift.
     """
-    if isinstance(result, MomentRotation):
+    if isinstance(result, MomentRotation | MomentRotationOnSprings):
+        on_springs = isinstance(result, MomentRotationOnSprings)
         return BaseLoops(
             title="",
             elements=result.elements,
@@ -78,6 +89,8 @@ def base_loops(result: MomentRotation | Response) -> BaseLoops:
             parts=result.element_moment,
             elongation=result.element_elongation,
             force=result.element_force,
+            springs=result.spring_moment if on_springs else None,
+            edges=result.edge_uplift if on_springs else None,
         )
     given: Any = result
     if not hasattr(given, "history"):
@@ -92,11 +105,25 @@ def base_loops(result: MomentRotation | Response) -> BaseLoops:
             'as "2DOF-S".'
         )
     history, kept = curve.history, curve.before_fall
+    title, elements = title_of(curves, None), history.model.properties.elements
+    if isinstance(history.model, SpringModel):
+        weight, parts = resistance_on_springs(history)
+        return BaseLoops(
+            title=title,
+            elements=elements,
+            rotation=history.rotation[kept],
+            weight=weight[kept],
+            parts=parts[kept],
+            elongation=history.element_elongation[kept],
+            force=history.element_force[kept],
+            springs=(history.spring_force @ history.model.springs.positions)[kept],
+            edges=history.edge_uplift[kept],
+        )
     rocking = np.flatnonzero(history.side[kept] != 0.0)
     weight, parts = resistance_of(history)
     return BaseLoops(
-        title=title_of(curves, None),
-        elements=history.model.properties.elements,
+        title=title,
+        elements=elements,
         rotation=history.rotation[rocking],
         weight=weight[rocking],
         parts=parts[rocking],
@@ -111,6 +138,17 @@ def resistance_of(history: History) -> tuple[Array, Array]:
     if history.model.complete:
         return large_resistance(p, side, history.rotation, history.element_force)
     return weight_resistance(p, side, history.rotation), element_resistance(p, side, history.element_force)
+
+
+def resistance_on_springs(history: History) -> tuple[Array, Array]:
+    """Return what the weight (n,) and the elements (n, E) add to the resisting moment of a base on springs in N m.
+
+    About the axis of the masses, where the springs have the rest.
+    """
+    p = history.model.properties
+    gravity = GRAVITY + history.vertical_ground_acceleration
+    positions = np.array([each.position for each in p.elements])
+    return -p.l0r * gravity * history.rotation, -history.element_force * positions
 
 
 def follows_a_line(properties: RockingProperties) -> bool:

@@ -1,25 +1,31 @@
 """Loops of a base and of its elements."""
 
 import math
+from functools import partial
+from typing import cast
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rockflex._arrays import Array
 from rockflex.plot._base_loops import COLORS, BaseLoops, base_loops, name_of
-from rockflex.plot._style import BLACK, GRAY, columns, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, columns, literal, new_figure, styled
 from rockflex.plot._units import readable
-from rockflex.response import MomentRotation, Response
+from rockflex.response import MomentRotation, MomentRotationOnSprings, Response
 
 _PER_ROW = 2
 
 
-def plot_loops(result: MomentRotation | Response, *, title: str | None = None) -> Figure:
+def plot_loops(result: MomentRotation | MomentRotationOnSprings | Response, *, title: str | None = None) -> Figure:
     """Plot the resisting moment of a base over its rotation, and the force of each element over its elongation.
 
     The resisting moment M is the sum of the parts of the weight and of the elements, about the pivot about which the
     base rotates; it is plotted with its parts. Tendons that stay elastic add to the spine of the flag, elements that
     yield or slide its loops. The figure shows a cyclic pushover, or the history of a run, in which viscous dampers
     contribute and contact is a vertical line. A run that overturns is shown up to the rotation of balance.
+
+    On springs the moments are those about the axis of the masses, and the springs are one more part. One more axes has
+    the rise of either edge of the base over the rotation; where it is negative, the edge has settled.
 
     Parameters
     ----------
@@ -31,8 +37,8 @@ def plot_loops(result: MomentRotation | Response, *, title: str | None = None) -
     Returns
     -------
     matplotlib.figure.Figure
-        One axes with M over θ in rad, then one axes per element with F over δ in m; M and F in units that suit their
-        sizes.
+        One axes with M over θ in rad, on springs one with the rise of the edges in mm, then one axes per element with F
+        over δ in m; M and F in units that suit their sizes.
 
     Raises
     ------
@@ -52,7 +58,9 @@ def plot_loops(result: MomentRotation | Response, *, title: str | None = None) -
     ['M [MN m]', 'F [kN]', 'F [kN]']
     """
     loops = base_loops(result)
-    count = len(loops.elements)
+    drawn = [] if loops.edges is None else [_draw_edges]
+    drawn += [partial(_draw_element, place=place) for place in range(len(loops.elements))]
+    count = len(drawn)
     rows = max(math.ceil(count / _PER_ROW), 1)
     beside = math.ceil(count / rows)
     with styled():
@@ -61,9 +69,9 @@ def plot_loops(result: MomentRotation | Response, *, title: str | None = None) -
         grid = figure.add_gridspec(rows, 1 + beside, width_ratios=(1.7, *[1.0] * beside))
         base = figure.add_subplot(grid[:, 0])
         _draw_base(base, loops)
-        for place in range(count):
+        for place, draw in enumerate(drawn):
             row, column = divmod(place, beside)
-            _draw_element(figure.add_subplot(grid[row, 1 + column]), loops, place)
+            draw(figure.add_subplot(grid[row, 1 + column]), loops)
         lines = base.get_lines()
         names = [str(line.get_label()) for line in lines]
         figure.legend(
@@ -77,8 +85,10 @@ def _draw_base(axes: Axes, loops: BaseLoops) -> None:
     moment = loops.moment
     factor, unit = readable(max(map(abs, (*moment, 0.0))), "N m")
     axes.plot(loops.rotation, moment / factor, color=BLACK, linewidth=1.4, label="total", zorder=3.0)
-    if loops.elements:
+    if loops.elements or loops.springs is not None:
         axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label="weight")
+    if loops.springs is not None:
+        axes.plot(loops.rotation, loops.springs / factor, color=BLUE, linewidth=0.9, label="springs")
     for place, element in enumerate(loops.elements):
         axes.plot(
             loops.rotation, loops.parts[:, place] / factor, color=_color(place), linewidth=0.9,
@@ -86,6 +96,16 @@ def _draw_base(axes: Axes, loops: BaseLoops) -> None:
         )  # fmt: skip
     axes.set(xlabel="θ [rad]", ylabel=f"M [{unit}]")
     axes.locator_params(axis="x", nbins=6)
+
+
+def _draw_edges(axes: Axes, loops: BaseLoops) -> None:
+    edges = cast("Array", loops.edges)
+    axes.axhline(0.0, color=GRAY, linewidth=0.6, label="_level")
+    for edge, style, name in zip(edges.T, ("-", (0, (4, 2))), ("left", "right"), strict=True):
+        axes.plot(loops.rotation, 1e3 * edge, color=BLUE, linestyle=style, linewidth=1.1, label=name)
+    axes.set(title="edges of the base", xlabel="θ [rad]", ylabel="rise [mm]")
+    axes.locator_params(axis="x", nbins=4)
+    axes.legend(handlelength=2.0)
 
 
 def _draw_element(axes: Axes, loops: BaseLoops, place: int) -> None:

@@ -10,17 +10,19 @@ from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex.plot._base_loops import follows_a_line, resistance_of
+from rockflex.models import SpringModel
+from rockflex.plot._base_loops import follows_a_line, resistance_of, resistance_on_springs
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._style import BLUE, new_figure, styled
 from rockflex.plot._units import readable
-from rockflex.response import Response
+from rockflex.response import Response, springs_path
 
 _HEADROOM = 1.1
 _PER_ROW = 3
 _FREE = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
 _HELD = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
 _PATH = "resisting moment of weight and elements"
+_SPRINGS = "static, on the springs"
 _SIDED = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
 
 
@@ -30,7 +32,8 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
     The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
     tendons add their prestress to M_r and their stiffness k_t to the slope, and the two sides differ if the base is
     eccentric or the tendons are not symmetric. With elements that yield, slide or damp, the resisting moment depends on
-    the path, and that of the run is plotted: `plot_loops` shows its parts. M_b is the moment of the elastic forces; it
+    the path, and that of the run is plotted: `plot_loops` shows its parts. On springs the static moment is that of
+    `moment_rotation`. M_b is the moment of the elastic forces; it
     differs from the resisting moment by rotational inertia and damping. Responses on a fixed base have no rotation and
     are left out. Overturning does not extend the axes.
 
@@ -112,9 +115,14 @@ def _largest_moment(curve: Curve) -> float:
 
 def _path(curve: Curve) -> tuple[Array, Array]:
     """Rotation and resisting moment while the base is off the ground."""
-    weight, parts = resistance_of(curve.history)
-    rocking = np.flatnonzero(curve.history.side[curve.before_fall] != 0.0)
-    return curve.history.rotation[rocking], (weight + parts.sum(axis=1))[rocking]
+    history, kept = curve.history, curve.before_fall
+    if isinstance(history.model, SpringModel):
+        weight, parts = resistance_on_springs(history)
+        moment = weight + parts.sum(axis=1) + history.spring_force @ history.model.springs.positions
+        return history.rotation[kept], moment[kept]
+    weight, parts = resistance_of(history)
+    rocking = np.flatnonzero(history.side[kept] != 0.0)
+    return history.rotation[rocking], (weight + parts.sum(axis=1))[rocking]
 
 
 def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
@@ -122,12 +130,18 @@ def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
     if not follows_a_line(p):
         theta, moment = _path(curve)
         return Line2D(theta, moment / factor, color=BLUE, linewidth=0.8, label=_PATH, zorder=3.0)
+    dashes, model = (0, (4, 2)), curve.history.model
+    if isinstance(model, SpringModel):
+        push = springs_path(model, np.array([rotation, -rotation]))
+        return Line2D(
+            push.rotation, push.moment / factor, color=BLUE, linestyle=dashes, linewidth=1.1, label=_SPRINGS, zorder=3.0
+        )
     right, left = (
         (each.resisting_moment / factor, (each.resisting_moment + each.rocking_stiffness * rotation) / factor)
         for each in (p.pivot(1), p.pivot(-1))
     )
     law = (_HELD if p.tendons else _FREE) if p.symmetric else _SIDED
     return Line2D(
-        [-rotation, 0.0, 0.0, rotation], [-left[1], -left[0], *right], color=BLUE, linestyle=(0, (4, 2)),
+        [-rotation, 0.0, 0.0, rotation], [-left[1], -left[0], *right], color=BLUE, linestyle=dashes,
         linewidth=1.1, label="static, " + law, zorder=3.0,
     )  # fmt: skip

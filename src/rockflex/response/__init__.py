@@ -7,9 +7,11 @@ from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._global import GLOBAL, asked_of, extremes_of
 from rockflex.response._history import History
 from rockflex.response._moment_rotation import MomentRotation
+from rockflex.response._moment_rotation_on_springs import MomentRotationOnSprings
 from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
 from rockflex.response._respond import respond
 from rockflex.response._response import PEAKS, Response
+from rockflex.response._springs_path import springs_path
 from rockflex.response._warnings import warnings_of
 
 __all__ = [
@@ -20,6 +22,7 @@ __all__ = [
     "FloorPeaks",
     "History",
     "MomentRotation",
+    "MomentRotationOnSprings",
     "Response",
     "asked_of",
     "base_path",
@@ -28,6 +31,7 @@ __all__ = [
     "friction_coefficient",
     "large_resistance",
     "respond",
+    "springs_path",
     "warnings_of",
     "weight_resistance",
 ]

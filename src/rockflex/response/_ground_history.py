@@ -4,7 +4,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.models import RISE, TIME, RockingModel, SpringModel, lifted_springs, spring_forces
-from rockflex.response._missing import MissingQuantityError
+from rockflex.response._pressure import pressure_of
 
 
 class GroundHistory:
@@ -66,13 +66,7 @@ class GroundHistory:
         InputError
             If the springs have no `area`.
         """
-        area = self.model.springs.area if isinstance(self.model, SpringModel) else None
-        if area is None:
-            raise MissingQuantityError(
-                "The springs under the base have no area, so there is no soil pressure. Give Springs the area that "
-                "each supports, in m², or use winkler_bed."
-            )
-        return self.spring_force / area
+        return pressure_of(self.spring_force, self.model.springs if isinstance(self.model, SpringModel) else None)
 
     def _of_base(self, place: int) -> Array:
         return self.model.layout.of(self.states, place) if place >= 0 else np.zeros(self.states.shape[0])

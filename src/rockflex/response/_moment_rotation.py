@@ -7,19 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._values import Value
-from rockflex.modal import BaseElement, RockingProperties
+from rockflex._arrays import Array
 from rockflex.response._resistance import element_resistance, weight_resistance
+from rockflex.response._static_path import StaticPath
 
 if TYPE_CHECKING:
     import pandas as pd
 
-OF_ELEMENTS = ("element_force", "element_elongation", "plastic_stretch", "element_losses")
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MomentRotation(Value):
+class MomentRotation(StaticPath):
     """The quasi-static moment of a base over a path of its rotation, with the forces of its elements.
 
     Between adjacent points everything is linear: a point stands wherever an element changes its branch, and two of them
@@ -33,8 +30,6 @@ class MomentRotation(Value):
         The structure, with its elements.
     rotation : ndarray, shape (n,)
         θ in rad.
-    side : ndarray of int, shape (n,)
-        1 about the right pivot, -1 about the left pivot, 0 at the start, at rest and without load.
     given : ndarray of bool, shape (n,)
         True where a rotation was prescribed, and False at points in between.
     element_force : ndarray, shape (n, E)
@@ -45,6 +40,8 @@ class MomentRotation(Value):
         Plastic part of the elongation in m of fuses and tendons that yield, NaN once they are broken; zero for others.
     element_losses : ndarray, shape (n, E)
         Energy that each element has dissipated so far, in J. A rupture dissipates what the element had stored.
+    side : ndarray of int, shape (n,)
+        1 about the right pivot, -1 about the left pivot, 0 at the start, at rest and without load.
 
     Examples
     --------
@@ -61,14 +58,7 @@ class MomentRotation(Value):
     (array([7875., 7500.]), True)
     """
 
-    properties: RockingProperties
-    rotation: Array
     side: NDArray[np.int64]
-    given: Bools
-    element_force: Array
-    element_elongation: Array
-    plastic_stretch: Array
-    element_losses: Array
 
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
@@ -76,11 +66,6 @@ class MomentRotation(Value):
             f"MomentRotation({self.rotation.size} points, {len(self.elements)} elements, |θ| up to {largest:.4g} rad, "
             f"|M| up to {peak:.4g} N m, {self.dissipated_energy[-1]:.4g} J dissipated)"
         )
-
-    @property
-    def elements(self) -> tuple[BaseElement, ...]:
-        """The elements, in their order."""
-        return self.properties.elements
 
     @cached_property
     def moment(self) -> Array:
@@ -99,21 +84,6 @@ class MomentRotation(Value):
     def weight_moment(self) -> Array:
         """Contribution s m_tot g B_s - L_0^r g θ of the weight to the moment in N m, shape (n,)."""
         return weight_resistance(self.properties, self.side, self.rotation)
-
-    @property
-    def work(self) -> Array:
-        """Work of the moment up to each point in J, shape (n,)."""
-        return _integral(self.rotation, self.moment)
-
-    @property
-    def element_energy(self) -> Array:
-        """Energy that each element has dissipated along the whole path in J, shape (E,)."""
-        return self.element_losses[-1]
-
-    @property
-    def dissipated_energy(self) -> Array:
-        """Energy that all elements have dissipated up to each point in J, shape (n,)."""
-        return self.element_losses.sum(axis=1)
 
     @property
     def uplift_moments(self) -> Array:
@@ -155,12 +125,7 @@ class MomentRotation(Value):
             `rotation` (rad), `moment` (N m), `side`, `given`, and for every element, counted from 1,
             `element_force_1` (N), `element_elongation_1`, `plastic_stretch_1` (m) and `element_losses_1` (J).
         """
-        import pandas as pd
-
-        columns = {name: getattr(self, name) for name in ("rotation", "moment", "side", "given")}
-        for place in range(len(self.elements)):
-            columns |= {f"{name}_{place + 1}": getattr(self, name)[:, place] for name in OF_ELEMENTS}
-        return pd.DataFrame(columns)
+        return self._frame("rotation", "moment", "side", "given")
 
     @property
     def _lift_offs(self) -> NDArray[np.int64]:
@@ -180,8 +145,3 @@ class MomentRotation(Value):
                 share = resisting[k] / (resisting[k] - resisting[k + 1])
                 return float(theta[k] + share * (theta[k + 1] - theta[k]))
         return 0.0
-
-
-def _integral(over: Array, values: Array) -> Array:
-    """Return the integral of piecewise linear values up to each point."""
-    return np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(over))))

@@ -1,20 +1,40 @@
 """Cyclic pushover of the base of a structure."""
 
 import math
+from collections.abc import Callable
+from typing import cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError
-from rockflex.modal import RockingProperties
-from rockflex.response import MomentRotation, base_path
-from rockflex.study._arguments import RockingStructure, properties_of
+from rockflex.modal import Ground, RockingProperties
+from rockflex.models import Model, SpringModel
+from rockflex.response import MomentRotation, MomentRotationOnSprings, base_path, springs_path
+from rockflex.study._arguments import GroundChoice, RockingStructure, check_options, ground_under, properties_of
 
 QUARTER_TURN = 0.5 * math.pi
 
 
-def moment_rotation(structure: RockingStructure | RockingProperties, rotations: ArrayLike) -> MomentRotation:
+@overload
+def moment_rotation(
+    structure: RockingStructure | RockingProperties, rotations: ArrayLike, *, ground: None = None
+) -> MomentRotation: ...
+
+
+@overload
+def moment_rotation(
+    structure: RockingStructure | RockingProperties,
+    rotations: ArrayLike,
+    *,
+    ground: Ground | Callable[[RockingProperties], Ground],
+) -> MomentRotationOnSprings: ...
+
+
+def moment_rotation(
+    structure: RockingStructure | RockingProperties, rotations: ArrayLike, *, ground: GroundChoice = None
+) -> MomentRotation | MomentRotationOnSprings:
     """Rotate the base of a structure slowly to and fro, and return its moment and the forces of its elements.
 
     M = s (m_tot g B_s + Σ F r) - L_0^r g θ about the acting pivot, with the tension F of each element at its distance r
@@ -26,6 +46,10 @@ def moment_rotation(structure: RockingStructure | RockingProperties, rotations: 
     points at which elements change their branch, and these points are exact. Viscous dampers contribute nothing,
     because the rotation is infinitely slow. A friction damper turns its force round at once where the rotation turns.
 
+    On springs the base heaves so that they carry the weight and the tensions, and M = Σ x N - Σ x F - L_0^r g θ with
+    the force N of each spring at x from the axis of the masses. Dashpots and friction under the base contribute
+    nothing. The path begins at rest, settled; θ counts from the level base, as in a run.
+
     Parameters
     ----------
     structure
@@ -33,20 +57,25 @@ def moment_rotation(structure: RockingStructure | RockingProperties, rotations: 
     rotations : array_like, shape (m,)
         Rotations θ in rad through which the base is driven, positive about the right pivot: turning points, or the
         samples of any history. Between adjacent values the rotation does not turn back.
+    ground
+        A `Ground` with springs, or a function of `RockingProperties` that returns one. Default: rigid ground.
 
     Returns
     -------
-    MomentRotation
-        At the given rotations and at all points in between where an element changes its branch.
+    MomentRotation or MomentRotationOnSprings
+        At the given rotations and at all points in between where an element changes its branch, or a spring becomes
+        empty or is met again.
 
     Raises
     ------
     InputError
-        If there are no rotations, or one is not finite or beyond π/2.
+        If there are no rotations, one is not finite or beyond π/2, the ground has no springs, or the structure cannot
+        stand on them.
 
     References
     ----------
-    The flag shape: Christopoulos, Filiatrault & Folz 2002, doi 10.1002/eqe.152.
+    The flag shape: Christopoulos, Filiatrault & Folz 2002, doi 10.1002/eqe.152. Two springs and a bed under a rigid
+    base: Yim & Chopra 1984, Earthquake Engineering & Structural Dynamics 12, 263-281.
 
     Examples
     --------
@@ -65,6 +94,13 @@ def moment_rotation(structure: RockingStructure | RockingProperties, rotations: 
     3    0.0200  1819.800            150.0
     4    0.0167  1326.150           -150.0
     5    0.0000  1107.900           -150.0
+
+    The same wall without elements on a bed of soil: a part of the base is lifted beyond M = W B/3, 294 kN m.
+
+    >>> soil = rf.Ground(springs=rf.winkler_bed(1.5, 2.0, 100e6, n=100), base_inertia=8e3)
+    >>> push = rf.moment_rotation(wall, [0.0, 0.005], ground=soil)
+    >>> print((push.uplift_moments / 1e3).round(1), push.contact_length[-1].round(3))
+    [294.] 1.085
     """
     path = finite_vector("rotations", rotations, "rad")
     if path.size == 0:
@@ -76,4 +112,20 @@ def moment_rotation(structure: RockingStructure | RockingProperties, rotations: 
             f"rotations[{beyond[0]}] = {path[beyond[0]]:g} rad was given. Check the units: one degree is 0.01745 rad.",
             field="rotations",
         )
-    return base_path(properties_of(structure), path)
+    properties = properties_of(structure)
+    check_options(None, None, ground)
+    under = ground_under(properties, ground)
+    return base_path(properties, path) if under is None else springs_path(_on_springs(properties, under), path)
+
+
+def _on_springs(properties: RockingProperties, ground: Ground) -> SpringModel:
+    """Return the model of the base on the springs of the ground; nothing slides without a horizontal force."""
+    if ground.springs is None:
+        raise InputError(
+            "ground must have springs, but one with friction alone was given. A base that is pushed slowly does not "
+            "slide: leave the ground out, or give it springs.",
+            field="ground",
+        )
+    still = Ground(springs=ground.springs, base_inertia=ground.base_inertia)
+    model = Model(n_modes=None if properties.n_modes else 0).of(properties, ground=still)
+    return cast("SpringModel", model)
