@@ -19,8 +19,9 @@ def plot_energy(response: Response) -> Figure:
     The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
     Eqs. 15, 23 and 25). Their sum equals the input, which starts from the energy at t = 0; the title
     gives the difference. Tendons that lose prestress give back energy that they held before, which counts as part of
-    the energy at t = 0. On springs, the raised weight counts from the deepest position of the base. A run that overturns is plotted until θ last passes the rotation at which the static
-    resisting moment vanishes, beyond which the weight overturns it.
+    the energy at t = 0. On springs, the raised weight counts from the deepest position of the base. A run that
+    overturns is plotted until θ last passes the rotation at which the static resisting moment vanishes, beyond which
+    the weight overturns it.
 
     Parameters
     ----------
