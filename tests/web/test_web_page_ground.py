@@ -165,7 +165,8 @@ def test_springs_that_lift_are_drawn_unloaded_and_a_mark_stays_where_the_base_st
           rockflexStage.move(t);
           const scale = stage.canvas.width / stage.canvas.clientWidth;
           const [wide, from] = [stage.canvas.width, Math.round(scale * (stage.height - 44 - stage.depth))];
-          const { data } = stage.canvas.getContext("2d").getImageData(0, from, wide, Math.round(scale * (stage.depth + 10)));
+          const rows = Math.round(scale * (stage.depth + 10));
+          const { data } = stage.canvas.getContext("2d").getImageData(0, from, wide, rows);
           const columns = (name, low, high) => {
             const tone = getComputedStyle(document.documentElement).getPropertyValue(name).trim().slice(1);
             const wanted = tone.match(/../g).map((part) => parseInt(part, 16));
