@@ -16,8 +16,8 @@ from rockflex.web._refusal import Refusal
 from rockflex.web._response import responses
 from rockflex.web._script import response_script
 from rockflex.web._state import parse_state
-from rockflex.web._studies import shared
 from rockflex.web._structures import structure_view
+from rockflex.web._studies import shared
 from rockflex.web._uploads import Uploads
 
 FRAME = {"frame": frame_values(n_stories=2, period=0.5, aspect_ratio=8.0)}

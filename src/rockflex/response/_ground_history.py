@@ -54,7 +54,8 @@ class GroundHistory:
     def uplifted(self) -> Bools:
         """Whether the base is off the ground, on springs whether an edge has left its spring, shape (n_states,)."""
         if isinstance(self.model, SpringModel):
-            return lifted_springs(self.model, self.states)[:, [0, -1]].any(axis=1)
+            lifted = lifted_springs(self.model, self.states)
+            return lifted[:, 0] | lifted[:, -1]
         return self.states[:, SIDE] != 0.0
 
     @property
