@@ -20,6 +20,7 @@ class Order:
         "controlled_rocking",
         "hybrid_wall",
         "nine_story_frame",
+        "pier_on_soil",
         "fragility_of_a_frame",
         "ida_with_resurrections",
     )

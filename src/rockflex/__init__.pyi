@@ -83,6 +83,7 @@ from .plot import plot_clouds as plot_clouds
 from .plot import plot_design as plot_design
 from .plot import plot_design_search as plot_design_search
 from .plot import plot_energy as plot_energy
+from .plot import plot_footing as plot_footing
 from .plot import plot_fragility as plot_fragility
 from .plot import plot_frequency_equation as plot_frequency_equation
 from .plot import plot_frequency_ratios as plot_frequency_ratios

@@ -13,7 +13,8 @@ from rockflex.solve.adaptive import tableau
 from rockflex.solve.adaptive.layout import TERMS, TRIAL, stages_of
 from rockflex.solve.adaptive.step import FAILED, expand_nested, extend, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.sums import place_stage
-from rockflex.solve.layout import Span, progress_at_start
+from rockflex.solve.layout import Span
+from rockflex.solve.progress import progress_at_start
 from twins import complete_model as twin
 from twins.complete import complete_frame
 

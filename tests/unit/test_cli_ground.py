@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
@@ -153,3 +155,70 @@ def test_springs_of_the_file_exclude_a_bed_of_flags(write):
         "The ground of the structure file has springs, and the command line gives a bed (--breadth, "
         "--subgrade-modulus). Leave one of them out."
     ) in " ".join(invoke(file, RECORD, *BED).stderr.split())
+
+
+SOFT = [*BED, *INERTIA, "--heave-damping-ratio", 0.2]
+
+
+def columns(text, *wanted):
+    """The numbers of some columns of the only row of a printed table."""
+    lines = text.splitlines()
+    (row,) = (line for line in lines if line.startswith("FF-2-a") and "MDOF-S" in line)
+    cells = row.split()
+    return [float(cells[place]) for place in wanted]
+
+
+def test_tables_show_how_the_base_moves_on_its_ground():
+    arguments = (STRUCTURE, RECORD, "--model", "MDOF-S", "--scale", 2)
+    (soft,) = document(*arguments, *SOFT, "--ground-friction", 0.15)["runs"]
+    told = invoke(*arguments, *SOFT, "--ground-friction", 0.15).stdout
+    for heading in ("slip", "x_end", "edge up", "edge down"):
+        assert heading in told
+    printed = columns(told, -4, -3, -2, -1)
+    names = ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement")
+    assert printed == pytest.approx([1e3 * soft[name] for name in names], rel=1e-3)
+    assert "slip: largest displacement of the base along the ground; x_end: where it rests" in told
+    assert "edge up, down: how far an edge of the base rises above the unloaded springs" in told
+    slides = invoke(*arguments, "--ground-friction", 0.15).stdout
+    assert "x_end" in slides
+    assert "edge up" not in slides
+    usual = invoke(*arguments).stdout
+    assert not {"slip", "edge up", "x_end"} & set(usual.split("\n")[3].split())
+    assert "slip:" not in usual
+
+
+def test_histories_have_the_columns_of_the_base(tmp_path):
+    arguments = (STRUCTURE, RECORD, "--model", "MDOF-S", "--scale", 2, *SOFT, "--ground-friction", 0.15)
+    result = invoke(*arguments, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    table = pd.read_csv(tmp_path / "out" / "history-FF-2-a.csv")
+    motion = rf.load_suite("fema-p695-far-field")["FF-2-a"].scaled(2.0)
+    bed = rf.winkler_bed(B, 3.0, 2e8).damped(0.2, MASS)
+    run = rf.simulate(make_frame(), motion, "MDOF-S", ground=rf.Ground(0.15, bed, 2e4))
+    for name in ("slip", "slip_velocity", "heave"):
+        np.testing.assert_allclose(table[name], getattr(run, name), rtol=1e-12, atol=1e-15)
+    edges = table[["left_edge_uplift", "right_edge_uplift"]].to_numpy()
+    np.testing.assert_allclose(edges, run.edge_uplift, rtol=1e-12, atol=1e-15)
+    forces = table[[f"spring_force_{k}" for k in range(1, 21)]].to_numpy()
+    np.testing.assert_allclose(forces, run.spring_force, rtol=1e-12, atol=1e-6)
+    assert "vertical_ground_acceleration" not in table
+    units = json.loads((tmp_path / "out" / "summary.json").read_text())["units"]
+    assert [units[name] for name in ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement")] == [
+        "m"
+    ] * 4
+
+
+def test_the_vertical_component_is_named(tmp_path):
+    rows = "".join(f"{0.01 * i:.2f},{3 * np.sin(0.05 * i):.5f}\n" for i in range(400))
+    for name, text in (("along.csv", f"time (s),acc (m/s2)\n{rows}"), ("up.csv", f"time (s),vertical (m/s2)\n{rows}")):
+        (tmp_path / name).write_text(text)
+    arguments = (STRUCTURE, tmp_path / "along.csv", "--vertical", tmp_path / "up.csv", "--model", "MDOF-S")
+    result = invoke(*arguments, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    assert "\nVertical: up with along, PVA = 3 m/s²\n" in result.stdout
+    table = pd.read_csv(tmp_path / "out" / "history-along.csv")
+    assert table["vertical_ground_acceleration"].max() == pytest.approx(3.0, rel=1e-3)
+    assert "Vertical" not in invoke(STRUCTURE, tmp_path / "along.csv", "--model", "MDOF-S").stdout
+    both = (tmp_path / "both.csv", "time (s),acc (m/s2),vertical (m/s2)\n0,0,0\n0.01,1,.5\n0.02,0,0\n")
+    both[0].write_text(both[1])
+    assert "\nVertical: of both, PVA = 0.5 m/s²\n" in invoke(STRUCTURE, both[0], "--model", "MDOF-S").stdout

@@ -221,7 +221,8 @@ def test_a_base_that_is_pulled_down_is_told_in_words():
     assert warning == (
         f"The vertical reaction falls to {response.min_vertical_reaction:.4g} N at "
         f"{response.time_of_min_vertical_reaction:.4g} s: MDOF-S pulls the base down there, which no ground can. The "
-        "pivot would lift, and what follows is to be read with care."
+        "pivot would lift, and what follows is to be read with care. Give simulate a Ground with springs, on which the "
+        "base can leave the ground."
     )
     assert invoke(*arguments).stderr == f"Warning: FF-1-a × 2: {warning}\n"
     assert [row["warnings"] for row in document(*arguments)["runs"]] == [[warning], []]

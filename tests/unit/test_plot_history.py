@@ -269,7 +269,7 @@ def test_panels_that_are_none_are_named(four, panels):
         plot_history(four, panels=panels)
     assert str(caught.value) == (
         "panels must be one or more of rotation, top_displacement, total_top_displacement, base_moment, base_shear, "
-        f"horizontal_reaction, each once, but {panels!r} was given."
+        f"horizontal_reaction, slip, edge_uplift, each once, but {panels!r} was given."
     )
 
 

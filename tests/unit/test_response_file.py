@@ -72,7 +72,7 @@ def test_what_is_saved_comes_back(tmp_path, structure, model, output):
         assert back.energy.closing_error == run.energy.closing_error
         assert back.history.model.label == model
         contact = run.history.model.start(0)
-        one, other = back.history.model.guard(contact), run.history.model.guard(contact)
+        one, other = back.history.model.phase(contact).guard, run.history.model.phase(contact).guard
         assert (one.low, one.high) == (other.low, other.high)
         assert np.array_equal(one.row, other.row)
         if run.floors is not None:

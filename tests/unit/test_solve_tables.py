@@ -14,8 +14,9 @@ from rockflex.response import asked_of
 from rockflex.solve import ClosedForm, Engine
 from rockflex.solve.exact import basis
 from rockflex.solve.exact.tables import levels_of, propagate, terms_of
-from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES, Log, motion_of, progress_at_start
+from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES, Log, motion_of
 from rockflex.solve.memory import recollect
+from rockflex.solve.progress import progress_at_start
 from rockflex.solve.run import settled
 from twins.exact import Exact
 from twins.frame import frame_properties

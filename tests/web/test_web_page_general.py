@@ -213,6 +213,7 @@ def test_texts_and_lines_can_be_told_from_their_ground(visit, scheme) -> None:
     names = ["bg", "panel", "shade", "text", "muted", "error", "accent", "control", "focus", "structure"]
     models = ["c0", "c1", "c2", "c3", "fixed", "fixed2"]
     energies = ["kinetic", "strain", "gravity", "tendons", "damped", "yielded", "lost", "fuse", "damper", "friction"]
+    energies += ["soil", "clay"]
     value = visitor.page.evaluate(
         "names => Object.fromEntries(names.map((n) =>"
         " [n, getComputedStyle(document.documentElement).getPropertyValue(`--${n}`).trim()]))",

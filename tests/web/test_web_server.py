@@ -123,7 +123,10 @@ def test_an_upload_is_simulated(client) -> None:
 
 def test_an_upload_of_a_vertical_component_is_refused(client) -> None:
     status, answer = upload(client, name="RSN1_X_ABC-UP.csv")
-    message = "RSN1_X_ABC-UP.csv is a vertical component by its header or its name. Choose a horizontal one."
+    message = (
+        "RSN1_X_ABC-UP.csv is a vertical component by its header or its name. Choose a horizontal one here, and this "
+        "one as its vertical component."
+    )
     assert (status, answer["errors"]["record.upload"]) == (422, message)
 
 

@@ -10,7 +10,7 @@ from rockflex.cli._console import note
 from rockflex.cli._output import file_stems, staged
 from rockflex.cli._simulations import Batch, Run
 from rockflex.motion import MEASURES
-from rockflex.response import Response
+from rockflex.response import Response, ground_columns
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,6 +36,10 @@ UNITS = {
     "max_element_elongation_*": "m",
     "element_energy_*": "J",
     "residual_rotation": "rad",
+    "max_slip": "m",
+    "residual_slip": "m",
+    "max_edge_uplift": "m",
+    "max_edge_settlement": "m",
     "sliding_time": "s",
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",
@@ -106,5 +110,5 @@ def _series(batch: Batch, responses: Sequence[Response]) -> "Iterator[pd.DataFra
         names.append("friction_demand")
     for response in responses:
         # The total displacement is missing where the height of the top is not known.
-        values = {name: getattr(response, name, math.nan) for name in names}
+        values = {name: getattr(response, name, math.nan) for name in names} | ground_columns(response)
         yield pd.DataFrame({"model": response.model, **values})

@@ -8,6 +8,8 @@ from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number,
 from rockflex.cli._elements import elements_table
 from rockflex.cli._simulations import SLIDING, Batch, Run
 from rockflex.fragility import NOMINAL
+from rockflex.modal import Ground
+from rockflex.motion import GroundMotion
 from rockflex.response import IMPACT_WINDOW
 
 if TYPE_CHECKING:
@@ -28,6 +30,10 @@ OF_ELEMENTS = (
     "F, E: largest force of each element, and the energy that it takes (with --out);\n"
     "θ_end: rotation at the end of the run, where it is not closed"
 )
+OF_BASE = {
+    "slip": "slip: largest displacement of the base along the ground; x_end: where it rests",
+    "edge": "edge up, down: how far an edge of the base rises above the unloaded springs, and sinks below them",
+}
 STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no_uplift": "green"}
 Columns = list[tuple[str, list[str]]]
 
@@ -35,12 +41,12 @@ Columns = list[tuple[str, list[str]]]
 def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *, times: bool) -> None:
     """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
     console = output()
-    for line in (title, *batch.assumptions.remarks(batch.properties)):
+    for line in (title, *batch.assumptions.remarks(batch.properties), *_vertical(batch.motions)):
         console.print(line, markup=False, soft_wrap=True)
-    peaks, ground = _peaks(runs), _ground(runs)
-    tables, elements = [(peaks + ground, 1)], batch.properties.elements
+    peaks, ground, base = _peaks(runs), _ground(runs), _base(batch.assumptions.ground, runs)
+    tables, elements = [(peaks + ground + base, 1)], batch.properties.elements
     if not fits(console, _flat(batch, runs, *tables[0])):
-        tables = [(peaks, 1), (ground, 0)]
+        tables = [(peaks, 1), (ground + base, 0)]
     if times:
         tables.append((_times(runs), 0))
     if batch.friction is not None:
@@ -64,6 +70,9 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
     if any(run.peaks["nominal_overturning"] for run in runs):
         console.print(PASSED, markup=False, soft_wrap=True)
     console.print(LEGEND, markup=False, soft_wrap=True)
+    for name, said in OF_BASE.items():
+        if any(heading.startswith(name) for heading, _ in base):
+            console.print(said, markup=False, soft_wrap=True)
     if elements:
         console.print(OF_ELEMENTS, markup=False, soft_wrap=True)
     if batch.friction is not None:
@@ -123,6 +132,34 @@ def _ground(runs: Sequence[Run]) -> Columns:
         ("ΣF_x [kN]", _column(runs, "max_horizontal_reaction", 1e3)),
         ("N_min [kN]", _column(runs, "min_vertical_reaction", 1e3)),
     ]
+
+
+def _base(ground: Ground | None, runs: Sequence[Run]) -> Columns:
+    """How far the base moves on a ground that lets it slide, or that gives."""
+    columns: Columns = []
+    if ground is not None and ground.slides:
+        columns += [
+            ("slip [mm]", _column(runs, "max_slip", 1e-3)),
+            ("x_end [mm]", _column(runs, "residual_slip", 1e-3)),
+        ]
+    if ground is not None and ground.springs is not None:
+        columns += [
+            ("edge up [mm]", _column(runs, "max_edge_uplift", 1e-3)),
+            ("edge down [mm]", _column(runs, "max_edge_settlement", 1e-3)),
+        ]
+    return columns
+
+
+def _vertical(motions: Sequence[GroundMotion]) -> list[str]:
+    """Name the vertical components, if any."""
+    upwards = [motion for motion in motions if motion.vertical is not None]
+    lines = [f"Vertical: {_source(motion)}, PVA = {motion.pva:.4g} m/s²" for motion in upwards[:MAX_LISTED]]
+    return lines + ([f"and {len(upwards) - MAX_LISTED} more vertical components"] if len(upwards) > MAX_LISTED else [])
+
+
+def _source(motion: GroundMotion) -> str:
+    source = None if motion.metadata is None else motion.metadata.vertical_source
+    return f"{source} with {motion.name}" if source else f"of {motion.name}"
 
 
 def _times(runs: Sequence[Run]) -> Columns:

@@ -28,9 +28,9 @@ def grounded(
             return LinearModel(label, kept, law=given, missing_mass=missing_mass)
         if LinearModel(label, kept).neutral:
             raise InputError(
-                f"The elements of {label} balance the weight on some of their branches, to within 1 % of L_0^r g. A model "
-                "that slides has no accurate solution then. Change the stiffness of the elements, or leave the friction "
-                "out.",
+                f"The elements of {label} balance the weight on some of their branches, to within 1 % of L_0^r g. A "
+                "model that slides has no accurate solution then. Change the stiffness of the elements, or leave the "
+                "friction out.",
                 field="ground",
             )
         friction = float(np.max(np.asarray(ground.friction)))

@@ -9,6 +9,7 @@ from rockflex.models._elements import LEFT, RIGHT
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
+from rockflex.models._rocking_phase import phase_of
 
 NEUTRAL = 0.01  # of L_0^r g: closer to balance the steady rotation, ∝ 1/`rocking_stiffness`, exceeds the motion by far
 
@@ -59,4 +60,4 @@ class LinearModel(ModalModel):
 
     def phase(self, key: Key) -> Phase:
         """Return one phase: the equations of motion on these branches, and the conditions that end it."""
-        return self.phase_of(key, self.arrow(key))
+        return phase_of(self, key, self.arrow(key))

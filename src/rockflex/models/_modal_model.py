@@ -16,21 +16,15 @@ from rockflex.models._elements import (
     RIGHT,
     arm_of,
     border_of,
-    changes_of,
     elements_of,
     first_key,
     is_held,
-    marks_of,
     memories,
     set_off,
-    turnings_of,
 )
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._layout import StateLayout, layout_of
-from rockflex.models._phase import LANDS, LIFTS, OVERTURNS, RELEASES, Arrow, Border, Exit, Guard, Key, Phase
-from rockflex.models._pulls import pulls_of
-
-QUARTER_TURN = 0.5 * np.pi
+from rockflex.models._phase import Arrow, Border, Key
 
 
 class ModalModel(Value):
@@ -260,57 +254,6 @@ class ModalModel(Value):
             rows[:n] -= np.outer(p.effective_height, turn)
         return rows
 
-    def phase_of(self, key: Key, arrow: Arrow | None) -> Phase:
-        """Return a phase with its equations of motion; None if they are not linear."""
-        p, elements, rest = self.properties, self.elements, key[1:]
-        contact, right, left = (set_off(p, elements, (side, *rest), side) for side in (CLOSED, RIGHT, LEFT))
-        free = self.is_free(key)
-        turns, turnings = turnings_of(p, elements, key) if free else (0, ())
-        return Phase(
-            key=key,
-            side=key[0],
-            arrow=arrow,
-            guard=self.guard(key),
-            pulls=pulls_of(p, elements, key),
-            changes=changes_of(p, elements, key) if free else (),
-            turned=set_off(p, elements, key, 0),
-            beside=(contact, right, left),
-            free=free,
-            turns=turns,
-            turnings=turnings,
-            marks=marks_of(elements, key),
-        )
-
     def is_free(self, key: Key) -> bool:
         """Return whether the base rotates in a phase: it neither rests on the ground nor is held at a rotation."""
         return key[0] != CLOSED and not is_held(self.properties, self.elements, key)
-
-    def guard(self, key: Key) -> Guard:
-        """Return the guard of a phase: impact and overturning while rocking, otherwise the overturning moment.
-
-        In contact the moment ends the phase by uplift (Eqs. 16 and 24), at a rotation held by friction by a release.
-        """
-        if self.is_free(key):
-            return self._rotation_guard(key)
-        if not self.lifts:
-            unchanged = np.zeros((2, self.layout.remembered))
-            return Guard(self.overturning_moment(), -np.inf, np.inf, None, None, unchanged)
-        # The base starts to rotate when the forces of the following phase would turn it.
-        p, (side, *rest) = self.properties, key
-        following = [set_off(p, self.elements, (side or turn, *rest), turn) for turn in (1, -1)]
-        borders = [border_of(p, self.elements, each, self.gravity) for each in following]
-        low, high = (float(each.constant[0]) for each in borders)
-        recall = np.stack([each.recall[0] for each in borders])
-        below, above = (Exit(LIFTS if side == CLOSED else RELEASES, each) for each in following)
-        turn = 0.0 if side == CLOSED else -float(borders[0].stiffness[0, 0])
-        return Guard(self.overturning_moment(), low, high, below, above, recall, turn)
-
-    def _rotation_guard(self, key: Key) -> Guard:
-        row = np.zeros(self.layout.columns)
-        row[self.layout.rotation] = 1.0
-        unchanged = np.zeros((2, self.layout.remembered))
-        lands = Exit(LANDS, set_off(self.properties, self.elements, (CLOSED, *key[1:]), 0))
-        tips = Exit(OVERTURNS, key)
-        if key[0] == RIGHT:
-            return Guard(row, 0.0, QUARTER_TURN, lands, tips, unchanged)
-        return Guard(row, -QUARTER_TURN, 0.0, tips, lands, unchanged)

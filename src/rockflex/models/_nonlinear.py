@@ -14,6 +14,7 @@ from rockflex.models._linear import LinearModel
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
 from rockflex.models._pulls import pulls_of
+from rockflex.models._rocking_phase import phase_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +61,7 @@ class NonlinearModel(ModalModel):
     def phase(self, key: Key) -> Phase:
         """Return one phase; it is linear only in contact with an elastic superstructure."""
         linear = key[0] == CLOSED and self.bouc_wen is None
-        return self.phase_of(key, self.arrow(key) if linear else None)
+        return phase_of(self, key, self.arrow(key) if linear else None)
 
     def field(self) -> Field:
         """Return the coefficients of the vector field, with all elements on their first branches."""

@@ -15,6 +15,7 @@ from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
 from rockflex.models._phase import CHANGES, SLIPS, STICKS, Arrow, Border, Exit, Fence, Key, Phase
+from rockflex.models._rocking_phase import phase_of
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
 LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against
@@ -141,7 +142,7 @@ class SlidingModel(LinearModel):
     def phase(self, key: Key) -> Phase:
         """Return one phase: the equations of motion on these branches, and the conditions that end it."""
         slip = key[-1]
-        base = self.phase_of(self.element_key(key), self.arrow(key))
+        base = phase_of(self, self.element_key(key), self.arrow(key))
 
         def along(other: Key) -> Key:
             return (*other, slip)

@@ -16,7 +16,6 @@ from rockflex.models._elements import CLOSED, memories
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
-from rockflex.models._modal_model import QUARTER_TURN
 from rockflex.models._phase import (
     OVERTURNS,
     Arrow,
@@ -28,6 +27,7 @@ from rockflex.models._phase import (
 )
 from rockflex.models._pulls import SUMS
 from rockflex.models._rest_on_springs import Pose, heave_at
+from rockflex.models._rocking_phase import QUARTER_TURN
 from rockflex.models._spring_fences import LIFTED, LOADED, RECEDING, STICK, fences_of
 
 

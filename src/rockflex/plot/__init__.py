@@ -4,6 +4,7 @@ from rockflex.plot._clouds import plot_clouds
 from rockflex.plot._design import plot_design
 from rockflex.plot._design_search import plot_design_search
 from rockflex.plot._energy import plot_energy
+from rockflex.plot._footing import plot_footing
 from rockflex.plot._fragility import plot_fragility
 from rockflex.plot._frequency_curves import plot_frequency_equation
 from rockflex.plot._frequency_ratios import plot_frequency_ratios
@@ -26,6 +27,7 @@ __all__ = [
     "plot_design",
     "plot_design_search",
     "plot_energy",
+    "plot_footing",
     "plot_fragility",
     "plot_frequency_equation",
     "plot_frequency_ratios",

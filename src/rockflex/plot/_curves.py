@@ -55,7 +55,7 @@ class Curve:
     def uplifts(self) -> Array:
         """Start and end of every uplift in s, shape (n_phases, 2), on either side."""
         h = self.history
-        lifted = np.concatenate(([0], h.side != 0.0, [0]))
+        lifted = np.concatenate(([0], h.uplifted, [0]))
         starts, ends = np.flatnonzero(np.diff(lifted) > 0), np.flatnonzero(np.diff(lifted) < 0) - 1
         return np.column_stack((h.time[starts], h.time[ends]))
 
@@ -78,7 +78,7 @@ class Curve:
         """Largest |θ| in rad, without the last phase of a structure that falls."""
         if not self.falls:
             return self.response.max_rotation
-        contact = np.flatnonzero(self.history.side == 0.0)
+        contact = np.flatnonzero(~self.history.uplifted)
         return float(np.max(np.abs(self.history.rotation[: contact[-1] + 1]))) if contact.size else 0.0
 
 

@@ -10,6 +10,8 @@ from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, 
 from rockflex.plot._units import readable
 from rockflex.response import History, Response
 
+BROWN, SAND, CLAY = "#7d5a30", "#d8c9a3", "#b8926a"  # of the ground
+
 
 def plot_energy(response: Response) -> Figure:
     """Plot the stored and dissipated energies, stacked, and the input energy.
@@ -17,8 +19,9 @@ def plot_energy(response: Response) -> Figure:
     The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
     Eqs. 15, 23 and 25). Their sum equals the input, which starts from the energy at t = 0; the title
     gives the difference. Tendons that lose prestress give back energy that they held before, which counts as part of
-    the energy at t = 0. A run that overturns is plotted until θ last passes the rotation at which the static
-    resisting moment vanishes, beyond which the weight overturns it.
+    the energy at t = 0. On springs, the raised weight counts from the deepest position of the base. A run that
+    overturns is plotted until θ last passes the rotation at which the static resisting moment vanishes, beyond which
+    the weight overturns it.
 
     Parameters
     ----------
@@ -49,9 +52,10 @@ def plot_energy(response: Response) -> Figure:
     history = curve.history
     ledger, drawn = history.energy, curve.before_fall
     held = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
-    layers = [(label, color, values[drawn]) for label, color, values in _layers(curve.history, held)]
+    sunk = -min(float(ledger.gravity[drawn].min()), 0.0)  # below the level of the unloaded springs
+    layers = [(label, color, values[drawn]) for label, color, values in _layers(curve.history, held, sunk)]
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
-    start = float(ledger.stored[0]) + held
+    start = float(ledger.stored[0]) + held + sunk
     supply = ledger.input[drawn] + start
     factor, unit = readable(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
@@ -75,7 +79,7 @@ def plot_energy(response: Response) -> Figure:
     return figure
 
 
-def _layers(history: History, held: float) -> list[tuple[str, str, Array]]:
+def _layers(history: History, held: float, sunk: float) -> list[tuple[str, str, Array]]:
     """Return label, colour and values; from the bottom, as what is gone never falls and carries what can return."""
     ledger, elements = history.energy, history.model.properties.elements
     only_tendons = all(isinstance(each, Tendon) for each in elements)
@@ -83,7 +87,10 @@ def _layers(history: History, held: float) -> list[tuple[str, str, Array]]:
         ("damped", GRAY, ledger.damped),
         ("lost in impacts", RED, ledger.lost),
         ("yield of tendons" if only_tendons else "taken by elements", YELLOW, ledger.elements.sum(axis=1)),
-        ("raised weight", GREEN, ledger.gravity),
+        ("friction of the base", BROWN, ledger.friction),
+        ("damped by the ground", SAND, ledger.soil.sum(axis=1)),
+        ("raised weight", GREEN, ledger.gravity + sunk),
+        ("compressed ground", CLAY, ledger.soil_strain),
         ("tendons" if only_tendons else "stored in elements", PURPLE, ledger.element_strain + held),
         ("strain", SKY, ledger.strain),
         ("kinetic", ORANGE, ledger.kinetic),

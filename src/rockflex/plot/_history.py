@@ -41,8 +41,9 @@ def plot_history(
         A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     panels
         Which of ``"rotation"``, ``"top_displacement"``, ``"total_top_displacement"``, ``"base_moment"``,
-        ``"base_shear"`` and ``"horizontal_reaction"``, from the top. Default: all but the last; without the total
-        displacement if the height of the top is not known.
+        ``"base_shear"``, ``"horizontal_reaction"``, ``"slip"`` and ``"edge_uplift"`` (of the left edge, and thinner of
+        the right one), from the top. Default: all but the last three; without the total displacement if the height of
+        the top is not known, and with the slip if a base can slide and the edges if one is on springs.
     title
         Default: the name of the motion, if there is only one.
 

@@ -37,14 +37,23 @@ _QUANTITIES = (
     Quantity(r"$M_b$", "base_moment", "N m", True, lambda h: h.base_moment),
     Quantity(r"$V_b$", "base_shear", "N", True, lambda h: h.base_shear),
     Quantity(r"$ΣF_x$", "horizontal_reaction", "N", True, lambda h: h.horizontal_reaction),
+    Quantity("slip", "slip", "m", False, lambda h: h.slip),
+    Quantity("rise of edges", "edge_uplift", "m", False, lambda h: h.edge_uplift),
 )
+_ASKED = ("horizontal_reaction", "slip", "edge_uplift")  # or shown where the ground makes them matter
 ALL = tuple(quantity.name for quantity in _QUANTITIES)
 
 
 def usual_panels(curves: list[Curve]) -> list[str]:
-    """All but ΣF_x; the total displacement only if the height of the top is known."""
+    """All but ΣF_x; total displacement if the height of the top is known, slip and edges if a base slides or heaves."""
     known = all(curve.history.model.properties.top_height is not None for curve in curves)
-    return [name for name in ALL[:-1] if known or name != "total_top_displacement"]
+    usual = [name for name in ALL if name not in _ASKED and (known or name != "total_top_displacement")]
+    layouts = [curve.history.model.layout for curve in curves]
+    moves = {
+        "slip": any(layout.slip >= 0 for layout in layouts),
+        "edge_uplift": any(layout.heave >= 0 for layout in layouts),
+    }
+    return usual + [name for name, happens in moves.items() if happens]
 
 
 def quantities_of(panels: Sequence[str]) -> list[Quantity]:
@@ -73,16 +82,20 @@ def scale_of(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, float
 def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -> list[Artist]:
     """Fill one panel over time; return a line for each curve."""
     factor, unit, limit = scale_of(quantity, curves)
-    axes.set(ylim=(-limit, limit), ylabel=f"{quantity.symbol} [{unit}]")
+    low = -limit if quantity.name != "edge_uplift" else -_HEADROOM * _settlement(curves, limit)
+    axes.set(ylim=(low, limit), ylabel=f"{quantity.symbol} [{unit}]")
     letter(axes, mark)
     lines: list[Artist] = []
     notes = [("peaks", "#404040")]
     for curve in curves:
         look = curve.look
-        lines += axes.plot(
+        first, *others = axes.plot(
             curve.history.time, quantity.of(curve.history) / factor, color=look.color, linestyle=look.dashes,
             linewidth=look.width, label=curve.label, zorder=curve.order,
         )  # fmt: skip
+        lines.append(first)
+        for right in others:  # the right edge is thinner than the left one
+            right.set(linewidth=0.5 * look.width, label="_right")
         if curve.overturned:
             axes.axvline(curve.response.end_time, color=look.color, linestyle=":", linewidth=0.8, zorder=1.5)
         if curve.falls and quantity.name == "rotation":
@@ -123,15 +136,31 @@ def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> s
     if curve.overturned and quantity.name == "rotation":
         return f"overturned, {curve.response.end_time:.2f} s"
     peak = float(getattr(curve.response, f"max_{quantity.name}")) / factor
-    when = float(getattr(curve.response, f"time_of_max_{quantity.name}"))
     if peak == 0.0:
         return "0"
-    side = float(np.sign(np.interp(when, curve.history.time, quantity.of(curve.history))))
+    when, side = _place(quantity, curve)
     axes.plot(
         [when], [side * peak], "o", color=curve.look.color, markersize=3.5, markerfacecolor="white",
         markeredgewidth=0.9, zorder=3.0,
     )  # fmt: skip
     return f"{short(peak)} at {when:.2f} s"
+
+
+def _place(quantity: Quantity, curve: Curve) -> tuple[float, float]:
+    """Return the time and the sign of a peak."""
+    time, values = curve.history.time, quantity.of(curve.history)
+    if quantity.name == "edge_uplift":
+        return float(time[values.max(axis=1).argmax()]), 1.0
+    if quantity.name == "slip":
+        node = int(np.abs(values).argmax())
+        return float(time[node]), float(np.sign(values[node]))
+    when = float(getattr(curve.response, f"time_of_max_{quantity.name}"))
+    return when, float(np.sign(np.interp(when, time, values)))
+
+
+def _settlement(curves: list[Curve], limit: float) -> float:
+    """Return how far the edges sink in m, for the lower end of an axis that reaches up to `limit`."""
+    return max(*(curve.response.max_edge_settlement for curve in curves), 0.05 * limit)
 
 
 def _mark_fall(axes: Axes, curve: Curve, limit: float) -> None:

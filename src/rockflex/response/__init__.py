@@ -5,6 +5,7 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._global import GLOBAL, asked_of, extremes_of
+from rockflex.response._ground_columns import UNITS_OF_GROUND, ground_columns
 from rockflex.response._history import History
 from rockflex.response._moment_rotation import MomentRotation
 from rockflex.response._moment_rotation_on_springs import MomentRotationOnSprings
@@ -18,6 +19,7 @@ __all__ = [
     "GLOBAL",
     "IMPACT_WINDOW",
     "PEAKS",
+    "UNITS_OF_GROUND",
     "EnergyLedger",
     "FloorPeaks",
     "History",
@@ -29,6 +31,7 @@ __all__ = [
     "element_resistance",
     "extremes_of",
     "friction_coefficient",
+    "ground_columns",
     "large_resistance",
     "respond",
     "springs_path",

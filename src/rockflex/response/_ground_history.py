@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex.models import RISE, TIME, RockingModel, SpringModel, lifted_springs, spring_forces
+from rockflex._arrays import Array, Bools
+from rockflex.models import RISE, SIDE, TIME, RockingModel, SpringModel, lifted_springs, spring_forces
 from rockflex.response._pressure import pressure_of
 
 
@@ -49,6 +49,14 @@ class GroundHistory:
             return self.heave[:, None] - places * rotation[:, None]
         turn = np.sin(rotation) if self.model.complete else rotation
         return 2.0 * p.half_width * np.stack((np.maximum(turn, 0.0), np.maximum(-turn, 0.0)), axis=1)
+
+    @property
+    def uplifted(self) -> Bools:
+        """Whether the base is off the ground, on springs whether an edge has left its spring, shape (n_states,)."""
+        if isinstance(self.model, SpringModel):
+            lifted = lifted_springs(self.model, self.states)
+            return lifted[:, 0] | lifted[:, -1]
+        return self.states[:, SIDE] != 0.0
 
     @property
     def spring_force(self) -> Array:

@@ -22,14 +22,14 @@ from rockflex.models import (
 )
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
 from rockflex.response._floors import floor_histories
-from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._global import global_histories
 from rockflex.response._ground_history import GroundHistory, edge_times
 from rockflex.response._missing import MissingQuantityError
+from rockflex.response._reaction_history import ReactionHistory
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class History(GroundHistory, Value):
+class History(GroundHistory, ReactionHistory, Value):
     """States at the samples of the record and before and after every event; all arrays are read-only.
 
     Parameters
@@ -216,73 +216,6 @@ class History(GroundHistory, Value):
         """Energy that each element dissipated during the run in J, shape (E,); for its history see `EnergyLedger`."""
         return self.energy.elements[-1]
 
-    @property
-    def horizontal_reaction(self) -> Array:
-        """Horizontal ground reaction Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_states,).
-
-        In the simplified models, for small rotations: m_tot a + L_0^r θ'' + Σ m* D''.
-        """
-        return self._friction.reactions.horizontal
-
-    @property
-    def vertical_reaction(self) -> Array:
-        """Vertical ground reaction Σ m_i (g + z''_i), in N, positive upwards, shape (n_states,).
-
-        This is Eq. 22 with the sign of the weight corrected; as printed, it is smaller by 2 m_tot g. Tendon forces are
-        included. In the simplified models, for small rotations: m_tot (g + s B θ'').
-        """
-        return self._friction.reactions.vertical
-
-    @property
-    def friction_demand(self) -> Array:
-        """|ΣF_x| / ΣF_z of Eq. 20, dimensionless, shape (n_states,); infinite if the base would lose contact."""
-        return self._friction.demand
-
-    @cached_property
-    def required_friction(self) -> float:
-        """Largest friction demand of the run, including between states; infinite if the base would lose contact.
-
-        Raises
-        ------
-        InputError
-            If the model is too fast for the sampling.
-        """
-        return self._friction.required()
-
-    def required_friction_excluding_impacts(self, window: float = IMPACT_WINDOW, printed: bool = False) -> float:
-        """Return the largest friction demand except for the time after each impact, when it has short spikes.
-
-        Parameters
-        ----------
-        window
-            Seconds after each impact to exclude; with zero nothing is excluded. If no time remains, the result is zero.
-        printed
-            Use the magnitude of Eq. 22 as printed, Σ m_i (-g + z''_i), which has a wrong sign; for comparison.
-
-        Raises
-        ------
-        InputError
-            If `window` is negative or not finite, or the model is too fast for the sampling.
-        """
-        return self._friction_by(printed).required(window)
-
-    def sliding_time(self, mu: float, printed: bool = False) -> float | None:
-        """Return the time in s at which the friction demand first exceeds `mu` and sliding would start, or None.
-
-        Parameters
-        ----------
-        mu
-            Coefficient of friction, positive.
-        printed
-            As in `required_friction_excluding_impacts`.
-
-        Raises
-        ------
-        InputError
-            If `mu` is not a positive number, or the model is too fast for the sampling.
-        """
-        return self._friction_by(printed).sliding_time(mu)
-
     @cached_property
     def energy(self) -> EnergyLedger:
         """Energy balance of the run; see `EnergyLedger`.
@@ -303,13 +236,6 @@ class History(GroundHistory, Value):
         values = accelerations(self.model, self.states)
         values.setflags(write=False)
         return values
-
-    @cached_property
-    def _friction(self) -> Friction:
-        return Friction(self.model, self.states)
-
-    def _friction_by(self, printed: bool) -> Friction:
-        return Friction(self.model, self.states, printed=True) if printed else self._friction
 
     @cached_property
     def _floors(self) -> tuple[Array, Array, Array, Array]:

@@ -58,7 +58,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         time_of_max_rotation=float(solution.peak_times[0]),
         **known,
         **times,
-        min_vertical_reaction=p.resting_reaction - solution.lost_support,
+        min_vertical_reaction=_least_support(model, p.resting_reaction - solution.lost_support),
         time_of_min_vertical_reaction=solution.time_of_lost_support,
         **of_elements._asdict(),
         residual_rotation=math.nan if solution.overturned else float(final[model.layout.rotation]),
@@ -75,6 +75,11 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
         history=None if solution.states is None else History(model, solution.states),
     )
+
+
+def _least_support(model: RockingModel, found: float) -> float:
+    """Return the smallest vertical reaction in N; springs cannot pull, and in flight only rounding would say so."""
+    return max(found, 0.0) if isinstance(model, SpringModel) else found
 
 
 def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:

@@ -11,7 +11,8 @@ def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
         found.append(
             f"The vertical reaction falls to {peaks['min_vertical_reaction']:.4g} N at "
             f"{peaks['time_of_min_vertical_reaction']:.4g} s: {model} pulls the base down there, which no ground "
-            "can. The pivot would lift, and what follows is to be read with care."
+            "can. The pivot would lift, and what follows is to be read with care. Give simulate a Ground with springs, "
+            "on which the base can leave the ground."
         )
     if peaks["tendon_overload"]:
         found.append(

@@ -32,9 +32,9 @@ from rockflex.solve.layout import (
     Progress,
     System,
     motion_of,
-    progress_at_start,
 )
 from rockflex.solve.phases import CompiledPhases
+from rockflex.solve.progress import progress_at_start
 from rockflex.solve.run import run
 from rockflex.solve.status import Status
 

@@ -20,7 +20,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
 from rockflex.models import PULLS, SUMS, StateLayout
 
-Progress = Any  # a record of `_PROGRESS`
+Progress = Any  # a record of `rockflex.solve.progress`
 
 # Indices in `Log.work`: the work left in this slice, and the price of each kind of work in s, see `solve._pace`.
 LEFT, CARRY, LOOK, SERIES, STEP = 0, 1, 2, 3, 4
@@ -69,12 +69,12 @@ SIZE, RATE, MOVES, TURNS_BY = 0, 1, 2, 3
 SAG, SWING, RIPPLE = 0, 1, 2
 
 
-def _record(fields: list[tuple[str, Any]]) -> np.dtype[Any]:
+def record_of(fields: list[tuple[str, Any]]) -> np.dtype[Any]:
     """Return the type of a record whose fields are attributes."""
     return np.dtype((np.record, np.dtype(fields, align=True)))
 
 
-PHASE = _record(
+PHASE = record_of(
     [
         ("side", np.float64),  # pivot about which the base rotates
         ("free", np.bool_),  # whether it rotates: it neither rests on the ground nor is held at a rotation
@@ -189,61 +189,6 @@ class Motion(NamedTuple):
     still: Array  # (S,): constant part of the forced motion
     offset: Array  # (F + E,): constant part of the rows
     pivots: Array  # (2, 9): `Field.pivots`, with the sums over the elements
-
-
-# The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.
-_PROGRESS = _record(
-    [
-        ("stage", np.int64),  # of `solve.run.run`
-        ("phase", np.int64),
-        ("offset", np.int64),  # samples before the present stretch of acceleration
-        ("index", np.int64),  # sample within it
-        ("entered", np.bool_),  # whether the limits and constants of the present phase are known
-        ("last", np.float64),  # acceleration at the end of the previous stretch; NaN at first
-        ("slope", np.float64),  # of the acceleration, to which w refers
-        ("stated", np.bool_),  # whether the state is up to date, and at least as accurate as w
-        ("tuned", np.bool_),  # whether w is up to date
-        ("started", np.bool_),  # whether the rows at the start of the sample are known from the previous one
-        ("begun", np.float64),  # completed part of the present sample in s
-        ("place", np.int64),  # on the grid of the present sample
-        ("level", np.int64),  # of the next step
-        ("probed", np.bool_),  # whether that step has been examined
-        ("finding", np.int64),  # what the examination found
-        ("searching", np.bool_),  # for peaks inside that step
-        ("search_place", np.int64),
-        ("search_level", np.int64),
-        ("search_probed", np.bool_),
-        ("crossing", np.bool_),  # advancing event by event, up to the next point of the grid
-        ("onset", np.int64),  # how the rotation leaves zero
-        ("lift", np.float64),  # θ'' at the instant of uplift, if known
-        ("slip_onset", np.int64),  # how the slip leaves zero
-        ("slide", np.float64),  # acceleration of the slip at its onset, if known
-        ("resume", np.float64),  # where the search in contact resumes after a guard that was touched but not passed
-        ("fresh_rows", np.bool_),  # whether `DOUBT` does not apply to the motion ahead
-        ("step", np.float64),  # length proposed by the error control
-        ("branch", np.float64),  # sign of the hysteretic spring's velocity
-        ("known", np.bool_),  # whether the first stage is known from the previous step
-        ("told", np.bool_),  # whether the curved rows at the start of a step are known
-        ("lacking", np.int64),  # offset from `BESIDE` or `FOLLOWS` of the phase needed; -1 for none
-    ]
-)
-
-
-def progress_at_start(phase: int, *, stated: bool) -> Progress:
-    """Return the progress of a run that starts in a phase."""
-    at = np.frombuffer(bytearray(_AT_START), dtype=_PROGRESS)[0]  # faster than a copy field by field
-    at["phase"], at["stated"] = phase, stated
-    return at
-
-
-def _at_start() -> bytes:
-    at = np.zeros(1, dtype=_PROGRESS)
-    at["last"] = at["lift"] = at["slide"] = np.nan
-    at["lacking"], at["step"], at["branch"] = -1, np.inf, 1.0
-    return at.tobytes()
-
-
-_AT_START = _at_start()
 
 
 def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motion:

@@ -48,7 +48,7 @@ class BedTable(BedKeys, Table):
     damping: Annotated[
         float | None, Key("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
     ] = None
-    n: Annotated[int, Key("the number of springs", form=WHOLE, low=2, high=200)] = 20
+    n: Annotated[int, Key("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
     end_zone: Annotated[
         float | None, Key("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
     ] = None

@@ -37,7 +37,7 @@ from rockflex.web._response import response_view
 from rockflex.web._state import State
 from rockflex.web._structures import build, structure_view
 from rockflex.web._studies import planned
-from rockflex.web._uploads import Uploads, read_matrices, read_record
+from rockflex.web._uploads import Uploads, read_matrices, read_record, read_vertical
 
 LOOK = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
@@ -108,7 +108,7 @@ class Server:
     async def structure(self, request: Request) -> Response:
         """Structure tab."""
         state = await state_of(request)
-        return JSONResponse(await self._answer(lambda: structure_view(state.structure)))
+        return JSONResponse(await self._answer(lambda: structure_view(state.structure, state.ground)))
 
     async def record(self, request: Request) -> Response:
         """Earthquake tab."""
@@ -130,15 +130,19 @@ class Server:
         return JSONResponse(await self._run(request, lambda: response_view(state, self.uploads, *asked)))
 
     async def upload(self, request: Request) -> Response:
-        """A record from an uploaded file; its name and unit are in the query."""
+        """A record from an uploaded file, or the vertical component of the record `under`; its name is in the query."""
         body, query = await file_of(request), request.query_params
         name, units = query.get("name", "record"), query.get("units") or None
-        dt = step_of(query.get("dt", ""))
+        dt, under = step_of(query.get("dt", "")), query.get("under", "")
 
         def work() -> Any:
-            motion = read_record(name, body, units, dt)
-            key = self.uploads.add(motion, body, f"{units} {dt} {motion.name}")
-            return {"upload": key, "name": motion.name, "samples": motion.acceleration.size, "pga": motion.pga}
+            if under:
+                motion = read_vertical(name, body, units, dt, self.uploads.get(under))
+            else:
+                motion = read_record(name, body, units, dt)
+            key = self.uploads.add(motion, body, f"{units} {dt} {motion.name} {under}")
+            facts = {"samples": motion.acceleration.size, "pga": motion.pga, "pva": motion.pva}
+            return plain({"upload": key, "name": motion.name, **facts})
 
         return JSONResponse(await self._answer(work))
 

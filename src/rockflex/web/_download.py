@@ -12,7 +12,7 @@ import tomli_w
 
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
-from rockflex.response import Response
+from rockflex.response import UNITS_OF_GROUND, Response, ground_columns
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
 from rockflex.web._records import motion_of
@@ -24,6 +24,7 @@ from rockflex.web._studies import StudyPage
 from rockflex.web._uploads import Uploads, clean_name
 
 ROWS = 250_000  # of a table of histories
+CELLS = 6_000_000  # of it: a bed has a column for every spring
 COLUMNS = {
     "time": "s",
     "side": "",
@@ -119,14 +120,28 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
             f"the histories have {rows} rows, but the page writes {ROWS} at most. Choose fewer models, or Python lines."
         )
         raise Refusal({"models": message})
+    of_ground = [_of_ground(each) for each in found]
+    cells = sum(each.time.size * (len(COLUMNS) + len(more)) for each, more in zip(found, of_ground, strict=True))
+    if cells > CELLS:
+        message = (
+            f"the histories with the forces of all springs have {cells} values, but the page writes {CELLS} at most. "
+            "Choose fewer models or springs, or Python lines."
+        )
+        raise Refusal({"models": message})
     heads = {name: f"{name} ({unit})" if unit else name for name, unit in COLUMNS.items()}
     # The total displacement is missing where the height of the top is not known.
     columns = ({head: getattr(each, name, math.nan) for name, head in heads.items()} for each in found)
     tables = [
-        pd.DataFrame({"model": each.model, **part, **_of_elements(each)})
-        for each, part in zip(found, columns, strict=True)
+        pd.DataFrame({"model": each.model, **part, **_of_elements(each), **more})
+        for each, part, more in zip(found, columns, of_ground, strict=True)
     ]
     return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
+
+
+def _of_ground(response: Response) -> dict[str, Any]:
+    """Return the histories of a base that slides or is on springs, and of vertical motion, as columns."""
+    columns = ground_columns(response)
+    return {f"{name} ({UNITS_OF_GROUND[name.rstrip('0123456789').rstrip('_')]})": columns[name] for name in columns}
 
 
 def _of_elements(response: Response) -> dict[str, Any]:

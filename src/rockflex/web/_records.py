@@ -123,7 +123,8 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
     """Return the history, the spectrum and the measures of the scaled record."""
     motion = motion_of(state.record, uploads).scaled(state.scale)
     velocity, displacement = motion.velocity, motion.displacement
-    kept = envelope([motion.acceleration, velocity, displacement], POINTS)
+    upwards = [] if motion.vertical is None else [motion.vertical]
+    kept = envelope([motion.acceleration, velocity, displacement, *upwards], POINTS)
     spectrum = motion.spectrum(PERIODS)
     measures: list[dict[str, Any]] = [
         *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in record_measures()),
@@ -144,6 +145,7 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
             "measures": measures,
             "t": pack(motion.time[kept]),
             "acceleration": pack(motion.acceleration[kept]),
+            "vertical": pack(upwards[0][kept]) if upwards else None,
             "velocity": pack(velocity[kept]),
             "displacement": pack(displacement[kept]),
             "periods": pack(PERIODS),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import plain
-from rockflex.modal import Ground, RockingProperties
+from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
@@ -16,6 +16,7 @@ from rockflex.solve import pace_of
 from rockflex.study import Case
 from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._elements import chosen_element, elements_view, self_centring
+from rockflex.web._ground import base_curves, ground_of, ground_view
 from rockflex.web._limits import STOP, check_together
 from rockflex.web._packing import envelope, pack
 from rockflex.web._records import motion_of
@@ -26,7 +27,7 @@ from rockflex.web._uploads import Uploads
 
 POINTS = 2000  # of a history, events aside
 EVENTS = 600  # nodes of events that are retained, at most
-SENT = ("side", "rotation", "top_displacement", "base_moment", "base_shear")
+SENT = ("rotation", "top_displacement", "base_moment", "base_shear")
 LEDGER = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`
 
 
@@ -42,7 +43,7 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     motion = motion_of(state.record, uploads).scaled(state.scale)
     law, cases, found = state.law(), dict[str, Case](), list[Response]()
     models = [parse_model(label) for label in state.models]
-    given, ground = labelled_hysteresis(models, state.hysteresis()), _ground(state, built.properties)
+    given, ground = labelled_hysteresis(models, state.hysteresis()), ground_of(state.ground, built.properties)
     for label, model, bouc_wen in zip(state.models, models, given, strict=True):
         with refusing("models", f"{label}: "):
             tied = model.of(built.properties, law, bouc_wen, ground)
@@ -52,13 +53,6 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
         with refusing("models", f"{label}: "):
             found.append(case.run(motion))
     return built, motion, found
-
-
-def _ground(state: State, properties: RockingProperties) -> Ground | None:
-    try:
-        return None if state.ground is None else state.ground.under(properties)
-    except InputError as error:
-        raise Refusal({error.field or "ground": str(error)}) from error
 
 
 def response_view(state: State, uploads: Uploads, focus: object = "", element: object = 0) -> dict[str, Any]:
@@ -78,6 +72,7 @@ def response_view(state: State, uploads: Uploads, focus: object = "", element: o
             "duration": motion.duration,
             "nominal": p.nominal_overturning_rotation,
             "models": [_curves(built, response, drawn) for response in found],
+            "ground": ground_view(ground_of(state.ground, p), p),
             "element": drawn,
             "held": _held(p, motion, main, found, state),
             "self_centring": self_centring(p.pivots),
@@ -101,7 +96,8 @@ def _curves(built: Built, response: Response, element: int | None) -> dict[str, 
     history = response.history
     assert history is not None  # asked for in `responses`
     pulled = None if element is None or not history.model.lifts else history.element_force[:, element]
-    kept = _kept(history, pulled)
+    base = base_curves(history)
+    kept = _kept(history, pulled, list(base.values()))
     modal = history.modal_displacement[kept]
     points = modal @ built.shapes[:, : modal.shape[1]].T
     known = history.model.properties.top_height is not None
@@ -117,18 +113,20 @@ def _curves(built: Built, response: Response, element: int | None) -> dict[str, 
         "t": pack(history.time[kept]),
         **{name: pack(getattr(history, name)[kept]) for name in SENT},
         "total_top_displacement": pack(history.total_top_displacement[kept]) if known else None,
+        **{name: pack(values[kept]) for name, values in base.items()},
+        "uplifted": pack(history.uplifted[kept]),
         "points": pack(points),
         "element_force": None if pulled is None else pack(pulled[kept]),
         "element_elongation": None if pulled is None else pack(history.element_elongation[kept, element]),
     }
 
 
-def _kept(history: History, pulled: Array | None) -> NDArray[np.intp]:
+def _kept(history: History, pulled: Array | None, base: list[Array]) -> NDArray[np.intp]:
     """Return the nodes that are sent: the extremes of every interval, and both sides of the events.
 
-    `pulled` is the force of an element in N, if one is drawn.
+    `pulled` is the force of an element in N, if one is drawn, and `base` how the base moves on its ground.
     """
-    curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear]
+    curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear, *base]
     points = POINTS
     if pulled is not None:  # loops need more points than curves over time
         curves.append(pulled)
@@ -185,12 +183,16 @@ def _energy(motion: GroundMotion, response: Response, state: State) -> dict[str,
     except (Refusal, InputError) as error:
         said = error.errors["energy"].capitalize() if isinstance(error, Refusal) else str(error)
         return {"label": response.model, "note": said}
-    names = ("kinetic", "strain", "gravity", "element_strain", "damped", "yielded", "lost", "input")
+    of_base = ("soil_strain", "friction")
+    names = ("kinetic", "strain", "gravity", "element_strain", "damped", "yielded", "lost", "input", *of_base)
     curves = {name: np.asarray(getattr(ledger, name)) for name in names}
     curves["elements"] = ledger.elements.sum(axis=1)
     held = -min(float(ledger.element_strain.min()), 0.0)  # at t = 0, and given back later
+    sunk = -min(float(ledger.gravity.min()), 0.0) if history.model.layout.heave >= 0 else 0.0
+    curves["soil"] = ledger.soil.sum(axis=1)
     curves["element_strain"] = curves["element_strain"] + held
-    curves["input"] = curves["input"] + held
+    curves["gravity"] = curves["gravity"] + sunk  # from the deepest position of a base on springs
+    curves["input"] = curves["input"] + float(ledger.stored[0]) + held + sunk
     kept = envelope([curves["kinetic"], curves["strain"]], 1000)
     kept = np.unique(np.concatenate((kept, np.flatnonzero(np.diff(ledger.lost) != 0.0)[:EVENTS] + 1)))
     return {

@@ -13,6 +13,8 @@ from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure.file import Structure, StructureEntry
+from rockflex.study._ground_table import GroundTable
+from rockflex.web._ground import ground_of, ground_view
 from rockflex.web._refusal import Refusal, refusing
 
 DRAWN = 40  # heights of a structure, at most
@@ -88,13 +90,13 @@ def _straight(entry: StructureEntry, p: RockingProperties) -> tuple[Array, Array
     return np.array([0.0, height]), np.vstack((np.zeros(p.n_modes), p.top_ordinate))
 
 
-def structure_view(entry: StructureEntry) -> dict[str, Any]:
-    """Return the outline, the parameters, the modes and the adequacy of a structure.
+def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> dict[str, Any]:
+    """Return the outline, the parameters, the modes and the adequacy of a structure, and the ground under it.
 
     Raises
     ------
     Refusal
-        If it cannot be built, or the adequacy of its modes cannot be determined.
+        If it cannot be built, the adequacy of its modes cannot be determined, or the ground contradicts itself.
     """
     built = build(entry)
     p = built.properties
@@ -104,6 +106,7 @@ def structure_view(entry: StructureEntry) -> dict[str, Any]:
         {
             **outline(entry, built),
             "name": entry.name,
+            "ground": ground_view(ground_of(table, p), p),
             "shapes": built.shapes[:, :SHOWN].T,
             "properties": _parameters(p),
             "modes": modes,
@@ -119,6 +122,7 @@ def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
         "kind": entry.kind,
         "heights": built.heights,
         "shapes_known": built.modes is not None,
+        "mass": p.m_tot,
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,
         "elements": [{"kind": table.kind, "position": table.position} for table in entry.elements or []],

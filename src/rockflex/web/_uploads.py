@@ -16,7 +16,7 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_motion
 from rockflex.web._limits import FILE, FREEDOMS, check_motion
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, refusing
 
 KEPT = 64  # records in memory
 MATRICES = ("mass", "stiffness", "heights", "rotations")
@@ -79,8 +79,36 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Refusal
         If the file is too large, cannot be read, or contains a vertical component or a record that is too long.
     """
+    named = _read(name, content, units, dt, "record.upload")
+    if is_vertical(named):
+        shown = clean_name(name)
+        message = (
+            f"{shown} is a vertical component by its header or its name. Choose a horizontal one here, and this one as "
+            "its vertical component."
+        )
+        raise Refusal({"record.upload": message})
+    return named
+
+
+def read_vertical(name: str, content: bytes, units: str | None, dt: float | None, along: GroundMotion) -> GroundMotion:
+    """Return a stored horizontal record with the vertical component in a file; parameters as in `read_record`.
+
+    Raises
+    ------
+    Refusal
+        If the file cannot be read, contains a horizontal component, or has another step than the record.
+    """
+    upwards = _read(name, content, units, dt, "record.vertical")
+    with refusing("record.vertical"):
+        motion = along.with_vertical(upwards)
+    check_motion(motion, "record.vertical")
+    return motion
+
+
+def _read(name: str, content: bytes, units: str | None, dt: float | None, field: str) -> GroundMotion:
+    """Read a motion of any direction, named as its file."""
     shown = clean_name(name)
-    _check_size(shown, content, "record.upload")
+    _check_size(shown, content, field)
     try:
         with TemporaryDirectory() as folder:
             file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
@@ -88,18 +116,15 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
             try:
                 motion = read_motion(file, units=units, dt=dt)
             except InputError as error:
-                raise Refusal({"record.upload": str(error).replace(str(file), shown)}) from error
+                raise Refusal({field: str(error).replace(str(file), shown)}) from error
     except OSError as error:
         message = "the server could not store the file temporarily. Try again."
-        raise Refusal({"record.upload": message}, 503) from error
+        raise Refusal({field: message}, 503) from error
     info = motion.metadata or RecordInfo()
     # The temporary file has another name.
     info = replace(info, direction=direction_of(Path(shown), info.component) or info.direction)
     named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info, motion.vertical)
-    if is_vertical(named):
-        message = f"{shown} is a vertical component by its header or its name. Choose a horizontal one."
-        raise Refusal({"record.upload": message})
-    check_motion(named, "record.upload")
+    check_motion(named, field)
     return named
 
 

@@ -73,7 +73,7 @@ const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 
 // A message about a field of another tab, in words.
 function elsewhere(text) {
-  const found = /^structure(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
+  const found = /^(?:structure|ground)(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
   return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text;
 }
 

@@ -19,6 +19,9 @@ const YIELDING = [
   ["1DOF-fixed-BW", "One yielding mode on a fixed base"],
 ];
 
+// Whether a model can stand on springs, or slide.
+export const grounded = (label) => !/fixed|-C|-BW/.test(label);
+
 export const yields = (label) => label.includes("-BW");
 
 export function models(path, chosen, most, change) {

@@ -2,6 +2,7 @@
 
 import { bracket, FONT } from "./axes.js";
 import { color, context, h } from "./dom.js";
+import { depthOf, drawSprings, drawStance, motionOf } from "./soil.js";
 import { colorOf, strokes } from "./symbols.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
@@ -49,14 +50,16 @@ export class Stage {
     // At the instants of uplift and impact the rotation is zero, so either side will do.
     const side = theta > 0 ? 1 : theta < 0 ? -1 : 0;
     const turned = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, theta * amplification));
+    const moved = motionOf(model, [low, high, share], side);
+    const [across, up] = [amplification * moved.slip, moved.sprung ? amplification * moved.heave : 0];
+    const pivot = moved.sprung || side === 0 ? 0 : side > 0 ? right : left;
     const place = (x, y) => {
-      const pivot = side > 0 ? right : side < 0 ? left : 0;
       const dx = x - pivot;
-      return [pivot + dx * Math.cos(turned) + y * Math.sin(turned), y * Math.cos(turned) - dx * Math.sin(turned)];
+      return [across + pivot + dx * Math.cos(turned) + y * Math.sin(turned), up + y * Math.cos(turned) - dx * Math.sin(turned)];
     };
     const u = Array.from({ length: n }, (_, i) => mix(model.points, low * n + i, high * n + i));
     return {
-      theta, side, u, place,
+      ...moved, theta, side, u, place,
       points: u.map((value, i) => place(amplification * value, heights[i])),
       base: [place(left, 0), place(right, 0)],
       impact: model.impact_times.some((t) => time >= t && time - t < IMPACT),
@@ -74,14 +77,18 @@ export class Stage {
     const top = heights[heights.length - 1];
     const falls = this.view.models.some((model) => model.status === "overturned" || model.fall_time !== null);
     const reach = falls ? top + 2 * b : Math.max(0.32 * top, 1.6 * b);
-    const zoom = Math.min((this.height - 74) / (top * 1.08), cell / (2.1 * reach));
-    this.view.models.forEach((model, i) => this.#model(g, model, i, cell * (i + 0.5), zoom, cell));
+    const wide = cell / (2.1 * reach);
+    const first = Math.min((this.height - 74) / (top * 1.08), wide);
+    this.depth = depthOf(this.view, this.amplification, first);
+    this.zoom = Math.min((this.height - 74 - this.depth) / (top * 1.08), wide);
+    this.view.models.forEach((model, i) => this.#model(g, model, i, cell * (i + 0.5), this.zoom, cell));
   }
 
   #model(g, model, index, centre, zoom, cell) {
-    const ground = this.height - 44;
+    const ground = this.height - 44; // and above it, the level at which springs are unloaded
+    const level = ground - (model.heave ? this.depth : 0);
     const frame = this.frameAt(index, this.time, this.amplification);
-    const to = ([x, y]) => [centre + zoom * x, ground - zoom * y];
+    const to = ([x, y]) => [centre + zoom * x, level - zoom * y];
     const path = (points) => {
       g.beginPath();
       for (const point of points) g.lineTo(...to(point));
@@ -91,7 +98,9 @@ export class Stage {
     g.rect(centre - cell / 2, 0, cell, this.height);
     g.clip();
     drawGround(g, centre - cell / 2, centre + cell / 2, ground);
-    if (frame.side !== 0) {
+    if (model.slip || frame.sprung) drawStance(g, this.edges(), to, ground);
+    if (frame.sprung) drawSprings(g, this.view.ground.springs, frame, to, this.depth);
+    else if (frame.side !== 0) {
       // The gap under the base.
       g.fillStyle = color("c1");
       g.globalAlpha = 0.28;
@@ -106,7 +115,7 @@ export class Stage {
     path(frame.base);
     g.stroke();
     this.#elements(g, frame, to, zoom);
-    if (frame.impact) this.#blow(g, to);
+    if (frame.impact) this.#blow(g, frame, to);
     this.#words(g, model, index, frame, centre, cell - 8);
     g.restore();
   }
@@ -153,19 +162,20 @@ export class Stage {
     const top = heights[heights.length - 1];
     for (const { kind, position } of elements) {
       const tendon = kind === "tendon";
-      const from = to([position, tendon ? -0.02 * top : 0]);
+      const sunk = frame.sprung ? this.depth / zoom : 0;
+      const from = to([position, -sunk - (tendon ? 0.02 * top : 0)]);
       const end = to(frame.place(position, tendon ? 0.6 * top : Math.min(BRACKET / zoom, 0.4 * top)));
       g.strokeStyle = g.fillStyle = color(colorOf(kind));
       drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
     }
   }
 
-  #blow(g, to) {
+  #blow(g, frame, to) {
     g.strokeStyle = color("lost");
     g.lineWidth = 2.5;
     for (const x of this.edges()) {
       g.beginPath();
-      g.arc(...to([x, 0]), 8, 0, 7);
+      g.arc(...to([x + this.amplification * frame.slip, 0]), 8, 0, 7);
       g.stroke();
     }
   }
@@ -190,8 +200,10 @@ export class Stage {
 function stateOf(model, frame, time) {
   if (Math.abs(frame.theta) > 1.5) return ["overturned", "error"];
   if ((model.fall_time ?? Infinity) <= time) return ["falling", "error"];
+  if (frame.flies) return ["off the ground", "c1"];
   if (frame.impact) return ["impact", "lost"];
-  if (frame.side) return ["uplifted", "c1"];
+  if (frame.uplifted) return [frame.slides ? "uplifted, sliding" : "uplifted", "c1"];
+  if (frame.slides) return ["sliding", "friction"];
   return [model.lifts ? "in contact" : "fixed base", "muted"];
 }
 

@@ -19,6 +19,12 @@ export function strokes(kind, length) {
   return [{ points: [[0, 0], [0, length]], width: 1.5 }];
 }
 
+// A coil spring from the ground to `length` along, `half` wide to either side.
+export function coil(length, half) {
+  const turns = [0.12, 0.24, 0.4, 0.56, 0.72, 0.88].map((share, i) => [i === 0 || i === 5 ? 0 : i % 2 ? half : -half, share * length]);
+  return [{ points: [[0, 0], ...turns, [0, length]], width: 1.4 }];
+}
+
 // A bar, thick where it is held and narrow where it yields.
 function fuse(at) {
   const [a, b, c, d] = [0.26, 0.36, 0.64, 0.74].map(at);

@@ -11,17 +11,24 @@ export function uploading(app, complain) {
   const { file: most, duration } = app.about.limits;
   let unit = "";
   let step = "";
+  let along = ""; // the record without its vertical component
   const said = h("p", { class: "help", id: "uploaded", role: "status" });
-  const input = fileBox(".at2,.AT2,.csv,.txt,.dat,.tsv", take);
+  const kinds = ".at2,.AT2,.csv,.txt,.dat,.tsv";
+  const input = fileBox(kinds, (file) => take(file, "record.upload"));
+  const upwards = fileBox(kinds, (file) => take(file, "record.vertical"));
 
-  async function take(file) {
-    const large = tooLarge(file, most);
+  async function take(file, path) {
+    const vertical = path === "record.vertical";
+    const under = vertical ? along || app.state.record.upload : "";
+    const large = vertical && !under ? "Choose the file of the horizontal component first." : tooLarge(file, most);
     said.textContent = large ? "" : `Reading ${file.name} …`;
-    complain(large ? { "record.upload": large } : {});
+    complain(large ? { [path]: large } : {});
     if (large) return;
     await attempt(async () => {
-      const found = await send(`/api/upload?${new URLSearchParams({ name: file.name, units: unit, dt: step })}`, file);
-      said.textContent = `${found.name}: ${found.samples} samples, PGA ${number(found.pga)} m/s²`;
+      const found = await send(`/api/upload?${new URLSearchParams({ name: file.name, units: unit, dt: step, under })}`, file);
+      const both = found.pva === null ? "" : `, vertical ${number(found.pva)} m/s²`;
+      said.textContent = `${found.name}: ${found.samples} samples, PGA ${number(found.pga)} m/s²${both}`;
+      if (!vertical) along = found.upload;
       app.change({ record: { source: "upload", upload: found.upload, name: found.name } });
     }, (error) => {
       said.textContent = "";
@@ -31,6 +38,7 @@ export function uploading(app, complain) {
 
   return h("div", {},
     field("record.upload", "File", input, { hint: `AT2, CSV or text columns; up to ${most / 1e6} MB and ${duration} s` }),
+    field("record.vertical", "Vertical component", upwards, { hint: "optional; upwards positive, with the same step; or a column “vertical” in the file above" }),
     select("upload.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "AT2 files are in g by definition" }),
     box("upload.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "only if the file has no times" }),
     said,

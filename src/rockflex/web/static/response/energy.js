@@ -13,6 +13,9 @@ const PARTS = [
   ["yielded", "yielding"],
   ["elements", "taken by elements", "fuse"],
   ["lost", "impacts"],
+  ["soil_strain", "compressed ground", "clay"],
+  ["soil", "damped by the ground"],
+  ["friction", "friction of the base"],
 ];
 
 export class Energy {

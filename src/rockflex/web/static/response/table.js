@@ -16,6 +16,9 @@ const PEAKS = [
 ];
 const MEANT = "In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; "
   + "unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.";
+const SLIPS = [["max_slip", "slip_max [mm]", 1000], ["residual_slip", "slip_end [mm]", 1000]];
+const EDGES = [["max_edge_uplift", "Edge up [mm]", 1000], ["max_edge_settlement", "Edge down [mm]", 1000]];
+const ON_SPRINGS = " Edge up and down: how far an edge rises above the unloaded springs, and sinks below them.";
 const LEFT = " θ_res: rotation at the end of the run.";
 
 // The fixed-base model to compare with, if any; preferably one that yields too if the model does.
@@ -33,15 +36,17 @@ export function table(view) {
   const lifting = view.models.filter((m) => m.lifts);
   const standing = lifting.filter((m) => m.status !== "overturned");
   const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
-  const last = held ? ["θ_res [mrad]"] : [];
+  const base = [...(view.ground?.slides ? SLIPS : []), ...(view.ground?.springs.length ? EDGES : [])];
+  const last = [...(held ? ["θ_res [mrad]"] : []), ...base.map(([, label]) => label)];
+  const meant = MEANT + (held ? LEFT : "") + (view.ground?.springs.length ? ON_SPRINGS : "");
   const head = ["Model", "Outcome", ...PEAKS.map(([, label]) => label), "Impacts", "θ_max/θ_nom", ...last];
   return [
-    tableOf(head.map(symbol), view.models.map((m) => row(m, view, held))),
-    h("p", { class: "hint" }, ...symbol(held ? MEANT + LEFT : MEANT), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
+    tableOf(head.map(symbol), view.models.map((m) => row(m, view, held, base))),
+    h("p", { class: "hint" }, ...symbol(meant), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
   ];
 }
 
-function row(m, view, held) {
+function row(m, view, held, base) {
   const fell = m.status === "overturned";
   const fixed = reference(view, m);
   const share = (name) => (fixed && m.lifts && !fell && fixed.peaks[name] > 0
@@ -60,7 +65,8 @@ function row(m, view, held) {
     PEAKS.map(cell),
     h("td", { "data-name": "n_impacts", "data-value": m.peaks.n_impacts }, String(m.peaks.n_impacts)),
     h("td", {}, m.lifts && !fell ? `${number((100 * m.peaks.max_rotation) / view.nominal, 3)} %` : "–"),
-    held ? residual(m) : null);
+    held ? residual(m) : null,
+    base.map(([name, , factor]) => h("td", { "data-name": name, "data-value": m.peaks[name] }, number(m.peaks[name] * factor))));
 }
 
 // The rotation at the end of a run, which friction or a lack of weight can leave.
@@ -88,7 +94,8 @@ export function words(view) {
   } else if (first.status === "no_uplift") {
     text += "the base stays on the ground; the structure responds as on a fixed base.";
   } else {
-    const impacts = `${p.n_impacts} impact${p.n_impacts === 1 ? "" : "s"}`;
+    const event = view.ground?.springs.length ? "landing" : "impact";
+    const impacts = `${p.n_impacts} ${event}${p.n_impacts === 1 ? "" : "s"}`;
     text += `the base rocks with up to ${number(1000 * p.max_rotation, 3)} mrad `;
     text += `at ${number(p.time_of_max_rotation, 3)} s, with ${impacts}.`;
     if (p.nominal_overturning) text += " This exceeds the nominal limit 0.7 atan(B/h*₁), but it did not overturn.";
@@ -96,6 +103,7 @@ export function words(view) {
       text += ` The top moves by up to ${number(p.max_total_top_displacement, 3)} m relative to the ground`;
       text += fixed ? `, and ${number(fixed.peaks.max_total_top_displacement, 3)} m for ${named(fixed)}.` : ".";
     }
+    if (p.max_slip > 0) text += ` The base slides by up to ${number(1000 * p.max_slip, 3)} mm.`;
     if (fixed && fixed.peaks.max_base_moment > 0) {
       const change = 100 * (p.max_base_moment / fixed.peaks.max_base_moment - 1);
       text += ` The base moment is ${number(Math.abs(change), 3)} % ${change < 0 ? "smaller" : "larger"} than for ${named(fixed)}.`;

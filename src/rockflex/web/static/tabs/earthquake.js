@@ -16,6 +16,7 @@ const PULSE = {
 };
 const HISTORIES = [
   ["acceleration", "a [m/s²]", "c0", 160],
+  ["vertical", "a_v [m/s²]", "c1", 110],
   ["velocity", "v [m/s]", "c2", 110],
   ["displacement", "d [m]", "c3", 126],
 ];
@@ -73,6 +74,8 @@ export default function earthquakeTab(app) {
     title.textContent = [answer.name, answer.title].filter(Boolean).join(" · ") + times;
     const x = decode(answer.t);
     HISTORIES.forEach(([key, , color], i) => {
+      charts[i].element.hidden = !answer[key];
+      if (!answer[key]) return;
       const level = key === "acceleration" && answer.lifting;
       const lifting = { color: "c1", dash: [4, 4] };
       charts[i].set({

@@ -14,17 +14,22 @@ import { Loop } from "../response/loop.js";
 import { Player } from "../response/player.js";
 import { table, warnings, words } from "../response/table.js";
 
+const EDGES = [["left_edge", ", left"], ["right_edge", ", right"]];
+// Name, axis, factor, title, height, and the curves of each model where there are several.
 const PANELS = [
-  ["rotation", "θ [mrad]", 1000, "Rotation"],
-  ["displacement", "", 1, "Displacement of the top"],
-  ["base_moment", "M_b [kN m]", 1e-3, "Base moment"],
-  ["base_shear", "V_b [kN]", 1e-3, "Base shear"],
+  ["rotation", "θ [mrad]", 1000, "Rotation", 150],
+  ["slip", "slip [mm]", 1000, "Slip of the base", 118],
+  ["edges", "edges [mm]", 1000, "Rise of the edges", 118, EDGES],
+  ["displacement", "", 1, "Displacement of the top", 118],
+  ["base_moment", "M_b [kN m]", 1e-3, "Base moment", 118],
+  ["base_shear", "V_b [kN]", 1e-3, "Base shear", 134],
 ];
 const DISPLACEMENTS = [
   ["total_top_displacement", "relative to the ground", "u_top total [m]"],
   ["top_displacement", "relative to the rotating base", "u_top relative [m]"],
 ];
-const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear"];
+const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge"];
+const OTHERS = ["t", "uplifted", "points", "element_force", "element_elongation", "heave"];
 const FILES = [
   ["figure", "Figure (SVG)"], ["energy", "Energy (SVG)"], ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
   ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
@@ -43,9 +48,9 @@ export default function responseTab(app) {
     app.state.free_vibration, (value) => app.change({ free_vibration: value }));
   const assumed = assumptions(app, () => view?.suggested_yield);
   const onpick = (time) => player.go(time);
-  const charts = overTime(PANELS.map(([, yLabel, , name], i) => (
-    { label: `${name} over time`, yLabel, height: [150, 118, 118, 134][i], firstOnTop: true, onpick })));
-  const panels = PANELS.map(([key], i) => [key, charts[i]]);
+  const charts = overTime(PANELS.map(([, yLabel, , name, height, parts]) => (
+    { label: `${name} over time`, yLabel, height, firstOnTop: true, onpick, symmetric: !parts })));
+  const panels = PANELS.map(([key, , , , , parts = [[key, ""]]], i) => [key, charts[i], parts]);
   const loop = new Loop({ label: "Base moment over rotation", yLabel: "M_b [kN m]", xLabel: "θ [mrad]" });
   const energy = new Energy(() => load());
   const elements = new Elements(app.about, () => {
@@ -79,13 +84,18 @@ export default function responseTab(app) {
     const [first] = view.models;
     const falls = view.models.map((m) => m.fall_time ?? Infinity).filter(Number.isFinite);
     const spans = uplifts(first);
-    panels.forEach(([key, chart], p) => chart.set({
-      series: view.models.map((m, i) => (
-        { x: m.t, y: m.scaled[key], until: m.fall_time ?? Infinity, label: m.label, ...m.look, width: i ? 1.2 : 1.6 })),
-      spans, xRange: [0, view.end],
-      ticks: p === 0 ? first.impact_times : [],
-      vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
-    }));
+    panels.forEach(([, chart, parts], p) => {
+      const series = view.models.flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
+        x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: m.label + suffix, ...m.look,
+        width: i ? 1.2 : 1.6, alpha: k ? 0.55 : 1,
+      })));
+      chart.element.hidden = !series.length;
+      chart.set({
+        series, spans, xRange: [0, view.end],
+        ticks: p === 0 ? first.impact_times : [],
+        vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
+      });
+    });
     const lifting = view.models.filter((m) => m.lifts);
     loop.set(lifting.map((m) => (
       { t: m.t, x: m.scaled.rotation, y: m.scaled.base_moment, until: m.fall_time ?? Infinity, label: m.label, look: m.look })));
@@ -116,8 +126,9 @@ export default function responseTab(app) {
       const [low, high, share] = bracket(m.t, time);
       return (key) => m.scaled[key][low] + share * (m.scaled[key][high] - m.scaled[key][low]);
     });
-    for (const [key, chart] of panels)
-      chart.setCursor(time, view.models.map((m, i) => ({ x: time, y: at[i](key), color: m.look.color })));
+    for (const [, chart, parts] of panels)
+      chart.setCursor(time, view.models.flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part]) => (
+        { x: time, y: at[i](part), color: m.look.color }))));
     loop.follow(time);
     elements.loop.follow(time);
     energy.chart.setCursor(time);
@@ -137,8 +148,8 @@ export default function responseTab(app) {
     }
     const all = looks(answer.models);
     answer.models.forEach((m, i) => {
-      for (const name of ["t", "side", "points", "element_force", "element_elongation", ...SERIES]) m[name] = m[name] && decode(m[name]);
-      const factor = (key) => PANELS.find(([name]) => name === key)?.[2] ?? 1;
+      for (const name of [...OTHERS, ...SERIES]) m[name] = m[name] && decode(m[name]);
+      const factor = (key) => PANELS.find(([name, , , , , parts = []]) => name === key || parts.some(([part]) => part === key))?.[2] ?? 1;
       m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v * factor(key))]));
       m.look = all[i];
     });
@@ -165,6 +176,7 @@ export default function responseTab(app) {
     time: () => player.time,
     playing: () => Boolean(player.playing),
     panel: panels[0][1],
+    charts: Object.fromEntries(panels),
     loops: { base: loop, element: elements.loop },
   };
   return { element, refresh, leave: () => player.pause() };
@@ -175,8 +187,8 @@ function uplifts(model) {
   const spans = [];
   let start = null;
   for (let i = 0; i < model.t.length; i++) {
-    if (model.side[i] !== 0 && start === null) start = model.t[i];
-    if (model.side[i] === 0 && start !== null) {
+    if (model.uplifted[i] !== 0 && start === null) start = model.t[i];
+    if (model.uplifted[i] === 0 && start !== null) {
       spans.push([start, model.t[i]]);
       start = null;
     }

@@ -3,6 +3,7 @@
 import { clone, h, latest, number, symbol } from "../dom.js";
 import { field, select, tableField, tableGroup, trouble } from "../form.js";
 import { base } from "../structure/base.js";
+import { ground, without } from "../structure/ground.js";
 import { elements } from "../structure/elements.js";
 import { importing } from "../structure/matrices.js";
 import { pictures, table } from "../structure/modes.js";
@@ -23,8 +24,9 @@ export default function structureTab(app) {
   // A rigid block has no modes, and all models but one need some.
   function modelsFor(rigid) {
     const { models, cloud, design } = app.about.state;
-    return rigid ? { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } }
-      : { models, cloud: { models: cloud.models }, design: { model: design.model } };
+    if (rigid) return { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } };
+    const usual = { models, cloud: { models: cloud.models }, design: { model: design.model } };
+    return app.state.ground ? without({ structure: {}, ...usual }) : usual;
   }
 
   const own = [["", "custom structure"], ...presets.map((p, i) => [String(i), p.title])];
@@ -35,12 +37,14 @@ export default function structureTab(app) {
   const fields = h("div");
   const moved = h("div");
   const held = elements(app, current, put);
+  let view = null;
+  const below = ground(app, () => view);
   const results = h("div", { class: "results" });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Structure"), preset, kind, field("structure.name", "Name", name),
         h("div", { "data-path": "structure" }, fields, moved, trouble()), h("p", { class: "error foot", role: "alert" })),
-      held, importing(limits.file, current, (structure) => put(structure, true))),
+      held, below, importing(limits.file, current, (structure) => put(structure, true))),
     results);
 
   // The first preset of a kind, or default values.
@@ -84,18 +88,21 @@ export default function structureTab(app) {
     const answer = await app.ask("/api/structure", element);
     if (!answer) return;
     results.classList.remove("stale");
-    results.replaceChildren(...show(answer));
+    view = answer;
+    results.replaceChildren(...show());
   });
 
-  function show(view) {
+  function show() {
     return [
       h("h2", {}, view.name || kinds[view.kind].title),
       view.adequacy ? h("p", { class: "answer", id: "adequacy" }, view.adequacy.reason) : "",
       view.adequacy ? h("p", { class: "hint" }, "This check uses masses and frequencies only. Impacts also excite higher modes, ",
         "which affect the base shear most: compare with MDOF-S on the Response tab.") : "",
       pictures(view),
-      view.elements.length ? base(app.about, view) : "",
+      view.elements.length || view.ground ? base(app.about, view) : "",
       h("dl", { class: "values" }, view.properties.map(parameter)),
+      view.ground?.facts.length ? h("h2", {}, "Springs under the base") : "",
+      view.ground?.facts.length ? h("dl", { class: "values", id: "springs" }, view.ground.facts.map(parameter)) : "",
       table(view),
       app.downloads(element, [["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]),
       app.next("earthquake", "Next: choose the earthquake."),
@@ -104,6 +111,7 @@ export default function structureTab(app) {
 
   function refresh() {
     form();
+    below.refresh();
     load();
   }
   return { element, refresh };

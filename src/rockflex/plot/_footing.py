@@ -1,0 +1,128 @@
+"""A base on its springs over time: its edges, the pressure under it, and how much of it is in contact."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rockflex._arrays import Array
+from rockflex._errors import InputError
+from rockflex.plot._curves import Curve, curves_of, title_of
+from rockflex.plot._style import BLACK, BLUE, GRAY, RED, letter, literal, new_figure, styled
+from rockflex.plot._units import readable
+from rockflex.response import History, Response
+
+FEW = 4  # springs: their forces are drawn as lines, those of more as a map
+_COLORS = (BLUE, RED, BLACK, GRAY)
+
+
+def plot_footing(response: Response, *, title: str | None = None) -> Figure:
+    """Plot a base on springs over time: the rise of its edges, the pressure under it, and its share in contact.
+
+    The pressure, or the force of each spring where the springs have no area, is a map over the width of the base and
+    the time, white where the base is off the ground; the forces of up to four springs are lines. The share in contact
+    counts each spring with the width nearest to it.
+
+    Parameters
+    ----------
+    response
+        One response with its history, of a structure on a `Ground` with springs.
+    title
+        Default: the name of the motion.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three axes over a common time axis in s, and that of the colours of a map.
+
+    Raises
+    ------
+    InputError
+        If the response has no history, or its base is not on springs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> bed = rf.winkler_bed(frame.half_width, breadth=3.0, subgrade_modulus=2e8).damped(0.3, 160e3)
+    >>> ground = rf.Ground(springs=bed, base_inertia=1e4)
+    >>> figure = rf.plot_footing(rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S", ground=ground))
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['rise of edges [mm]', 'x [m]', 'in contact [%]', 'pressure [kPa]']
+    """
+    (curve,) = curves = curves_of(response)
+    history = curve.history
+    if not history.spring_force.shape[1]:
+        raise InputError(
+            "The base of this response is not on springs. Simulate it with "
+            "ground=Ground(springs=..., base_inertia=...), or use plot_history."
+        )
+    with styled():
+        figure = new_figure(6.3, 5.4)
+        edges, soil, contact = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.3, 0.7))
+        _draw_edges(edges, history)
+        _draw_soil(figure, soil, history)
+        _draw_contact(contact, curve)
+        for axes, mark in zip((edges, soil, contact), "ABC", strict=True):
+            letter(axes, mark)
+        contact.set_xlabel("time [s]")
+        contact.set_xlim(float(history.time[0]), float(history.time[-1]))
+        figure.align_ylabels([edges, soil, contact])
+        edges.set_title(literal(curve.label) + (f" under {given}" if (given := title_of(curves, title)) else ""))
+    return figure
+
+
+def positions_of(history: History) -> Array:
+    """Return the distances of the springs from the axis of the masses in m, shape (n_springs,)."""
+    model: Any = history.model
+    return model.springs.positions
+
+
+def shares(history: History) -> Array:
+    """Return the share of the width of the base that is nearest to each spring, shape (n_springs,)."""
+    places, p = positions_of(history), history.model.properties
+    middles = 0.5 * (places[1:] + places[:-1])
+    ends = np.clip(np.concatenate(([-p.pivot(-1).arm], middles, [p.pivot(1).arm])), -p.pivot(-1).arm, p.pivot(1).arm)
+    return np.diff(ends) / (2.0 * p.half_width)
+
+
+def _draw_edges(axes: Axes, history: History) -> None:
+    for values, name, color in zip(1e3 * history.edge_uplift.T, ("left", "right"), (BLUE, RED), strict=True):
+        axes.plot(history.time, values, color=color, linewidth=0.9, label=f"{name} edge")
+    axes.axhline(0.0, color=GRAY, linewidth=0.7)
+    axes.set_ylabel("rise of edges [mm]")
+    axes.legend(loc="upper right", ncols=2)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.25 * (high - low))  # room for the legend
+
+
+def _draw_soil(figure: Figure, axes: Axes, history: History) -> None:
+    model: Any = history.model
+    area = model.springs.area
+    name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
+    factor, unit = readable(float(pushes.max()), "N" if area is None else "Pa")
+    places = positions_of(history)
+    if places.size <= FEW:
+        for place, force, color in zip(places, pushes.T / factor, _COLORS, strict=False):
+            axes.plot(history.time, force, color=color, linewidth=0.9, label=f"x = {place:.3g} m".replace("-", "−"))
+        axes.set_ylabel(f"{name} [{unit}]")
+        axes.legend(loc="upper right", ncols=places.size)
+        axes.set_ylim(0.0, 1.25 * float(pushes.max()) / factor)
+        return
+    kept = np.concatenate(([True], np.diff(history.time) > 0.0))
+    shown = np.ma.masked_less_equal(pushes[kept].T / factor, 0.0)
+    drawn = axes.pcolormesh(history.time[kept], places, shown, cmap="YlOrBr", shading="nearest", rasterized=True)
+    drawn.set_clim(0.0)
+    axes.set_ylabel("x [m]")
+    axes.grid(visible=False)
+    figure.colorbar(drawn, ax=axes, label=f"{name} [{unit}]", pad=0.01)
+
+
+def _draw_contact(axes: Axes, curve: Curve) -> None:
+    history = curve.history
+    held = (history.spring_force > 0.0) @ shares(history)
+    axes.fill_between(history.time, 100.0 * held, color=GRAY, alpha=0.5, linewidth=0.0)
+    axes.plot(history.time, 100.0 * held, color=BLACK, linewidth=0.7)
+    axes.set(ylim=(0.0, 104.0), ylabel="in contact [%]")
