@@ -51,7 +51,7 @@ def restitution() -> Figure:
         axes.set_xlim(8e-6, 0.04)
     left.set_ylabel("restitution e of the first landing")
     left.plot([], [], color=BLACK, linestyle="--", label="Housner")
-    left.legend(loc="center left", bbox_to_anchor=(0.45, 0.53))
+    left.legend(loc="center left", bbox_to_anchor=(0.4, 0.48))
     figure.supxlabel(r"settlement $g/\omega_z^2$ under the weight / $(B\,\alpha_0)$", fontsize=9)
     return figure
 
