@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.integrate import solve_ivp
 
 import rockflex as rf
 from rockflex.models import housner
@@ -34,6 +35,7 @@ FRAMES = {
 }
 VISIBLE = 0.02  # of the rotation at which the structure would stand on its edge
 Row = dict[str, Any]
+Array = np.ndarray
 
 
 def springs(kind: str, half_width: float, mass: float, heave: float, ratio: float) -> rf.Springs:
@@ -85,6 +87,29 @@ def first_landing(p: rf.RockingProperties, ground: rf.Ground, tilt: float) -> tu
     return restitution(p, tilt, run.rotation.min()), run.n_impacts
 
 
+def weightless_landing(beta: float, ratio: float, places: tuple[float, ...]) -> tuple[float, float]:
+    """Landing on infinitely stiff springs, where the weight has no time to act: in units of m, B and ω_z.
+
+    Returns the restitution, from the angular momentum about the new edge, and the share of the energy that is lost
+    before the base leaves the springs. `beta` is m B²/J; all springs are equal.
+    """
+    x, inertia = np.array(places), 1.0 / beta
+
+    def rate(_: float, y: Array) -> list[float]:
+        down, closing = y[0] - x * y[1], y[2] - x * y[3]
+        push = np.where(down < 0.0, np.maximum(0.0, -down - 2.0 * ratio * closing), 0.0) / x.size
+        return [y[2], y[3], push.sum(), -(x @ push) / inertia]
+
+    last = solve_ivp(rate, (0.0, 40.0), [0.0, 0.0, -1.0, -1.0], rtol=1e-8, atol=1e-11, max_step=0.02).y[:, -1]
+    kept = (last[2] ** 2 + inertia * last[3] ** 2) / (1.0 + inertia)
+    return (last[2] - inertia * last[3]) / (inertia + 1.0), 1.0 - kept
+
+
+def places_of(kind: str) -> tuple[float, ...]:
+    """Positions of the springs over B."""
+    return (-1.0, 1.0) if kind == TWO else tuple(np.linspace(-1.0, 1.0, STRIPS))
+
+
 def free_rocking() -> pd.DataFrame:
     """Blocks let go at half their largest tilt."""
     rows = []
@@ -93,14 +118,17 @@ def free_rocking() -> pd.DataFrame:
         limit = p.resisting_moment / (p.l0r * GRAVITY)
         for kind in (TWO, BED):
             for ratio in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0):
+                beta = p.m_tot * p.half_width**2 / p.translational_inertia
+                stiff = weightless_landing(beta, ratio, places_of(kind))[0]
                 for settled in 10.0 ** -np.arange(1.0, 5.1, 0.5):
                     heave = math.sqrt(GRAVITY / (settled * limit * p.half_width))
                     ground = rf.Ground(springs=springs(kind, p.half_width, p.m_tot, heave, ratio), base_inertia=inertia)
                     found, landings = first_landing(p, ground, 0.5 * limit)
                     law = housner(p).e
-                    rows.append((slenderness, kind, ratio, settled, law, found, landings))
+                    rows.append((slenderness, kind, ratio, settled, law, stiff, found, landings))
     return pd.DataFrame(
-        rows, columns=["slenderness", "ground", "damping", "settlement", "housner", "restitution", "n_landings"]
+        rows,
+        columns=["slenderness", "ground", "damping", "settlement", "housner", "stiff", "restitution", "n_landings"],
     )
 
 
@@ -118,7 +146,10 @@ def column(frequency: float) -> tuple[rf.RockingProperties, float]:
 def columns() -> pd.DataFrame:
     """Energy that a landing takes until the next apex, over that of VVEL: columns that come down without vibrating."""
     rows, heave = list[tuple[float, ...]](), 3000.0
+    p, inertia = column(1.0)
+    beta = p.m_tot * p.half_width**2 / inertia
     for ratio in RATIOS:
+        first = weightless_landing(beta, ratio, places_of(TWO))[1]
         for over in 10.0 ** np.arange(-2.0, 0.38, 0.125):
             p, inertia = column(1.0)
             stiffer = math.sqrt(p.i_theta / (p.i_theta - p.effective_mass[0] * p.effective_height[0] ** 2))
@@ -136,9 +167,8 @@ def columns() -> pd.DataFrame:
                 p.m_tot * p.half_width**2,
             )
             rigid = (1.0 - (1.0 - 2.0 * narrow / p.i_theta) ** 2) * p.i_theta / (narrow + inertia)
-            share = (narrow + inertia) / p.i_theta
-            rows.append((ratio, over, apex, taken / (0.5 * spin**2 * (narrow + inertia)), rigid, share))
-    return pd.DataFrame(rows, columns=["damping", "frequency_ratio", "apex", "loss", "housner", "share"])
+            rows.append((ratio, over, apex, taken / (0.5 * spin**2 * (narrow + inertia)), first, rigid))
+    return pd.DataFrame(rows, columns=["damping", "frequency_ratio", "apex", "loss", "first_landing", "housner"])
 
 
 def records(step: int) -> list[rf.GroundMotion]:
@@ -236,7 +266,13 @@ def blocks() -> pd.DataFrame:
     for slenderness, half_diagonal, scales in ((0.15, 10.0, (1.0, 2.0)), (0.3, 5.0, (1.0, 2.0))):
         p, inertia = block(slenderness, half_diagonal)
         limit = p.resisting_moment / (p.l0r * GRAVITY)
-        laws: dict[str, rf.ImpactLaw] = {"Housner": housner(p), "VVEL": rf.VVELSimplified()}
+        bed = springs(BED, p.half_width, p.m_tot, math.sqrt(GRAVITY / (1e-3 * limit * p.half_width)), 0.7)
+        of_bed = first_landing(p, rf.Ground(springs=bed, base_inertia=inertia), 0.5 * limit)[0]
+        laws: dict[str, rf.ImpactLaw] = {
+            "Housner": housner(p),
+            "VVEL": rf.VVELSimplified(),
+            "measured on a bed": rf.Restitution(of_bed),
+        }
         grounds = []
         for settled, ratio, kind in itertools.product((1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4), RATIOS, (TWO, BED)):
             if kind == BED and settled < 1e-3:
