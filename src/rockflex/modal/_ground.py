@@ -144,7 +144,9 @@ class Ground(Value):
         Springs under the base. Default: the ground is rigid.
     base_inertia : float or None
         Rotary inertia I_b of the base and the floors about the axis of the masses in kg m², positive. Given with
-        springs, and only then: on rigid ground it is part of I_θ.
+        springs, and only then: on rigid ground it is part of I_θ. The inertia Σ m_i h_i² of the structure is added to
+        it; that of a `rigid_block` already includes the rotary inertia of the block itself, so that only what the block
+        leaves out counts here.
 
     Raises
     ------
