@@ -1,6 +1,7 @@
 """The definition of a phase of the motion: free degrees of freedom of the base, forces, and end conditions."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -117,10 +118,13 @@ class Arrow:
 
     def alike(self, other: "Arrow") -> bool:
         """Return whether both have the same eigenvectors, that is, differ at most in the constant forces."""
-        return bool((self.freed == other.freed).all()) and all(
-            bool((getattr(self, name) == getattr(other, name)).all())
-            for name in ("flexibility", "stiffness", "damping", "drive", "coupling")
-        )
+        return self.likeness == other.likeness
+
+    @cached_property
+    def likeness(self) -> bytes:
+        """All numbers that the eigenvectors depend on."""
+        parts = (self.freed, self.flexibility, self.stiffness, self.damping, self.drive, self.coupling)
+        return b"".join((part + 0.0).tobytes() for part in parts)  # 0.0 has the bytes of -0.0 then
 
 
 @dataclass(frozen=True)

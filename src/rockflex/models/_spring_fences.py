@@ -24,7 +24,7 @@ def fences_of(model: "SpringModel", key: Key) -> tuple[Fence, ...]:
 def _of_springs(model: "SpringModel", key: Key) -> list[Fence]:
     found, last = list[Fence](), model.springs.n - 1
     for j, branch in enumerate(key[1 : model.springs.n + 1]):
-        depth, push, edge = model.depth(j)[0], model.push(j), j in (0, last)
+        depth, push, edge = model.depths[j], model.pushes[j], j in (0, last)
         damped = model.springs.damping[j] > 0.0
         if branch == LOADED:
             following = RECEDING if damped else LIFTED

@@ -159,20 +159,22 @@ class SpringModel(LinearModel):
 
     def spring_forces(self, key: Key) -> Array:
         """Return the force of each spring on the base in a phase in N, upwards: rows, shape (n, C)."""
+        loaded = np.array(key[1 : self.springs.n + 1]) == LOADED
+        return np.where(loaded[:, None], self.pushes, 0.0)
+
+    @cached_property
+    def pushes(self) -> Array:
+        """-k z_j - c z_j' of every spring: rows, shape (n, C)."""
+        rates = np.zeros_like(self.depths)
+        rates[:, self.layout.heave + 1], rates[:, self.layout.spin] = 1.0, -self.springs.positions
+        return -self.springs.stiffness[:, None] * self.depths - self.springs.damping[:, None] * rates
+
+    @cached_property
+    def depths(self) -> Array:
+        """z_j = z - x_j θ above every spring: rows, shape (n, C)."""
         rows = np.zeros((self.springs.n, self.layout.columns))
-        for j, branch in enumerate(key[1 : self.springs.n + 1]):
-            if branch == LOADED:
-                rows[j] = self.push(j)
+        rows[:, self.layout.heave], rows[:, self.layout.rotation] = 1.0, -self.springs.positions
         return rows
-
-    def push(self, j: int) -> Array:
-        """Return -k z_j - c z_j' of one spring as a row, shape (C,)."""
-        place, speed = self.depth(j)
-        return -self.springs.stiffness[j] * place - self.springs.damping[j] * speed
-
-    def depth(self, j: int) -> tuple[Array, Array]:
-        """Return z_j = z - x_j θ above one spring, and its rate, as rows, shape (C,)."""
-        return self.risen(float(self.springs.positions[j]))
 
     def risen(self, position: float) -> tuple[Array, Array]:
         layout = self.layout
@@ -213,20 +215,17 @@ class SpringModel(LinearModel):
         if self.friction is not None:
             border.inertia[0, 1] = border.inertia[1, 0] = p.l0r
             border.inertia[1, 1], border.ground[1] = p.m_tot, -p.m_tot
-        for x, row in zip(self.springs.positions, self.spring_forces(key), strict=True):
-            self._add_force(border, row, (-x, z))
+        forces = self.spring_forces(key)
+        self._add_to(border, 0, -self.springs.positions @ forces)
+        self._add_to(border, z, forces.sum(axis=0))
         for place, branch in enumerate(self.element_key(key)[1:]):
-            self._add_force(border, -self.tension(place, branch), (-self.elements[place].position, z))
+            tension = self.tension(place, branch)
+            self._add_to(border, 0, self.elements[place].position * tension)
+            self._add_to(border, z, -tension)
         if self.friction is not None:
             slip = key[self.springs.n + 1]
             self._add_to(border, 1, -slip * self.grip(key))
         return border
-
-    def _add_force(self, border: Border, row: Array, levers: tuple[float, int]) -> None:
-        """Add an upward force on the base, a row, at the lever arm of the rotation."""
-        arm, z = levers
-        self._add_to(border, 0, arm * row)
-        self._add_to(border, z, row)
 
     def _add_to(self, border: Border, freedom: int, force: Array) -> None:
         """Add a force on one degree of freedom of the base, a row over its state and 1."""

@@ -44,6 +44,7 @@ class CompiledPhases:
         self._rows: list[Array] = []
         self._twins: list[int] = []  # index of a phase that differs only in constant forces; -1
         self._places: dict[Key, int] = {}
+        self._likes: dict[bytes, int] = {}  # the first phase with the eigenvectors of an arrow
         self._leading: dict[Key, list[tuple[int, int]]] = {}  # the places in the links from which a phase follows
         self._linked = np.zeros((0, 0), dtype=np.int64), 0  # the last links, and how many phases they know
         # By time step, and whether the ground moves vertically; with the number of phases entered.
@@ -76,6 +77,8 @@ class CompiledPhases:
         self._rows.append(rows)
         self._twins.append(twin)
         self._places[key] = len(self._phases) - 1
+        if phase.arrow is not None:
+            self._likes.setdefault(phase.arrow.likeness, self._places[key])
         return self._places[key]
 
     def _rows_of(self, model: RockingModel, phase: Phase) -> Array:
@@ -161,10 +164,7 @@ class CompiledPhases:
 
     def _alike(self, arrow: Arrow) -> int:
         """Return the index of a phase that differs only in constant forces; -1 if there is none."""
-        for place, other in enumerate(self._phases):
-            if other.arrow is not None and other.arrow.alike(arrow):
-                return place
-        return -1
+        return self._likes.get(arrow.likeness, -1)
 
     @cached_property
     def _heavier(self) -> RockingModel:
