@@ -9,6 +9,7 @@ from rockflex.response._history import History
 from rockflex.response._moment_rotation import MomentRotation
 from rockflex.response._moment_rotation_on_springs import MomentRotationOnSprings
 from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
+from rockflex.response._resistance_on_springs import push_on_springs, resistance_on_springs
 from rockflex.response._respond import respond
 from rockflex.response._response import PEAKS, Response
 from rockflex.response._springs_path import springs_path
@@ -30,6 +31,8 @@ __all__ = [
     "extremes_of",
     "friction_coefficient",
     "large_resistance",
+    "push_on_springs",
+    "resistance_on_springs",
     "respond",
     "springs_path",
     "warnings_of",
