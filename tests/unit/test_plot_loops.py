@@ -94,7 +94,7 @@ def test_the_static_line_on_springs_is_that_of_a_push():
     held = rf.simulate(HELD, PULSE, "2DOF-S", ground=ground)
     path = drawn(rf.plot_moment_rotation(held)).axes[0].get_lines()[1]
     total = rf.plot_loops(held).axes[0].get_lines()[0]
-    np.testing.assert_array_equal(path.get_xydata(), total.get_xydata())
+    np.testing.assert_allclose(path.get_xydata(), total.get_xydata(), rtol=1e-9, atol=1e-12)
 
 
 def test_many_elements_fill_rows_and_a_free_base_has_none():

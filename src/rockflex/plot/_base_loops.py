@@ -6,10 +6,8 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
-from rockflex.models import SpringModel
 from rockflex.plot._curves import curves_of, title_of
 from rockflex.plot._style import GREEN, ORANGE, PURPLE, RED, SKY
 from rockflex.plot._units import short
@@ -20,6 +18,7 @@ from rockflex.response import (
     Response,
     element_resistance,
     large_resistance,
+    resistance_on_springs,
     weight_resistance,
 )
 
@@ -106,17 +105,17 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
         )
     history, kept = curve.history, curve.before_fall
     title, elements = title_of(curves, None), history.model.properties.elements
-    if isinstance(history.model, SpringModel):
-        weight, parts = resistance_on_springs(history)
+    resistance = resistance_on_springs(history)
+    if resistance is not None:
         return BaseLoops(
             title=title,
             elements=elements,
             rotation=history.rotation[kept],
-            weight=weight[kept],
-            parts=parts[kept],
+            weight=resistance.weight[kept],
+            parts=resistance.elements[kept],
             elongation=history.element_elongation[kept],
             force=history.element_force[kept],
-            springs=(history.spring_force @ history.model.springs.positions)[kept],
+            springs=resistance.springs[kept],
             edges=history.edge_uplift[kept],
         )
     rocking = np.flatnonzero(history.side[kept] != 0.0)
@@ -138,17 +137,6 @@ def resistance_of(history: History) -> tuple[Array, Array]:
     if history.model.complete:
         return large_resistance(p, side, history.rotation, history.element_force)
     return weight_resistance(p, side, history.rotation), element_resistance(p, side, history.element_force)
-
-
-def resistance_on_springs(history: History) -> tuple[Array, Array]:
-    """Return what the weight (n,) and the elements (n, E) add to the resisting moment of a base on springs in N m.
-
-    About the axis of the masses, where the springs have the rest.
-    """
-    p = history.model.properties
-    gravity = GRAVITY + history.vertical_ground_acceleration
-    positions = np.array([each.position for each in p.elements])
-    return -p.l0r * gravity * history.rotation, -history.element_force * positions
 
 
 def follows_a_line(properties: RockingProperties) -> bool:

@@ -10,12 +10,11 @@ from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex.models import SpringModel
-from rockflex.plot._base_loops import follows_a_line, resistance_of, resistance_on_springs
+from rockflex.plot._base_loops import follows_a_line, resistance_of
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._style import BLUE, new_figure, styled
 from rockflex.plot._units import readable
-from rockflex.response import Response, springs_path
+from rockflex.response import Response, push_on_springs, resistance_on_springs
 
 _HEADROOM = 1.1
 _PER_ROW = 3
@@ -116,10 +115,9 @@ def _largest_moment(curve: Curve) -> float:
 def _path(curve: Curve) -> tuple[Array, Array]:
     """Rotation and resisting moment while the base is off the ground."""
     history, kept = curve.history, curve.before_fall
-    if isinstance(history.model, SpringModel):
-        weight, parts = resistance_on_springs(history)
-        moment = weight + parts.sum(axis=1) + history.spring_force @ history.model.springs.positions
-        return history.rotation[kept], moment[kept]
+    on_springs = resistance_on_springs(history)
+    if on_springs is not None:
+        return history.rotation[kept], on_springs.moment[kept]
     weight, parts = resistance_of(history)
     rocking = np.flatnonzero(history.side[kept] != 0.0)
     return history.rotation[rocking], (weight + parts.sum(axis=1))[rocking]
@@ -130,9 +128,8 @@ def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
     if not follows_a_line(p):
         theta, moment = _path(curve)
         return Line2D(theta, moment / factor, color=BLUE, linewidth=0.8, label=_PATH, zorder=3.0)
-    dashes, model = (0, (4, 2)), curve.history.model
-    if isinstance(model, SpringModel):
-        push = springs_path(model, np.array([rotation, -rotation]))
+    dashes, push = (0, (4, 2)), push_on_springs(curve.history, rotation)
+    if push is not None:
         return Line2D(
             push.rotation, push.moment / factor, color=BLUE, linestyle=dashes, linewidth=1.1, label=_SPRINGS, zorder=3.0
         )

@@ -10,6 +10,7 @@ from rockflex.response._history import History
 from rockflex.response._moment_rotation import MomentRotation
 from rockflex.response._moment_rotation_on_springs import MomentRotationOnSprings
 from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
+from rockflex.response._resistance_on_springs import push_on_springs, resistance_on_springs
 from rockflex.response._respond import respond
 from rockflex.response._response import PEAKS, Response
 from rockflex.response._springs_path import springs_path
@@ -33,6 +34,8 @@ __all__ = [
     "friction_coefficient",
     "ground_columns",
     "large_resistance",
+    "push_on_springs",
+    "resistance_on_springs",
     "respond",
     "springs_path",
     "warnings_of",
