@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
-from rockflex.plot._curves import curves_of, title_of
+from rockflex.plot._curves import Curve, curves_of, title_of
 from rockflex.plot._style import GREEN, ORANGE, PURPLE, RED, SKY
 from rockflex.plot._units import short
 from rockflex.response import (
@@ -31,7 +33,7 @@ _KINDS: dict[type[BaseElement], str] = {
 
 @dataclass(frozen=True, eq=False)
 class BaseLoops:
-    """The path of a base, without the states in contact, and that of its elements.
+    """The path of a base, on rigid ground without the states in contact, and that of its elements.
 
     Attributes
     ----------
@@ -41,8 +43,11 @@ class BaseLoops:
         The elements, in their order.
     rotation
         θ in rad, shape (n,).
+    holds
+        What resists besides the elements: ``"weight"``, or ``"ground"`` under a base on springs.
     weight, parts
-        Contributions to the resisting moment in N m: of the weight, shape (n,), and of the elements, shape (n, E).
+        Contributions to the resisting moment in N m: of the weight or the ground, shape (n,), and of the elements,
+        shape (n, E).
     elongation, force
         δ in m and F in N of the elements, also in contact, shape (m, E).
     """
@@ -50,6 +55,7 @@ class BaseLoops:
     title: str
     elements: tuple[BaseElement, ...]
     rotation: Array
+    holds: str
     weight: Array
     parts: Array
     elongation: Array
@@ -74,6 +80,7 @@ def base_loops(result: MomentRotation | Response) -> BaseLoops:
             title="",
             elements=result.elements,
             rotation=result.rotation,
+            holds="weight",
             weight=result.weight_moment,
             parts=result.element_moment,
             elongation=result.element_elongation,
@@ -92,12 +99,13 @@ def base_loops(result: MomentRotation | Response) -> BaseLoops:
             'as "2DOF-S".'
         )
     history, kept = curve.history, curve.before_fall
-    rocking = np.flatnonzero(history.side[kept] != 0.0)
+    rocking = path_of(curve)
     weight, parts = resistance_of(history)
     return BaseLoops(
         title=title_of(curves, None),
         elements=history.model.properties.elements,
         rotation=history.rotation[rocking],
+        holds="ground" if history.spring_force.size else "weight",
         weight=weight[rocking],
         parts=parts[rocking],
         elongation=history.element_elongation[kept],
@@ -105,12 +113,30 @@ def base_loops(result: MomentRotation | Response) -> BaseLoops:
     )
 
 
+def path_of(curve: Curve) -> NDArray[np.intp]:
+    """Return the nodes of a path before a fall: while the base rocks; on springs it turns all the time."""
+    history, kept = curve.history, curve.before_fall
+    return np.flatnonzero((history.side[kept] != 0.0) | bool(history.spring_force.size))
+
+
 def resistance_of(history: History) -> tuple[Array, Array]:
-    """Return what the weight (n,) and the elements (n, E) add to the resisting moment in N m; zero in contact."""
+    """Return what the weight (n,) and the elements (n, E) add to the resisting moment in N m; zero in contact.
+
+    About the axis of the masses if the base is on springs, whose moment is then that of the ground less that of the
+    weight that leans.
+    """
     p, side = history.model.properties, history.side.astype(np.int64)
+    if history.spring_force.size:
+        model: Any = history.model
+        leans = p.l0r * (model.gravity + history.vertical_ground_acceleration) * history.rotation
+        places = np.array([element.position for element in p.elements])
+        return history.spring_force @ model.springs.positions - leans, -places * history.element_force
+    heavier = 1.0 + history.vertical_ground_acceleration / GRAVITY
     if history.model.complete:
-        return large_resistance(p, side, history.rotation, history.element_force)
-    return weight_resistance(p, side, history.rotation), element_resistance(p, side, history.element_force)
+        weight, parts = large_resistance(p, side, history.rotation, history.element_force)
+        return heavier * weight, parts
+    weight = weight_resistance(p, side, history.rotation)
+    return heavier * weight, element_resistance(p, side, history.element_force)
 
 
 def follows_a_line(properties: RockingProperties) -> bool:

@@ -19,7 +19,8 @@ def plot_loops(result: MomentRotation | Response, *, title: str | None = None) -
     The resisting moment M is the sum of the parts of the weight and of the elements, about the pivot about which the
     base rotates; it is plotted with its parts. Tendons that stay elastic add to the spine of the flag, elements that
     yield or slide its loops. The figure shows a cyclic pushover, or the history of a run, in which viscous dampers
-    contribute and contact is a vertical line. A run that overturns is shown up to the rotation of balance.
+    contribute and contact is a vertical line. On springs M is taken about the axis of the masses, and the springs
+    less the weight that leans add to it as the ground. A run that overturns is shown up to the rotation of balance.
 
     Parameters
     ----------
@@ -78,7 +79,7 @@ def _draw_base(axes: Axes, loops: BaseLoops) -> None:
     factor, unit = readable(max(map(abs, (*moment, 0.0))), "N m")
     axes.plot(loops.rotation, moment / factor, color=BLACK, linewidth=1.4, label="total", zorder=3.0)
     if loops.elements:
-        axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label="weight")
+        axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label=loops.holds)
     for place, element in enumerate(loops.elements):
         axes.plot(
             loops.rotation, loops.parts[:, place] / factor, color=_color(place), linewidth=0.9,

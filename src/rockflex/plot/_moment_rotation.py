@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex.plot._base_loops import follows_a_line, resistance_of
+from rockflex.plot._base_loops import follows_a_line, path_of, resistance_of
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._style import BLUE, new_figure, styled
 from rockflex.plot._units import readable
@@ -113,7 +113,7 @@ def _largest_moment(curve: Curve) -> float:
 def _path(curve: Curve) -> tuple[Array, Array]:
     """Rotation and resisting moment while the base is off the ground."""
     weight, parts = resistance_of(curve.history)
-    rocking = np.flatnonzero(curve.history.side[curve.before_fall] != 0.0)
+    rocking = path_of(curve)
     return curve.history.rotation[rocking], (weight + parts.sum(axis=1))[rocking]
 
 
