@@ -141,3 +141,33 @@ def test_springs_never_pull_and_so_never_warn(hops):
     rigid = rf.simulate(PIER, SHAKEN, "MDOF-S")
     assert rigid.min_vertical_reaction < 0.0
     assert "Give simulate a Ground with springs, on which the base can leave the ground." in rigid.warnings[0]
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_loops_of_a_base_on_springs_meet_its_equation_of_motion(held):
+    fuses = [rf.YieldingDissipator(5e7, 2e5, 0.02, x) for x in (-1.0, 0.5)]
+    pier = rf.Restrained(PIER, fuses) if held else PIER
+    run = rf.simulate(pier, SHAKEN, "MDOF-S", ground=rf.Ground(springs=BED, base_inertia=INERTIA))
+    figure = drawn(rf.plot_loops(run))
+    total, *parts = figure.axes[0].get_lines()
+    np.testing.assert_array_equal(total.get_xdata(), run.rotation)
+    inertia = P.translational_inertia + INERTIA
+    flexure = run.modal_acceleration @ (P.effective_mass * P.effective_height)
+    # I_c θ'' + Σ m* h* D'' = -M - L_0^r a
+    moment = -(inertia * run.rotation_acceleration + flexure + P.l0r * run.ground_acceleration)
+    np.testing.assert_allclose(total.get_ydata() * 1e6, moment, atol=1e-7 * np.abs(moment).max())
+    names = ["ground", "1 fuse, x = −1 m", "2 fuse, x = 0.5 m"] if held else []
+    assert [part.get_label() for part in parts] == names
+    path = figure.axes[0].get_ylabel()
+    assert path == "M [MN m]"
+    assert drawn(rf.plot_moment_rotation(run)).axes[0].get_title() == "MDOF-S"
+
+
+def test_vertical_motion_changes_the_weight_that_resists():
+    run = rf.simulate(PIER, SHAKEN, "MDOF-S")
+    (total,) = drawn(rf.plot_loops(run)).axes[0].get_lines()
+    rocking = run.side != 0.0
+    theta, side = run.rotation[rocking], run.side[rocking]
+    heavy = 9.81 + run.vertical_ground_acceleration[rocking]
+    expected = heavy * (side * P.m_tot * B - P.l0r * theta)
+    np.testing.assert_allclose(total.get_ydata() * 1e6, expected, rtol=1e-9, atol=1e-3)

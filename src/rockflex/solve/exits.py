@@ -5,7 +5,20 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
 from rockflex.models import STICKS
-from rockflex.solve.layout import GUARD, HIGH, KIND, LOW, Motion, Progress, Span, System, heavier_limits, is_shaken
+from rockflex.solve.layout import (
+    FLEXIBILITY,
+    GUARD,
+    HIGH,
+    KIND,
+    LOW,
+    Motion,
+    Progress,
+    Span,
+    System,
+    heavier_limits,
+    is_shaken,
+    slip_in,
+)
 from rockflex.solve.polynomials import evaluate, first_descent
 
 BEFORE = -1.0  # the phase ended before it started
@@ -40,6 +53,11 @@ def phase_exit(system: System, at: Progress, span: Span, motion: Motion, polys: 
         below, above = heavier_limits(system, at.phase, motion.state)
         low, high = low + span.rise * below, high + span.rise * above
         low_rate, high_rate = span.rise_slope * span.length * below, span.rise_slope * span.length * above
+    slip = slip_in(system)
+    if slip >= 0 and system.base[at.phase, FLEXIBILITY, slip, slip] != 0.0:
+        # The moment of a block that slides is constant, and may equal the limit to the last digits.
+        play = NOUGHT * max(abs(low), abs(high))
+        low, high = low - play, high + play
     if at.resume == 0.0:
         excess = max(polys[GUARD, 0] - high, low - polys[GUARD, 0])
         if excess > 0.0:
