@@ -1,9 +1,11 @@
 """Files of visitors: good ones are read as the library reads them, bad ones are refused, and quickly."""
 
 import io
+import json
 import time
 import zipfile
 from contextlib import suppress
+from urllib.parse import urlencode
 
 import numpy as np
 import pytest
@@ -15,7 +17,7 @@ from rockflex.web._download import download
 from rockflex.web._records import record_view
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import parse_state
-from rockflex.web._uploads import KEPT, Uploads, clean_name, read_matrices, read_record
+from rockflex.web._uploads import KEPT, Uploads, clean_name, read_matrices, read_record, read_vertical
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 
@@ -177,3 +179,36 @@ def test_the_latest_records_are_kept_by_their_checksum() -> None:
     with pytest.raises(Refusal, match=r"which a link does not contain\. Choose the file again\.") as caught:
         kept.get(keys[0])
     assert caught.value.status == 410
+
+
+def test_a_vertical_component_joins_its_record_and_contradictions_are_told(tmp_path):
+    along = read_record("a.csv", CSV, None, None)
+    rows = "".join(f"{along.dt * i:.4f},{0.1 * i}\n" for i in range(along.acceleration.size))
+    both = read_vertical("up.csv", f"time (s),vertical (m/s2)\n{rows}".encode(), None, None, along)
+    np.testing.assert_array_equal(both.acceleration, along.acceleration)
+    assert both.vertical.tolist() == pytest.approx([0.1 * i for i in range(along.acceleration.size)])
+    assert both.name == "a"
+    east = f"Event, 1/1/2001, Station, 090\nUNITS OF G\nNPTS= 4, DT= {along.dt}\n0 .3 -.2 0\n"
+    with pytest.raises(Refusal) as raised:
+        read_vertical("RSN1_X_ABC090.AT2", east.encode(), None, None, along)
+    assert "is a horizontal component" in raised.value.errors["record.vertical"]
+    with pytest.raises(Refusal) as raised:
+        read_vertical("up.csv", b"nothing\n", None, None, along)
+    assert raised.value.errors["record.vertical"].startswith("up.csv")
+
+
+def test_a_vertical_file_is_uploaded_under_its_record(client):
+    def send(name, content, **query):
+        path = f"/api/upload?{urlencode({'name': name, **query})}"
+        status, _, body = client.request(path, content, Content_Type="application/octet-stream")
+        return status, json.loads(body)
+
+    _, first = send("a.csv", b"time (s),acc (m/s2)\n0,0\n0.01,1\n0.02,0\n")
+    assert first["pva"] is None
+    _, second = send("up.csv", b"time (s),vertical (m/s2)\n0,0\n0.01,0.5\n0.02,0\n", under=first["upload"])
+    assert (second["name"], second["pga"], second["pva"]) == ("a", 1.0, 0.5)
+    assert second["upload"] != first["upload"]
+    view = client.ask("/api/record", client.state(record={"source": "upload", "upload": second["upload"]}))
+    assert view["vertical"] is not None
+    status, answer = send("up.csv", b"0\n", under="0" * 64)
+    assert (status, list(answer["errors"])) == (410, ["record.upload"])

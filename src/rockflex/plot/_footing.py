@@ -50,7 +50,7 @@ def plot_footing(response: Response, *, title: str | None = None) -> Figure:
     >>> ground = rf.Ground(springs=bed, base_inertia=1e4)
     >>> figure = rf.plot_footing(rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S", ground=ground))
     >>> [axes.get_ylabel() for axes in figure.axes]
-    ['rise of edges [mm]', 'x [m]', 'in contact [%]', 'pressure [kPa]']
+    ['rise of edges [mm]', 'x [m]', 'in contact [%]', 'pressure [MPa]']
     """
     (curve,) = curves = curves_of(response)
     history = curve.history

@@ -26,7 +26,7 @@ def ground_of(table: GroundTable | None, p: RockingProperties) -> Ground | None:
     try:
         return None if table is None else table.under(p)
     except InputError as error:
-        raise Refusal({error.field or "ground": str(error)}) from error
+        raise Refusal({error.field or "ground": error.said}) from error
 
 
 def ground_view(ground: Ground | None, p: RockingProperties) -> dict[str, Any] | None:
