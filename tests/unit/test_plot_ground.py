@@ -156,7 +156,7 @@ def test_loops_of_a_base_on_springs_meet_its_equation_of_motion(held):
     # I_c θ'' + Σ m* h* D'' = -M - L_0^r a
     moment = -(inertia * run.rotation_acceleration + flexure + P.l0r * run.ground_acceleration)
     np.testing.assert_allclose(total.get_ydata() * 1e6, moment, atol=1e-7 * np.abs(moment).max())
-    names = ["ground", "1 fuse, x = −1 m", "2 fuse, x = 0.5 m"] if held else []
+    names = ["weight", "springs", *(["1 fuse, x = −1 m", "2 fuse, x = 0.5 m"] if held else [])]
     assert [part.get_label() for part in parts] == names
     path = figure.axes[0].get_ylabel()
     assert path == "M [MN m]"

@@ -29,6 +29,8 @@ from rockflex import (
 )
 from rockflex.models import Model
 from rockflex.response import respond
+from rockflex.response._ground_history import GroundHistory
+from rockflex.response._reaction_history import ReactionHistory
 from rockflex.solve import Solution
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
@@ -39,8 +41,9 @@ QUANTITIES = (
     "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
     "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force", "total_top_displacement",
     "total_floor_displacement", "element_force", "element_elongation", "element_energy",
+    "slip", "slip_velocity", "heave", "edge_uplift", "spring_force", "vertical_ground_acceleration", "uplifted",
 )  # fmt: skip
-KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float"}
+KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float", "uplifted": "NDArray[np.bool_]"}
 METHODS = ("required_friction_excluding_impacts", "sliding_time")
 
 
@@ -66,13 +69,10 @@ def test_a_response_has_the_quantities_of_its_history(response):
 
 def test_no_quantity_is_forgotten():
     """Every public property of a history, with its documentation, completed by editors and named in the docstring."""
-    public = {
-        name
-        for name, kind in vars(History).items()
-        if isinstance(kind, property | cached_property) and not name.startswith("_")
-    }
-    assert public == set(QUANTITIES)
-    methods = {name for name, kind in vars(History).items() if isfunction(kind) and not name.startswith("_")}
+    own = [item for part in (History, GroundHistory, ReactionHistory) for item in vars(part).items()]
+    public = {name for name, kind in own if isinstance(kind, property | cached_property) and not name.startswith("_")}
+    assert public == {*QUANTITIES, "soil_pressure"}  # which rigid ground has not
+    methods = {name for name, kind in own if isfunction(kind) and not name.startswith("_")}
     assert methods == set(METHODS)
     for name in (*QUANTITIES, *METHODS):
         assert name in dir(Response)
@@ -182,6 +182,8 @@ def solution(**changes):
         "end_time": 1.0,
         "peaks": np.zeros(6),
         "peak_times": np.zeros(6),
+        "extremes": np.zeros(0),
+        "extreme_times": np.zeros(0),
         "lost_support": 0.0,
         "time_of_lost_support": 0.0,
         "n_uplifts": 0,

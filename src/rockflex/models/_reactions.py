@@ -15,7 +15,7 @@ from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
-from rockflex.models._spring_fences import LIFTED
+from rockflex.models._spring_forces import LIFTED
 from rockflex.models._springs import SpringModel
 
 

@@ -1,27 +1,19 @@
 """What ends a phase of a base on springs: springs that unload, lift or land, a slip that begins or ends, elements."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from rockflex.models._based import horizontal_reaction
 from rockflex.models._elements import memories
 from rockflex.models._phase import CHANGES, CLOSES, OPENS, SLIPS, STICKS, Fence, Key
-
-if TYPE_CHECKING:
-    from rockflex.models._springs import SpringModel
-
-# Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
-LOADED, LIFTED, RECEDING = 0, 1, 2
-STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
+from rockflex.models._spring_forces import LIFTED, LOADED, RECEDING, STICK, SpringForces
 
 
-def fences_of(model: "SpringModel", key: Key) -> tuple[Fence, ...]:
+def fences_of(model: SpringForces, key: Key) -> tuple[Fence, ...]:
     """Return the fences of a phase: those of the springs, of the slip and of the elements."""
     return (*_of_springs(model, key), *_of_slip(model, key), *_of_elements(model, key))
 
 
-def _of_springs(model: "SpringModel", key: Key) -> list[Fence]:
+def _of_springs(model: SpringForces, key: Key) -> list[Fence]:
     found, last = list[Fence](), model.springs.n - 1
     for j, branch in enumerate(key[1 : model.springs.n + 1]):
         depth, push, edge = model.depths[j], model.pushes[j], j in (0, last)
@@ -38,7 +30,7 @@ def _of_springs(model: "SpringModel", key: Key) -> list[Fence]:
     return found
 
 
-def _of_slip(model: "SpringModel", key: Key) -> list[Fence]:
+def _of_slip(model: SpringForces, key: Key) -> list[Fence]:
     if model.friction is None:
         return []
     place = model.springs.n + 1
@@ -51,7 +43,7 @@ def _of_slip(model: "SpringModel", key: Key) -> list[Fence]:
     return [Fence(going, STICKS, _with(key, place, STICK))]
 
 
-def _of_elements(model: "SpringModel", key: Key) -> list[Fence]:
+def _of_elements(model: SpringForces, key: Key) -> list[Fence]:
     found, known = list[Fence](), memories(model.elements)
     for k, each in enumerate(model.elements):
         place = model.springs.n + 2 + k

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.plot._curves import curves_of, title_of
@@ -134,9 +135,12 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
 def resistance_of(history: History) -> tuple[Array, Array]:
     """Return what the weight (n,) and the elements (n, E) add to the resisting moment in N m; zero in contact."""
     p, side = history.model.properties, history.side.astype(np.int64)
+    heavier = 1.0 + history.vertical_ground_acceleration / GRAVITY
     if history.model.complete:
-        return large_resistance(p, side, history.rotation, history.element_force)
-    return weight_resistance(p, side, history.rotation), element_resistance(p, side, history.element_force)
+        weight, parts = large_resistance(p, side, history.rotation, history.element_force)
+        return heavier * weight, parts
+    weight = weight_resistance(p, side, history.rotation)
+    return heavier * weight, element_resistance(p, side, history.element_force)
 
 
 def follows_a_line(properties: RockingProperties) -> bool:

@@ -1,0 +1,204 @@
+"""The forces on a base on springs that cannot pull, in each of its phases."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
+from rockflex.modal import RockingProperties, Springs
+from rockflex.models._based import accelerations_of, arrow_of, blank_border
+from rockflex.models._branch_code import codes_for, decoded
+from rockflex.models._element import Element
+from rockflex.models._elements import CLOSED, memories
+from rockflex.models._impact import ImpactLaw, VVELSimplified
+from rockflex.models._layout import HEADER, StateLayout, layout_of
+from rockflex.models._linear import LinearModel
+from rockflex.models._phase import (
+    Arrow,
+    Border,
+    Key,
+)
+from rockflex.models._rest_on_springs import Pose
+
+# Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
+LOADED, LIFTED, RECEDING = 0, 1, 2
+STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
+
+
+@dataclass(frozen=True, eq=False)
+class SpringForces(LinearModel):
+    """N modes on a base on springs and dashpots that cannot pull: its equations of motion as rows.
+
+    A key has the side, always 0, the branches of the springs, that of the slip, and those of the elements. The state
+    keeps them as the last memories.
+
+    Parameters
+    ----------
+    label, properties, lifts, law, missing_mass, gravity
+        As in `LinearModel`; the law is not used.
+    springs
+        The springs.
+    inertia
+        Rotary inertia Σ m_i h_i² + I_b about the axis of the masses, kg m².
+    friction : ndarray, shape (n,), or None
+        Coulomb's coefficient at each spring; None for a base that cannot slide.
+    rest
+        Rotation and heave under the weight, from which the elements are stretched.
+    """
+
+    label: str
+    properties: RockingProperties
+    lifts: bool = True
+    law: ImpactLaw = field(default_factory=VVELSimplified)
+    missing_mass: bool = False
+    gravity: float = GRAVITY
+    springs: Springs = field(kw_only=True)
+    inertia: float = field(kw_only=True)
+    friction: Array | None = None
+    rest: Pose = (0.0, 0.0)
+
+    @cached_property
+    def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Layout of the state vector."""
+        remembered = len(memories(self.elements)) + codes_for(self._key_size)
+        return layout_of(self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True)
+
+    @property
+    def turning(self) -> bool:
+        """Always False: elements that yield have fences of their own."""
+        return False
+
+    @property
+    def most_changes(self) -> int:
+        """Always 0: the elements change their branches at fences."""
+        return 0
+
+    @property
+    def most_fences(self) -> int:
+        """Largest number of fences of a phase."""
+        of_elements = sum(
+            max(len(each.stops(branch)) + (each.direction(branch) != 0) for branch in each.branches)
+            for each in self.elements
+        )
+        return 2 * self.springs.n + (2 if self.friction is not None else 0) + of_elements
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """The only side, 0: the base has no pivot."""
+        return (CLOSED,)
+
+    @property
+    def neutral(self) -> bool:
+        """Always False: a base that is not stable on its springs is refused."""
+        return False
+
+    @property
+    def _key_size(self) -> int:
+        return self.springs.n + 1 + len(self.elements)
+
+    def element_key(self, key: Key) -> Key:
+        """Return the branches of the base and of the elements."""
+        return (key[0], *key[self.springs.n + 2 :])
+
+    def start(self, side: int) -> Key:
+        """Return the branches of a base at rest."""
+        return (side, *(LOADED,) * self.springs.n, STICK, *(each.branches[0] for each in self.elements))
+
+    def is_free(self, key: Key) -> bool:  # noqa: ARG002
+        """Always True: the base rotates in every phase."""
+        return True
+
+    def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:  # noqa: ARG002
+        """Return the branches at the states of a history, shape (n, K)."""
+        first = HEADER + self.layout.memory + len(memories(self.elements))
+        codes = states[:, first : HEADER + self.layout.size]
+        return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size)))
+
+    def spring_forces(self, key: Key) -> Array:
+        """Return the force of each spring on the base in a phase in N, upwards: rows, shape (n, C)."""
+        loaded = np.array(key[1 : self.springs.n + 1]) == LOADED
+        return np.where(loaded[:, None], self.pushes, 0.0)
+
+    @cached_property
+    def pushes(self) -> Array:
+        """-k z_j - c z_j' of every spring: rows, shape (n, C)."""
+        rates = np.zeros_like(self.depths)
+        rates[:, self.layout.heave + 1], rates[:, self.layout.spin] = 1.0, -self.springs.positions
+        return -self.springs.stiffness[:, None] * self.depths - self.springs.damping[:, None] * rates
+
+    @cached_property
+    def depths(self) -> Array:
+        """z_j = z - x_j θ above every spring: rows, shape (n, C)."""
+        rows = np.zeros((self.springs.n, self.layout.columns))
+        rows[:, self.layout.heave], rows[:, self.layout.rotation] = 1.0, -self.springs.positions
+        return rows
+
+    def risen(self, position: float) -> tuple[Array, Array]:
+        layout = self.layout
+        place, speed = np.zeros((2, layout.columns))
+        place[layout.heave], place[layout.rotation] = 1.0, -position
+        speed[layout.heave + 1], speed[layout.spin] = 1.0, -position
+        return place, speed
+
+    def stretch(self, element: Element) -> Array:
+        """Return the elongation of an element as a row, shape (C,): zero at rest."""
+        place, _ = self.risen(element.position)
+        place[-1] = element.position * self.rest[0] - self.rest[1]
+        return place
+
+    def tension(self, place: int, branch: int) -> Array:
+        """Return the tension of an element on a branch in N as a row, shape (C,)."""
+        each, known = self.elements[place], memories(self.elements)
+        pull = each.pull(branch)
+        row = pull.stiffness * self.stretch(each) + pull.damping * self.risen(each.position)[1]
+        row[-1] += pull.force
+        if place in known:
+            row[self.layout.memory + known[place]] += pull.recall
+        return row
+
+    def _new_arrow(self, key: Key) -> Arrow:
+        slips = [] if self.friction is None else [key[self.springs.n + 1] != STICK]
+        return arrow_of(self, self._border(key), np.array([True, *slips, True]))
+
+    def _border(self, key: Key) -> Border:
+        p, layout = self.properties, self.layout
+        b = layout.freedoms
+        border = blank_border(b, layout.remembered)
+        z = b - 1
+        border.inertia[0, 0], border.inertia[z, z] = self.inertia, p.m_tot
+        border.stiffness[0, 0] = -p.l0r * self.gravity
+        border.constant[z] = -p.m_tot * self.gravity
+        border.ground[0] = -p.l0r
+        if self.friction is not None:
+            border.inertia[0, 1] = border.inertia[1, 0] = p.l0r
+            border.inertia[1, 1], border.ground[1] = p.m_tot, -p.m_tot
+        forces = self.spring_forces(key)
+        self._add_to(border, 0, -self.springs.positions @ forces)
+        self._add_to(border, z, forces.sum(axis=0))
+        for place, branch in enumerate(self.element_key(key)[1:]):
+            tension = self.tension(place, branch)
+            self._add_to(border, 0, self.elements[place].position * tension)
+            self._add_to(border, z, -tension)
+        if self.friction is not None:
+            slip = key[self.springs.n + 1]
+            self._add_to(border, 1, -slip * self.grip(key))
+        return border
+
+    def _add_to(self, border: Border, freedom: int, force: Array) -> None:
+        """Add a force on one degree of freedom of the base, a row over its state and 1."""
+        layout = self.layout
+        places = layout.rotation + 2 * np.arange(layout.freedoms)
+        border.stiffness[freedom] -= force[places]
+        border.damping[freedom] -= force[places + 1]
+        border.constant[freedom] += force[-1]
+        border.recall[freedom] += force[layout.memory : layout.memory + layout.remembered]
+
+    def grip(self, key: Key) -> Array:
+        """Return Σ μ_j N_j as a row, shape (C,)."""
+        return self.friction @ self.spring_forces(key) if self.friction is not None else np.zeros(self.layout.columns)
+
+    def _new_accelerations(self, key: Key) -> Array:
+        return accelerations_of(self, self.arrow(key))
