@@ -50,8 +50,9 @@ class Response(Value):
     `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
     `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `element_force`,
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
-    `soil_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`, `horizontal_reaction`, `vertical_reaction`,
-    `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`, `sliding_time()` and `energy`; see
+    `soil_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`, `horizontal_reaction`,
+    `vertical_reaction`, `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`,
+    `sliding_time()` and `energy`; see
     `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
     `InputError`.
 
