@@ -5,6 +5,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rockflex import Frame, InitialState, simulate
+from rockflex.models import GROUND, HEADER
 from strategies import frame_arguments, stretches
 
 settings_ = settings(max_examples=80, deadline=None)
@@ -21,7 +22,7 @@ def test_peaks_are_those_of_the_history(structure, motion, model, start):
     run = simulate(structure, motion, model, initial=start)
     tied = run.history.model
     p = tied.properties
-    vector = np.column_stack((run.history.states[:, 3:], run.history.states[:, 2], np.ones(run.time.size)))
+    vector = np.column_stack((run.history.states[:, HEADER:], run.history.states[:, GROUND], np.ones(run.time.size)))
     rates = np.zeros((run.time.size, p.n_modes + 1))
     for side in tied.sides:
         on = run.side == side

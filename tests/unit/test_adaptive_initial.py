@@ -110,9 +110,10 @@ def test_any_state_starts_a_run(model, n, law, start):
     for name in ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear"):
         assert getattr(run, name) == pytest.approx(getattr(twin, name), rel=1e-8), name
     first = run.history.states[0]
-    assert first[: 5 + 2 * n].tolist() == [
+    assert first[: 6 + 2 * n].tolist() == [
         0,
         np.sign(rotation or spin),
+        0,
         0,
         *(d or [0.0]),
         *pad,
@@ -198,12 +199,12 @@ def test_free_vibration_follows_a_record():
         short = simulate(FRAME, cut, model, **options)
         assert np.array_equal(run.history.states[: short.time.size], short.history.states)
         last = short.history.states[-1]
-        n = (last.size - 9) // 2
+        n = (last.size - 10) // 2
         rest = simulate(
             FRAME,
             quiet_motion(1.0, dt=0.02),
             model,
-            initial=InitialState(last[3 + 2 * n], last[3 : 3 + n], last[3 + n : 3 + 2 * n], last[4 + 2 * n]),
+            initial=InitialState(last[4 + 2 * n], last[4 : 4 + n], last[4 + n : 4 + 2 * n], last[5 + 2 * n]),
             **options,
         )
         np.testing.assert_allclose(rest.rotation[-1], run.rotation[-1], rtol=1e-7, atol=1e-12)

@@ -7,6 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
+from rockflex.models import HEADER
 from rockflex.response import asked_of
 from rockflex.solve import Engine
 
@@ -116,7 +117,7 @@ def test_the_damped_rigid_block_in_closed_form():
     engine = Engine(model, asked_of(model))
     dt = 0.01
     run = engine.run(np.zeros(30), dt, state=np.array([theta_0, 0.0]), history=True)
-    time, theta = run.states[:, 0], run.states[:, 3]
+    time, theta = run.states[:, 0], run.states[:, HEADER]
     free = theta > 0.0
     expected = balance + a * np.exp(one * time) + e * np.exp(two * time)
     assert free.sum() > 20

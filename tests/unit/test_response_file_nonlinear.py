@@ -162,7 +162,7 @@ def test_scalars_that_do_not_fit(saved, tmp_path, name, value, text):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda a: a[:, :-4], r"InputError: states must have the shape \(\d+, 11\), but .* \(\d+, 7\)"),
+        (lambda a: a[:, :-4], r"InputError: states must have the shape \(\d+, 12\), but .* \(\d+, 8\)"),
         (lambda a: np.where(a == a[-1, -1], np.inf, a), "InputError: states must be finite, but its entry"),
     ],
 )

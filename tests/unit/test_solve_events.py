@@ -7,7 +7,7 @@ import pytest
 
 from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, RockingProperties, quiet_motion, simulate
-from rockflex.models import Model
+from rockflex.models import GROUND, HEADER, Model
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
 from twins.ode import simulate_ode
@@ -109,7 +109,7 @@ def test_a_moment_that_culminates_at_a_sample(excess):
     p = block(omega=[200.0], zeta=0.3)
     record = np.concatenate((np.linspace(0.0, 1.0, 41), np.linspace(1.0, 0.0, 41)[1:]))
     fixed = simulate(p, GroundMotion(record, 0.05), "fixed").history.states
-    vector = np.column_stack((fixed[:, 3:], fixed[:, 2], np.ones(len(fixed))))
+    vector = np.column_stack((fixed[:, HEADER:], fixed[:, GROUND], np.ones(len(fixed))))
     moment = np.abs(vector @ Model().of(p).overturning_moment())
     assert moment.argmax() == 40
     record *= p.resisting_moment / moment[40] * (1.0 + excess)

@@ -112,7 +112,7 @@ def test_runs_on_one_engine_do_not_meddle_with_each_other(case, monkeypatch):
     monkeypatch.setattr(Engine, "_room", watched)
 
     def meanwhile():
-        before, _ = shared._phases._systems[dt]
+        before, _ = shared._phases._systems[dt, False]
         links = before.links.copy()
         if next(rounds) < 3:
             with stopping_when(lambda: False):

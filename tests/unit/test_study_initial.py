@@ -146,7 +146,7 @@ def test_where_a_run_starts():
     quiet = quiet_motion(0.1)
     start = InitialState(-0.02, [0.01, 0.002], [0.3], rotation_velocity=0.1)
     run = simulate(FRAME, quiet, initial=start)
-    assert run.history.states[0].tolist() == [0, -1, 0, 0.01, 0.002, 0, 0.3, 0, 0, -0.02, 0.1]
+    assert run.history.states[0].tolist() == [0, -1, 0, 0, 0.01, 0.002, 0, 0.3, 0, 0, -0.02, 0.1]
     assert run.max_rotation == 0.02
     assert run.status == "rocking"
     for velocity in (0.5, -0.5):

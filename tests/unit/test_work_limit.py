@@ -160,7 +160,7 @@ def test_no_limit_has_three_names() -> None:
 
 def test_a_history_that_no_memory_holds_is_refused() -> None:
     words = (
-        r"would have 1e\+09 states and take 120 GB, but the limit is 4 GB\. Use output=\"peaks\", less free_vibration"
+        r"would have 1e\+09 states and take 128 GB, but the limit is 4 GB\. Use output=\"peaks\", less free_vibration"
     )
     with pytest.raises(InputError, match=words):
         rf.simulate(frame(), rf.GroundMotion(np.zeros(9), 0.01), free_vibration=1e7, work_limit=None)

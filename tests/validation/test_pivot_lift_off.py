@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from rockflex._constants import GRAVITY
-from rockflex.models import accelerations, printed_reactions
+from rockflex.models import GROUND, HEADER, TIME, accelerations, printed_reactions
 from rockflex.papers.silva_stojadinovic_2024 import _structures
 from rockflex.solve import ClosedForm
 
@@ -37,8 +37,8 @@ def by_equation_22(run):
         if place > 0.0 and least > 0.5 * weight and run.min_vertical_reaction > 0.25 * weight:
             break
         rows = nodes[:-1].copy()
-        rows[:, 3:] = motion.intervals(nodes).at(place)
-        rows[:, :3:2] += place * np.diff(nodes[:, :3:2], axis=0)
+        rows[:, HEADER:] = motion.intervals(nodes).at(place)
+        rows[:, [TIME, GROUND]] += place * np.diff(nodes[:, [TIME, GROUND]], axis=0)
         rows = rows[lasting]
         vertical = printed_reactions(model, rows, accelerations(model, rows)).vertical
         least = min(least, float(vertical.min()) + 2.0 * weight)
