@@ -16,8 +16,11 @@ SETTING = {
 # Tests of modes, of the closed-form engine, of the forces, and of the twins that they are compared with.
 SENSITIVE = (
     "tests/unit/test_computable.py",
+    "tests/unit/test_elements_on_springs.py",
     "tests/unit/test_equivalents.py",
     "tests/unit/test_friction.py",
+    "tests/unit/test_ground_answers.py",
+    "tests/unit/test_grounded_models.py",
     "tests/unit/test_modal_*.py",
     "tests/unit/test_response_*.py",
     "tests/unit/test_solve_*.py",
@@ -28,6 +31,7 @@ SENSITIVE = (
     "tests/property/test_modal_laws.py",
     "tests/validation/test_chimney_section_4_1_1.py",
     "tests/validation/test_closed_form_beams.py",
+    "tests/validation/test_ground_*.py",
     "tests/validation/test_opensees.py",
     "tests/validation/test_reference_cases.py",
     "tests/validation/test_table*.py",
