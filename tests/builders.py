@@ -3,6 +3,8 @@
 import math
 from typing import Any
 
+import numpy as np
+
 import rockflex as rf
 
 # Structure #1 of Table 1 of Silva & Stojadinović (2024): five stories that shear, T_1 = 1 s, h*_1/B = 10.
@@ -39,3 +41,11 @@ def frame_values(**changes: Any) -> dict[str, Any]:
 def make_frame(**changes: Any) -> rf.Frame:
     """Structure #1, changed."""
     return rf.Frame(**frame_values(**changes))
+
+
+def random_shaking(seed, strength, seconds, dt):
+    """Sines of random periods and phases under an envelope; begins and ends away from zero."""
+    chance = np.random.default_rng(seed)
+    t = dt * np.arange(int(seconds / dt) + 1)
+    rates, phases = 2.0 * np.pi / chance.uniform(0.15, 2.0, 6), chance.uniform(0.0, 6.0, 6)
+    return strength * np.sin(np.pi * (t + 0.2) / (seconds + 0.5)) * np.sin(np.outer(t, rates) + phases).mean(axis=1)

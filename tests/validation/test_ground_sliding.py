@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from builders import make_frame
+from builders import make_frame, random_shaking
 from twins.ground_sliding import SLIP, TURN, SlidingTwin, impacts, uplifts
 
 FRAME = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)
@@ -15,11 +15,7 @@ DT = 0.01
 
 
 def shaking(seed, strength, seconds=8.0):
-    """Sines of random periods and phases under an envelope; begins and ends away from zero."""
-    chance = np.random.default_rng(seed)
-    t = DT * np.arange(int(seconds / DT) + 1)
-    rates, phases = 2.0 * np.pi / chance.uniform(0.15, 2.0, 6), chance.uniform(0.0, 6.0, 6)
-    return strength * np.sin(np.pi * (t + 0.2) / (seconds + 0.5)) * np.sin(np.outer(t, rates) + phases).mean(axis=1)
+    return random_shaking(seed, strength, seconds, DT)
 
 
 def compared(structure, model, friction, a, vertical=None, *, rel=1e-8, free=0.0, restitution=0.0, impact=None):

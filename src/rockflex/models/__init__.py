@@ -22,7 +22,15 @@ from rockflex.models._impact import (
     VVELSimplified,
     housner,
 )
-from rockflex.models._kept import accelerations, acting_side, phases_at, pulls_at, rates_of, values_of
+from rockflex.models._kept import (
+    accelerations,
+    acting_side,
+    phases_at,
+    pulls_at,
+    rates_of,
+    under_more_gravity,
+    values_of,
+)
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
@@ -182,5 +190,6 @@ __all__ = [
     "strike",
     "swing_by_side",
     "turning_row",
+    "under_more_gravity",
     "values_of",
 ]

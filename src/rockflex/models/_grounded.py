@@ -23,9 +23,6 @@ def grounded(
         weight, or some but not all springs have infinite friction.
     """
     if ground.springs is None:
-        given = VVELSimplified() if law is None else law
-        if not ground.slides:
-            return LinearModel(label, kept, law=given, missing_mass=missing_mass)
         if LinearModel(label, kept).neutral:
             raise InputError(
                 f"The elements of {label} balance the weight on some of their branches, to within 1 % of L_0^r g. A "
@@ -34,7 +31,7 @@ def grounded(
                 field="ground",
             )
         friction = float(np.max(np.asarray(ground.friction)))
-        return SlidingModel(label, kept, law=given, missing_mass=missing_mass, friction=friction)
+        return SlidingModel(label, kept, law=law or VVELSimplified(), missing_mass=missing_mass, friction=friction)
     friction = None
     if ground.slides:
         friction = np.broadcast_to(np.asarray(ground.friction, dtype=np.float64), ground.springs.n).copy()

@@ -39,7 +39,7 @@ def accelerations(model: RockingModel, states: Array) -> Array:
         shaking = states[:, GROUND].copy(), states[:, RISE].copy()
         _rates_at(model.field(), pulls_at(model, states), side, *shaking, motion, rates)
         return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
-    heavier = under_more_gravity(model, states)
+    heavier = under_more_gravity(model) if states[:, RISE].any() else None
     found = np.zeros((states.shape[0], n + layout.freedoms))
     for chosen, key, vector in by_phase(model, states, side):
         found[chosen] = vector @ model.accelerations(key).T
@@ -49,12 +49,12 @@ def accelerations(model: RockingModel, states: Array) -> Array:
     return found
 
 
-def under_more_gravity(model: RockingModel, states: Array) -> RockingModel | None:
-    """Return the model under a gravity greater by 1 m/s²; None if the ground does not move vertically.
+def under_more_gravity(model: RockingModel) -> RockingModel:
+    """Return the model under a gravity greater by 1 m/s².
 
     The rows of a model vary linearly with gravity, and so with the vertical acceleration of the ground.
     """
-    return replace(model, gravity=model.gravity + 1.0) if states[:, RISE].any() else None
+    return replace(model, gravity=model.gravity + 1.0)
 
 
 def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
@@ -67,7 +67,8 @@ def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
 def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
     """Return the values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
     side = acting_side(states)
-    values, heavier = np.zeros((states.shape[0], len(quantities))), under_more_gravity(model, states)
+    values = np.zeros((states.shape[0], len(quantities)))
+    heavier = under_more_gravity(model) if states[:, RISE].any() else None
     for chosen, key, vector in by_phase(model, states, side):
         rows = rows_of(model, quantities, key)
         values[chosen] = vector @ rows.T

@@ -10,11 +10,12 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.models._based import accelerations_of, arrow_of, blank_border, horizontal_reaction
-from rockflex.models._elements import CLOSED, arm_of, border_of, memories
+from rockflex.models._elements import CLOSED, border_of, memories
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
 from rockflex.models._phase import CHANGES, SLIPS, STICKS, Arrow, Border, Exit, Fence, Key, Phase
+from rockflex.models._quantities import lost_support_row, tensions
 from rockflex.models._rocking_phase import phase_of
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
@@ -103,40 +104,22 @@ class SlidingModel(LinearModel):
 
     def _add_friction(self, border: Border, key: Key) -> None:
         """Add -sign(x') μ N with N = m_tot (g + s B θ'') + the tensions of the elements."""
-        p, side, known = self.properties, key[0], memories(self.elements)
-        drag = key[-1] * self.friction
-        border.constant[1] -= drag * p.m_tot * self.gravity
+        p, side, layout = self.properties, key[0], self.layout
+        drag, pull = key[-1] * self.friction, tensions(self, key).sum(axis=0)
+        border.constant[1] -= drag * (p.m_tot * self.gravity + pull[-1])
+        border.recall[1] -= drag * pull[layout.memory : layout.memory + layout.remembered]
         if side != CLOSED:
             border.inertia[1, 0] += drag * side * p.m_tot * p.pivot(side).arm
-        for place, (each, branch) in enumerate(zip(self.elements, self.element_key(key)[1:], strict=True)):
-            pull = each.pull(branch)
-            border.constant[1] -= drag * pull.force
-            if place in known:
-                border.recall[1, known[place]] -= drag * pull.recall
-            if side != CLOSED:
-                reach = side * arm_of(p, each, side)
-                border.stiffness[1, 0] += drag * pull.stiffness * reach
-                border.damping[1, 0] += drag * pull.damping * reach
+            border.stiffness[1, 0] += drag * pull[layout.rotation]
+            border.damping[1, 0] += drag * pull[layout.spin]
 
     def _new_accelerations(self, key: Key) -> Array:
         return accelerations_of(self, self.arrow(key))
 
     def pressure(self, key: Key) -> Array:
         """Return the vertical reaction m_tot (g + s B θ'') and the tensions of the elements in N: a row, shape (C,)."""
-        p, side, known, layout = self.properties, key[0], memories(self.elements), self.layout
-        row = np.zeros(layout.columns)
-        row[-1] = p.m_tot * self.gravity
-        if side != CLOSED:
-            row += side * p.m_tot * p.pivot(side).arm * self.angular_acceleration(key)
-        for place, (each, branch) in enumerate(zip(self.elements, self.element_key(key)[1:], strict=True)):
-            pull = each.pull(branch)
-            row[-1] += pull.force
-            if place in known:
-                row[layout.memory + known[place]] += pull.recall
-            if side != CLOSED:
-                reach = side * arm_of(p, each, side)
-                row[layout.rotation] += pull.stiffness * reach
-                row[layout.spin] += pull.damping * reach
+        row = -lost_support_row(self, key)
+        row[-1] += self.properties.resting_reaction
         return row
 
     def phase(self, key: Key) -> Phase:

@@ -1,7 +1,6 @@
 """The phases of a model, compiled as they are needed, and their tables for a time step."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
 from threading import RLock
 
@@ -9,7 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import Arrow, Key, Phase, Quantities, RockingModel, lost_support_row, rows_of, turning_row
+from rockflex.models import (
+    Arrow,
+    Key,
+    Phase,
+    Quantities,
+    RockingModel,
+    lost_support_row,
+    rows_of,
+    turning_row,
+    under_more_gravity,
+)
 from rockflex.solve.exact.basis import Basis, Drift, basis_of, drift_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWING, FOLLOWS, TURNED, TURNING, System
@@ -169,7 +178,7 @@ class CompiledPhases:
     @cached_property
     def _heavier(self) -> RockingModel:
         """The model under a gravity that is greater by 1 m/s²; all forces are linear in gravity."""
-        return replace(self._model, gravity=self._model.gravity + 1.0)
+        return under_more_gravity(self._model)
 
     @property
     def dense(self) -> bool:

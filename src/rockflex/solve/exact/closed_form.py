@@ -1,7 +1,6 @@
 """The motion between the states of a history: in closed form or, for other linear phases, by power series."""
 
 import math
-from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -9,7 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, Key, LinearModel, RockingModel, phases_at
+from rockflex.models import (
+    GROUND,
+    HEADER,
+    RISE,
+    SIDE,
+    TIME,
+    Key,
+    LinearModel,
+    RockingModel,
+    phases_at,
+    under_more_gravity,
+)
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.developed import Developed, Shaking
 from rockflex.solve.exact.tables import propagate
@@ -40,11 +50,17 @@ class ClosedForm:
 
     def _developed(self, key: Key) -> Developed | None:
         """Return the power series of a phase; None if it is not linear."""
-        arrow = self._model.phase(key).arrow
-        heavier = replace(self._model, gravity=self._model.gravity + 1.0).phase(key).arrow
-        if arrow is None or heavier is None:
-            return None
-        return Developed(self._model, arrow, heavier, self._model.accelerations(key))
+        if key not in self._developments:
+            arrow, found = self._model.phase(key).arrow, None
+            if arrow is not None:
+                heavier = under_more_gravity(self._model).arrow(key)
+                found = Developed(self._model, arrow, heavier, self._model.accelerations(key))
+            self._developments[key] = found
+        return self._developments[key]
+
+    @cached_property
+    def _developments(self) -> dict[Key, Developed | None]:
+        return {}
 
     @cached_property
     def _known(self) -> dict[Key, Basis | None]:
