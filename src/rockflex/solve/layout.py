@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
+from rockflex._vectors import BLOCK
 from rockflex.models import PULLS, SUMS, StateLayout
 
 Progress = Any  # a record of `rockflex.solve.progress`
@@ -57,9 +58,13 @@ OUT, INTO = 0, 1
 VALUES, SLOPES = 0, 1
 
 # Indices in `Motion.w`, `Motion.values` and `Motion.flags`
-NOW, ENDS, HELD = 0, 1, 2
+NOW, ENDS, HELD, BEGUN = 0, 1, 2, 3
 LOWER, UPPER, FIRST, FINAL = 0, 1, 2, 3
 DOUBT, ASKED = 0, 1
+
+# Indices in `Motion.block`: the acceleration at the end of each sample, its slope within it, and the jump of the slope
+# at its start
+GROUNDS, INCLINES, JUMPS = 0, 1, 2
 
 # Indices in `Motion.reach`: of a coordinate and of its rate, and how far either moves away from its start
 SIZE, RATE, MOVES, TURNS_BY = 0, 1, 2, 3
@@ -87,8 +92,23 @@ PHASE = record_of(
         ("terms", np.int64),  # of the power series that converge over the finest step
         ("linear", np.bool_),  # solved in closed form
         ("dense", np.bool_),  # linear, but cannot be uncoupled
+        ("block", np.int64),  # samples that its tables cover at once, at most `BLOCK`
     ]
 )
+
+# A block of samples in which peaks may lie; it need not be searched if later samples turn out to be higher.
+DEFERRED = record_of(
+    [
+        ("waits", np.bool_),
+        ("phase", np.int64),
+        ("offset", np.int64),  # samples before the stretch of acceleration
+        ("index", np.int64),  # its first sample within the stretch
+        ("slope", np.float64),  # of the acceleration, to which w refers
+        ("count", np.int64),  # samples that no event ends
+        ("stated", np.bool_),  # whether the state is that at the start of the block
+    ]
+)
+MOST_DEFERRED = 16  # blocks; any further one is searched at once
 
 # A literal 0 has its own type in numba, for which every callee would be compiled again.
 ZERO = cast("int", np.int64(0))
@@ -133,6 +153,13 @@ class System(NamedTuple):
     blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
     propagator: Array  # (P, J + 1, S, S): exp(B h) if some phase is dense; otherwise (0, 0, 0, 0)
     bounds: Array  # (P, 3, J + 1, F + E, K): sag, swing and ripple of each row over a step, times |w| of the pair
+    # For blocks of L = `BLOCK` samples
+    ahead: Array  # (P, F + E, S, L): the rows at the end of each sample over w at the start of the block
+    kicked: Array  # (P, F + E, 2 L): the rows 1 - L to L samples after a jump of the slope; zero before it
+    leap: Array  # (P, 4, K): exp(B h) of each pair over the block
+    pushed: Array  # (P, L, S rounded up to a multiple of L): w at the end of the block over those jumps
+    leeway: Array  # (P, F + E, K): sag of each row over any sample of the block, times |w| of the pair at its start
+    stray: Array  # (P, F + E): the same, times the magnitudes of the jumps
 
 
 class Course(NamedTuple):
@@ -173,10 +200,19 @@ class Motion(NamedTuple):
     """The present motion, with work arrays."""
 
     state: Array  # (S',)
-    w: Array  # (3, S): now, after the step under examination, and the same while peaks are searched inside that step
+    w: Array  # (4, S): now, after the step examined, the same during the search inside it, at the start of the block
     norms: Array  # (K,)
     values: Array  # (4, F + E): lower and upper limits of the rows, and their values at both ends of the step
     flags: Bools  # (2, F + E): rows that may leave their limits inside the step, and rows to examine
+    block: Array  # (3, L): the acceleration of the ground over a block of samples
+    begins: Array  # (F + E,): rows at the start of the block
+    told: Array  # (F + E, L): rows at the end of each of its samples
+    beyond: Array  # (S rounded up to a multiple of L,): w at its end
+    slack: Array  # (F + E,): how far they may leave the chords between these values
+    deferred: Any  # (Q,): records of `DEFERRED`; the last one keeps the present while these blocks are searched
+    states: Array  # (Q, S'): their states
+    coordinates: Array  # (Q, S): w at their starts
+    highest: Array  # (Q, F): bounds of the peaks in them
     clear: NDArray[np.int64]  # (F + E,): point of the grid up to which the search for peaks is done
     series: Array  # (N + b, terms)
     reach: Array  # (4, N + b): how far the series reach, see `series.measure`
@@ -191,6 +227,11 @@ class Motion(NamedTuple):
     pivots: Array  # (2, 9): `Field.pivots`, with the sums over the elements
 
 
+def padded(size: int) -> int:
+    """Return a size rounded up to a multiple of `BLOCK`."""
+    return -(-size // BLOCK) * BLOCK
+
+
 def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motion:
     """Return the motion that starts from `state`; `rows` counts the fences too."""
     core, freedoms = layout.core, layout.freedoms
@@ -199,10 +240,19 @@ def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motio
     flags[ASKED] = True
     return Motion(
         state=state,
-        w=np.zeros((3, core)),
+        w=np.zeros((4, core)),
         norms=np.zeros(pairs),
         values=np.zeros((4, rows)),
         flags=flags,
+        block=np.zeros((3, BLOCK)),
+        begins=np.zeros(rows),
+        told=np.zeros((rows, BLOCK)),
+        beyond=np.zeros(padded(core)),
+        slack=np.zeros(rows),
+        deferred=np.zeros(MOST_DEFERRED + 1, dtype=DEFERRED),
+        states=np.zeros((MOST_DEFERRED + 1, state.size)),
+        coordinates=np.zeros((MOST_DEFERRED + 1, core)),
+        highest=np.zeros((MOST_DEFERRED + 1, rows)),
         clear=np.zeros(rows, dtype=np.int64),
         series=np.zeros((pairs, terms)),
         reach=np.zeros((4, pairs)),

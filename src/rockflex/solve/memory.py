@@ -10,13 +10,16 @@ from rockflex.solve.layout import (
     ARM,
     CONSTANT,
     FLEXIBILITY,
+    GUARD,
     HIGH,
     LOW,
+    LOWER,
     MEMORY,
     OFFSET,
     OUTER,
     PLACE,
     RECALL,
+    UPPER,
     Array,
     Motion,
     System,
@@ -55,6 +58,22 @@ def recollect(system: System, phase: int, motion: Motion) -> None:
     for j in range(motion.load.size):
         motion.load[j] = load_in(system, phase, j, motion.state)
     gather(system, phase, motion)
+    set_limits(system, phase, motion)
+
+
+@kernel
+def set_limits(system: System, phase: int, motion: Motion) -> None:
+    """Set the limits beyond which the guard, the row of θ' or a fence means an event; other rows have none."""
+    for f in range(motion.values.shape[1]):
+        motion.values[LOWER, f] = 0.0 if f >= system.fences else -np.inf
+        motion.values[UPPER, f] = np.inf
+    motion.values[LOWER, GUARD] = motion.limits[LOW]
+    motion.values[UPPER, GUARD] = motion.limits[HIGH]
+    sign = system.phases[phase].turns * system.phases[phase].side
+    if system.turning_row >= 0 and sign > 0.0:
+        motion.values[LOWER, system.turning_row] = 0.0
+    if system.turning_row >= 0 and sign < 0.0:
+        motion.values[UPPER, system.turning_row] = 0.0
 
 
 @kernel

@@ -29,7 +29,7 @@ from rockflex.solve.peaks import row_at
 @kernel
 def enter(system: System, at: Progress, phase: int, motion: Motion) -> None:
     """Continue in another phase from the present state; in a linear phase the grid is resumed at `at.place`."""
-    at.phase, at.tuned, at.stated, at.started = phase, False, True, False
+    at.phase, at.tuned, at.stated = phase, False, True
     levels = system.phases[phase].levels
     at.place = min(int(at.begun / unit_of(system, levels)), (1 << levels) - 1)
     recollect(system, phase, motion)

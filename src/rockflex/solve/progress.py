@@ -3,6 +3,7 @@
 import numpy as np
 
 from rockflex.solve.layout import Progress, record_of
+from rockflex.solve.status import Status
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.
 _PROGRESS = record_of(
@@ -15,8 +16,13 @@ _PROGRESS = record_of(
         ("last", np.float64),  # acceleration at the end of the previous stretch; NaN at first
         ("slope", np.float64),  # of the acceleration, to which w refers
         ("stated", np.bool_),  # whether the state is up to date, and at least as accurate as w
+        ("deferred", np.int64),  # the block kept for later that is being searched for peaks; -1 for none
+        ("status", np.int64),  # how the motion ended, if only peaks are still to be searched
         ("tuned", np.bool_),  # whether w is up to date
-        ("started", np.bool_),  # whether the rows at the start of the sample are known from the previous one
+        ("blocked", np.bool_),  # whether the rows over the samples ahead are known
+        ("count", np.int64),  # of the samples of this block that no event ends
+        ("marks", np.int64),  # those in which peaks are still to be searched, as bits
+        ("walk", np.int64),  # the one to which w refers; -1 for none
         ("begun", np.float64),  # completed part of the present sample in s
         ("place", np.int64),  # on the grid of the present sample
         ("level", np.int64),  # of the next step
@@ -52,7 +58,7 @@ def progress_at_start(phase: int, *, stated: bool) -> Progress:
 def _at_start() -> bytes:
     at = np.zeros(1, dtype=_PROGRESS)
     at["last"] = at["lift"] = at["slide"] = np.nan
-    at["lacking"], at["step"], at["branch"] = -1, np.inf, 1.0
+    at["lacking"], at["deferred"], at["status"], at["step"], at["branch"] = -1, -1, int(Status.PAUSED), np.inf, 1.0
     return at.tobytes()
 
 

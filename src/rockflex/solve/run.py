@@ -14,8 +14,10 @@ from rockflex.solve.adaptive.curves import values_of_rows
 from rockflex.solve.adaptive.layout import TOLD, Flow, Integrator, Stages
 from rockflex.solve.adaptive.step import choose_branch, forget
 from rockflex.solve.adaptive.steps import step_through
-from rockflex.solve.events import CROSSED, PAUSED
-from rockflex.solve.exact.march import march, to_coordinates, to_state
+from rockflex.solve.events import CROSSED, LACKS_PHASE, PAUSED
+from rockflex.solve.exact.coordinates import to_coordinates, to_state
+from rockflex.solve.exact.deferred import search_deferred
+from rockflex.solve.exact.march import march
 from rockflex.solve.exact.probe import NOTHING
 from rockflex.solve.history import MARGIN, keep, room_left
 from rockflex.solve.layout import (
@@ -45,7 +47,7 @@ ENDED, SETTLED, UNSETTLED = int(Status.ENDED), int(Status.SETTLED), int(Status.U
 BEGINNING, CARRYING, LOOKING = 0, 1, 2  # stages: start of a stretch; whole samples; closer look at one sample
 STILL = 1e-13  # relative deviation of a row from its constant that is rounding
 CALM = 1e-8  # 1/s: of the largest value so far, the rate of one that is at rest
-BLOCK = 4096  # largest number of samples advanced at once
+STRETCH = 4096  # largest number of samples between two checks of the work
 
 
 @python_kernel
@@ -53,6 +55,19 @@ def run(
     system: System, steps: Integrator | None, impact: Impact, course: Course, at: Progress, log: Log, motion: Motion
 ) -> int:
     """Continue the motion; return how the run ended, or why it is interrupted."""
+    if at.status == PAUSED:
+        status = follow(system, steps, impact, course, at, log, motion)
+        if status < 0 or status in (PAUSED, LACKS_PHASE):
+            return status
+        at.status = status
+    return at.status if search_deferred(system, course, at, log, motion) else PAUSED
+
+
+@inlined_kernel
+def follow(
+    system: System, steps: Integrator | None, impact: Impact, course: Course, at: Progress, log: Log, motion: Motion
+) -> int:
+    """Continue the motion to its end; peaks may still be to be searched in some blocks."""
     rate = 1.0 / course.dt
     if not at.entered:
         recollect(system, at.phase, motion)
@@ -65,6 +80,8 @@ def run(
                 return UNSETTLED if course.settle else ENDED
             piece = course.quiet[: min(course.quiet.size - 1, remaining) + 1]
         if at.stage == BEGINNING:
+            if course.settle and at.offset > 0 and not search_deferred(system, course, at, log, motion):
+                return PAUSED
             if begin_piece(system, steps, course, piece[0], rise_at(vertical, 0), at, log, motion):
                 return SETTLED
             at.stage = CARRYING
@@ -75,9 +92,7 @@ def run(
                     return PAUSED
                 if not carry(system, steps, piece, vertical, course.dt, at, log, motion):
                     continue
-                # A phase in closed form has examined the whole sample.
-                at.stage, at.place, at.level = LOOKING, 0, 0
-                at.probed = system.phases[at.phase].marches and level_samples(vertical, at.index) > 0
+                at.stage, at.place, at.level, at.probed = LOOKING, 0, 0, False
                 at.slope = (piece[at.index + 1] - piece[at.index]) * rate
                 log.tally[EVENTS] = 0
             i = at.index
@@ -90,7 +105,7 @@ def run(
             if status != CROSSED:
                 return status
             log.work[LEFT] -= log.work[CARRY]
-            at.index, at.stage, at.begun, at.started = i + 1, CARRYING, 0.0, False
+            at.index, at.stage, at.begun = i + 1, CARRYING, 0.0
         if system.phases[at.phase].marches and not at.stated:
             to_state(system, at, piece[piece.size - 1], motion)
             at.stated = True
@@ -112,7 +127,6 @@ def begin_piece(
 ) -> bool:
     """Prepare for a stretch of acceleration; return True if a run until settled has settled."""
     time, side = at.offset * course.dt, system.phases[at.phase].side
-    at.started = False
     if system.phases[at.phase].marches:
         at.slope = 0.0
         to_coordinates(system, at, ground, motion)
@@ -205,11 +219,11 @@ def rise_at(vertical: Array, index: int) -> float:
 
 @kernel
 def level_samples(vertical: Array, index: int) -> int:
-    """Return over how many samples from one on the ground does not move vertically, at most `BLOCK`."""
+    """Return over how many samples from one on the ground does not move vertically, at most `STRETCH`."""
     if vertical.size == 0:
-        return BLOCK
+        return STRETCH
     count = 0
-    while count < BLOCK and index + count + 1 < vertical.size:
+    while count < STRETCH and index + count + 1 < vertical.size:
         if vertical[index + count] != 0.0 or vertical[index + count + 1] != 0.0:
             return count
         count += 1
@@ -242,9 +256,9 @@ def carry(
         to_coordinates(system, at, float(piece[at.index]), motion)
         at.tuned = True
     first = at.index
-    most = min(BLOCK, level)
+    most = min(STRETCH, level)
     if log.history.shape[0] > 0:
         most = min(most, room_left(log) + MARGIN // 2)
-    march(system, piece, dt, most, at, log, motion)
+    march(system, piece, most, at, log, motion)
     log.work[LEFT] -= (at.index - first) * log.work[CARRY]
     return at.finding != NOTHING

@@ -4,9 +4,9 @@ from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import Impact
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.events import CROSSED, PAUSED, cross
+from rockflex.solve.exact.coordinates import to_coordinates, to_state
 from rockflex.solve.exact.grid import largest_step
-from rockflex.solve.exact.march import to_coordinates, to_state
-from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe, set_limits
+from rockflex.solve.exact.probe import EVENT, PEAK, examine, probe
 from rockflex.solve.exact.survey import survey
 from rockflex.solve.history import keep
 from rockflex.solve.layout import ENDS, FINAL, LEFT, LOOK, NOW, Log, Motion, Progress, Span, System, is_shaken, unit_of
@@ -59,9 +59,8 @@ def cross_sample(
                 if not at.tuned:
                     to_coordinates(system, at, here, motion)
                     at.tuned = True
-                set_limits(system, p, log, motion)
                 examine(system, p, at.level, here, here + sample.slope * unit * stride, sample.slope, motion)
-                at.finding = probe(system, p, at.level, sample.slope, motion)
+                at.finding = probe(system, p, at.level, sample.slope, log, motion)
             at.probed = False
             if at.finding == EVENT and at.level < levels:
                 at.level += 1

@@ -12,8 +12,6 @@ from rockflex.solve.layout import (
     FINAL,
     FIRST,
     GUARD,
-    HIGH,
-    LOW,
     LOWER,
     NOW,
     RIPPLE,
@@ -33,27 +31,22 @@ NOTHING, PEAK, EVENT = 0, 1, 2  # what may occur in a step
 
 
 @kernel
-def set_limits(system: System, phase: int, log: Log, motion: Motion) -> None:
-    """Set the limits beyond which a row means an event (the guard and the fences) or a new peak (all others)."""
-    for f in range(log.peaks.size):
-        motion.values[LOWER, f] = -log.peaks[f]
-        motion.values[UPPER, f] = log.peaks[f]
-    if not system.phases[phase].free:
-        motion.values[LOWER, GUARD] = motion.limits[LOW]
-        motion.values[UPPER, GUARD] = motion.limits[HIGH]
-    else:
-        motion.values[LOWER, GUARD] = max(motion.limits[LOW], -log.peaks[GUARD])
-        motion.values[UPPER, GUARD] = min(motion.limits[HIGH], log.peaks[GUARD])
-    for f in range(log.signed, log.peaks.size):
-        motion.values[LOWER, f] = -np.inf
-    for f in range(log.peaks.size, rows_in(system, phase)):
-        motion.values[LOWER, f] = 0.0
-        motion.values[UPPER, f] = np.inf
-    turning = system.turning_row
-    if turning >= 0:
-        sign = system.phases[phase].turns * system.phases[phase].side
-        motion.values[LOWER, turning] = 0.0 if sign > 0.0 else -np.inf
-        motion.values[UPPER, turning] = 0.0 if sign < 0.0 else np.inf
+def step(system: System, phase: int, level: int, motion: Motion) -> None:
+    """Advance `motion.w` over a step, from now to its end."""
+    pairs = motion.norms.size
+    now, ends, blocks = motion.w[NOW], motion.w[ENDS], system.blocks[phase, level]
+    if system.phases[phase].dense:
+        for i in range(2 * pairs):
+            ends[i] = 0.0
+            for k in range(2 * pairs):
+                ends[i] += system.propagator[phase, level, i, k] * now[k]
+        return
+    for k in range(system.phases[phase].active):
+        x, y = now[k], now[pairs + k]
+        ends[k] = blocks[0, k] * x + blocks[1, k] * y
+        ends[pairs + k] = blocks[2, k] * x + blocks[3, k] * y
+    for k in range(system.phases[phase].active, pairs):
+        ends[k], ends[pairs + k] = now[k], now[pairs + k]
 
 
 @kernel
@@ -64,13 +57,7 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
     for k in range(count):
         x, y = motion.w[NOW, k], motion.w[NOW, pairs + k]
         motion.norms[k] = math.sqrt(x * x + y * y)
-        motion.w[ENDS, k] = system.blocks[phase, level, 0, k] * x + system.blocks[phase, level, 1, k] * y
-        motion.w[ENDS, pairs + k] = system.blocks[phase, level, 2, k] * x + system.blocks[phase, level, 3, k] * y
-    if system.phases[phase].dense:
-        for i in range(motion.w.shape[1]):
-            motion.w[ENDS, i] = 0.0
-            for k in range(motion.w.shape[1]):
-                motion.w[ENDS, i] += system.propagator[phase, level, i, k] * motion.w[NOW, k]
+    step(system, phase, level, motion)
     for f in range(rows_in(system, phase)):
         if not motion.flags[ASKED, f]:
             continue
@@ -87,7 +74,7 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
 
 
 @kernel
-def probe(system: System, phase: int, level: int, slope: float, motion: Motion) -> int:
+def probe(system: System, phase: int, level: int, slope: float, log: Log, motion: Motion) -> int:
     """Return what can occur in the examined step: nothing, a peak, or an event; `DOUBT` marks the rows in question.
 
     A row whose chord, widened by `sag`, is within the limits is settled at once. Otherwise, if its slope is within
@@ -105,8 +92,11 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
         for k in range(count):
             sag += system.bounds[phase, SAG, level, f, k] * motion.norms[k]
         first, last = motion.values[FIRST, f], motion.values[FINAL, f]
+        lower, upper = motion.values[LOWER, f], motion.values[UPPER, f]
+        highest = log.peaks[f] if f < log.peaks.size and (f != GUARD or system.phases[phase].free) else np.inf
+        lowest = -np.inf if f >= log.signed else -highest
         low, high = min(first, last), max(first, last)
-        if low - sag >= motion.values[LOWER, f] and high + sag <= motion.values[UPPER, f]:
+        if low - sag >= max(lower, lowest) and high + sag <= min(upper, highest):
             continue
         swing = ripple = 0.0
         before = after = system.row_forcing[phase, f, 0] * slope
@@ -119,18 +109,19 @@ def probe(system: System, phase: int, level: int, slope: float, motion: Motion) 
             after += system.rows[phase, SLOPES, f, pairs + k] * motion.w[ENDS, pairs + k]
         hidden = min(before, after) <= swing and max(before, after) >= -swing
         if hidden:
-            step = unit_of(system, level)
-            low, high = cubic_range(first, last, before * step, after * step)
-            hidden = low - ripple < motion.values[LOWER, f] or high + ripple > motion.values[UPPER, f]
-        elif f == GUARD:
-            # A rotation may start on its limit, where it has just left the ground, but not end there.
-            hidden = first < motion.limits[LOW] or first > motion.limits[HIGH]
-            hidden = hidden or last <= motion.limits[LOW] or last >= motion.limits[HIGH]
-        elif f == system.turning_row or f >= system.fences:
-            hidden = last <= motion.values[LOWER, f] or last >= motion.values[UPPER, f]
-        motion.flags[DOUBT, f] = hidden
-        if hidden:
-            finding = max(finding, EVENT if f in (GUARD, system.turning_row) or f >= system.fences else PEAK)
+            length = unit_of(system, level)
+            low, high = cubic_range(first, last, before * length, after * length)
+            low, high = low - ripple, high + ripple
+        event = False
+        if f == GUARD or f == system.turning_row or f >= system.fences:
+            event = hidden and (low < lower or high > upper)
+            if not hidden:
+                event = last <= lower or last >= upper
+                # A rotation may start on its limit, where it has just left the ground, but not end there.
+                event |= f == GUARD and (first < lower or first > upper)
+        motion.flags[DOUBT, f] = event or (hidden and (low < lowest or high > highest))
+        if motion.flags[DOUBT, f]:
+            finding = max(finding, EVENT if event else PEAK)
     return finding
 
 

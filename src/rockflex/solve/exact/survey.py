@@ -3,9 +3,9 @@
 import numpy as np
 
 from rockflex._kernel import kernel
+from rockflex.solve.exact.coordinates import to_state
 from rockflex.solve.exact.grid import largest_step
-from rockflex.solve.exact.march import to_state
-from rockflex.solve.exact.probe import examine, probe, set_limits
+from rockflex.solve.exact.probe import examine, probe
 from rockflex.solve.exact.series import expand, row_series
 from rockflex.solve.layout import (
     ASKED,
@@ -59,9 +59,8 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
         if not probed:
             for f in range(rows_in(system, p)):
                 motion.flags[ASKED, f] = motion.clear[f] <= place
-            set_limits(system, p, log, motion)
             examine(system, p, depth, start, start + span.slope * unit * stride, span.slope, motion)
-            probe(system, p, depth, span.slope, motion)
+            probe(system, p, depth, span.slope, log, motion)
             clear = True
             for f in range(rows_in(system, p)):
                 if motion.flags[DOUBT, f]:
@@ -75,7 +74,8 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
             continue
         if not clear:
             log.work[LEFT] -= log.work[SERIES]
-            to_state(system, at, start, motion)
+            if not at.stated or place > 0:
+                to_state(system, at, start, motion)
             time = span.time + unit * place
             survey_unit(system, p, Span(time, span.until, start, span.slope, unit, 0.0, 0.0), log, motion)
         for k in range(motion.w.shape[1]):
@@ -95,7 +95,7 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
 def survey_unit(system: System, phase: int, span: Span, log: Log, motion: Motion) -> None:
     """Update the peaks of the rows in doubt over a unit without events."""
     expand(system, phase, motion, span, np.nan, np.nan)
-    for f in range(1, log.peaks.size):
+    for f in range(0 if system.phases[phase].free else 1, log.peaks.size):
         if motion.flags[DOUBT, f]:
             row_series(system, phase, f, motion, span)
             raise_peak(motion.polys, f, 1.0, span, log)

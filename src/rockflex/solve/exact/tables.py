@@ -13,8 +13,11 @@ from scipy.linalg import expm
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex._kernel import Entry
+from rockflex._vectors import BLOCK
 from rockflex.models import SUMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis, Drift
+from rockflex.solve.exact.powers import put_powers
 from rockflex.solve.layout import (
     CHANGED,
     CONSTANT,
@@ -35,7 +38,10 @@ from rockflex.solve.layout import (
     SWING,
     VALUES,
     System,
+    padded,
 )
+
+_put_powers = Entry(put_powers)  # its argument types never differ
 
 LONGEST_FALL = 300.0  # e-folds of the rotation within a time step; more would overflow
 
@@ -118,6 +124,12 @@ def empty_system(
         blocks=np.zeros((*whole, 4, pairs)),
         propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
         bounds=np.zeros((capacity, 3, levels + 1, rows, pairs)),
+        ahead=np.zeros((capacity, rows, core, BLOCK)),
+        kicked=np.zeros((capacity, rows, 2 * BLOCK)),
+        leap=np.zeros((capacity, 4, pairs)),
+        pushed=np.zeros((capacity, BLOCK, padded(core))),
+        leeway=np.zeros((capacity, rows, pairs)),
+        stray=np.zeros((capacity, rows)),
     )
 
 
@@ -156,7 +168,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
             system.fence_values[p, e] = fence.value
     count = len(phase.fences)
     if basis is None or arrow is None:
-        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, count, False, 0, 0, False, False
+        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, count, False, 0, 0, False, False, 0
         return
     levels = levels_of(basis.fastest, dt)
     terms = terms_of(basis.fastest, dt)
@@ -166,7 +178,8 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     at_rest = phase.side == 0 and not phase.free  # then the rotation is not only held, but zero
     active = 0 if not marches else basis.moving if phase.free or at_rest else pairs
     dense = marches and basis.dense
-    system.phases[p] = phase.side, phase.free, decays, phase.turns, active, count, marches, levels, terms, True, dense
+    course = active, count, marches, levels, terms
+    system.phases[p] = phase.side, phase.free, decays, phase.turns, *course, True, dense, 0
     system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
@@ -190,6 +203,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
         system.blocks[p], system.bounds[p] = system.blocks[twin], system.bounds[twin]
         if basis.dense:
             system.propagator[p] = system.propagator[twin]
+        _put_powers(system, p, _work(basis))
         return
     steps: Array = dt * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     system.blocks[p, own] = _blocks(basis, steps)
@@ -199,6 +213,13 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     else:
         bounds = _bounds(basis, rows, first, steps)
     system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
+    _put_powers(system, p, _work(basis))
+
+
+def _work(basis: Basis) -> Array:
+    """Return the work arrays of `put_powers`."""
+    size = basis.basis.shape[0] if basis.dense else 0
+    return np.zeros((2, size, size))
 
 
 def put_heavier(system: System, p: int, phase: Phase, heavier: Phase, rows: Array) -> None:
