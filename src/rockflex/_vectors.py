@@ -5,7 +5,7 @@ could overlap. The intrinsics state the operations on vectors themselves; on any
 instructions that it has.
 """
 
-from typing import Any
+from typing import Any, cast
 
 from llvmlite import ir
 from numba import config, types
@@ -61,7 +61,7 @@ def _plain_sums(sums: Array, table: Array, factors: Array) -> None:
 class _Builder:
     """Vector operations in the code of a kernel."""
 
-    def __init__(self, context: Any, builder: ir.IRBuilder) -> None:
+    def __init__(self, context: Any, builder: Any) -> None:
         self.context, self.builder = context, builder
 
     def data(self, kind: Any, value: Any) -> ir.Value:
@@ -146,21 +146,33 @@ def _contiguous(*arguments: Any) -> bool:
 
 
 @intrinsic
-def _compiled_row(_, values, constant, by_ground, by_slope, course, table, begun, active, kicked):
+def _compiled_row(
+    _: Any,
+    values: Any,
+    constant: Any,
+    by_ground: Any,
+    by_slope: Any,
+    course: Any,
+    table: Any,
+    begun: Any,
+    active: Any,
+    kicked: Any,
+) -> Any:
     given = (values, constant, by_ground, by_slope, course, table, begun, active, kicked)
     return (types.none(*given), _row) if _contiguous(*given) else None
 
 
 @intrinsic
-def _compiled_outside(_, values, lower, upper):
+def _compiled_outside(_: Any, values: Any, lower: Any, upper: Any) -> Any:
     return (types.int64(values, lower, upper), _outside) if _contiguous(values) else None
 
 
 @intrinsic
-def _compiled_sums(_, sums, table, factors):
+def _compiled_sums(_: Any, sums: Any, table: Any, factors: Any) -> Any:
     return (types.none(sums, table, factors), _sums) if _contiguous(sums, table, factors) else None
 
 
-row_over_block = _plain_row if config.DISABLE_JIT else _compiled_row
-outside = _plain_outside if config.DISABLE_JIT else _compiled_outside
-add_products = _plain_sums if config.DISABLE_JIT else _compiled_sums
+_interpreted = cast("Any", config).DISABLE_JIT
+row_over_block = _plain_row if _interpreted else cast("Any", _compiled_row)
+outside = _plain_outside if _interpreted else cast("Any", _compiled_outside)
+add_products = _plain_sums if _interpreted else cast("Any", _compiled_sums)

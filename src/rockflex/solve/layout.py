@@ -93,6 +93,7 @@ PHASE = record_of(
         ("linear", np.bool_),  # solved in closed form
         ("dense", np.bool_),  # linear, but cannot be uncoupled
         ("block", np.int64),  # samples that its tables cover at once, at most `BLOCK`
+        ("fastest", np.float64),  # largest eigenvalue magnitude, rad/s
     ]
 )
 

@@ -8,6 +8,7 @@ from rockflex._arrays import Array
 from rockflex._kernel import kernel
 
 SHIFT = 40  # steps after which a polynomial is expanded about a new point
+PRECISE = 1e-16  # of the interval
 MOST_STEPS = 10_000  # usually a few suffice; only a multiple root takes more, and this is then close enough
 
 
@@ -49,6 +50,9 @@ def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
     close together and the bound is too pessimistic: `polys[row]` is then expanded about the current point.
     """
     curvature = bend(polys, row, stop)
+    value, slope = evaluate(polys, row, start)
+    if value > 0.0 and slope + curvature * (stop - start) < 0.0:
+        return only_root(polys, row, start, stop, value, slope)
     base, u = 0.0, start
     for count in range(1, MOST_STEPS + 1):
         value, slope = evaluate(polys, row, u)
@@ -73,6 +77,34 @@ def first_descent(polys: Array, row: int, start: float, stop: float) -> float:
             u = 0.0
             curvature = bend(polys, row, stop)
     return base + u
+
+
+@kernel
+def only_root(polys: Array, row: int, start: float, stop: float, value: float, slope: float) -> float:
+    """Return where a polynomial that falls throughout [start, stop] reaches zero, from its value and slope at `start`.
+
+    Newton's steps are kept between the points known to lie before and behind the root.
+    """
+    last, _ = evaluate(polys, row, stop)
+    if last > 0.0:
+        return np.inf
+    before, behind = start, stop
+    u = start - value / slope
+    for _ in range(MOST_STEPS):
+        if not before < u < behind:
+            u = 0.5 * (before + behind)
+            if not before < u < behind:
+                return behind
+        value, slope = evaluate(polys, row, u)
+        if value > 0.0:
+            before = u
+        else:
+            behind = u
+        step = value / slope
+        if abs(step) <= PRECISE:
+            return u - step
+        u -= step
+    return behind
 
 
 @kernel

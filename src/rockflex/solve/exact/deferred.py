@@ -11,7 +11,6 @@ from rockflex.solve.exact.blocks import look_ahead
 from rockflex.solve.exact.search import raise_to_samples, rising, search_next
 from rockflex.solve.layout import BEGUN, INCLINES, MOST_DEFERRED, NOW, Course, Log, Motion, Progress, System
 from rockflex.solve.memory import recollect
-from rockflex.solve.peaks import size_of
 
 
 @kernel
@@ -27,13 +26,10 @@ def defer(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     each.waits, each.slope = True, motion.block[INCLINES, 0]
     for k in range(motion.w.shape[1]):
         motion.coordinates[place, k] = motion.w[BEGUN, k]
+    # The peaks so far are at least the values at the samples of the block.
     for f in range(log.peaks.size):
-        bound = -np.inf
-        if (f > 0 or system.phases[at.phase].free) and rising(f, at, log, motion) != 0:
-            bound = size_of(motion.begins[f], f, log)
-            for m in range(at.count):
-                bound = max(bound, size_of(motion.told[f, m], f, log))
-        motion.highest[place, f] = bound + motion.slack[f]
+        rises = (f > 0 or system.phases[at.phase].free) and rising(f, at, log, motion) != 0
+        motion.highest[place, f] = log.peaks[f] + motion.slack[f] if rises else -np.inf
     at.marks = 0
     return True
 

@@ -91,8 +91,8 @@ def keep_samples(system: System, piece: Array, at: Progress, log: Log, motion: M
         step(system, at.phase, 0, motion)
         for k in range(motion.w.shape[1]):
             motion.w[NOW, k] = motion.w[ENDS, k]
-        i = at.index + m + 1
+        i, ground = at.index + m + 1, float(piece[at.index + m + 1])
         at.slope = motion.block[INCLINES, m]
-        to_state(system, at, piece[i], motion)
-        keep(log, (at.offset + i) * system.dt, system.phases[at.phase].side, piece[i], 0.0, motion.state)
+        to_state(system, at, ground, motion)
+        keep(log, (at.offset + i) * system.dt, system.phases[at.phase].side, ground, 0.0, motion.state)
         walk_on(system, at, motion)

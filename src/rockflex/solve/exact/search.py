@@ -14,9 +14,10 @@ from rockflex.solve.peaks import raise_row, size_of
 @kernel
 def look_into(system: System, piece: Array, m: int, at: Progress, log: Log, motion: Motion) -> int:
     """Return what may occur in sample `m` of the block, according to the rows that are asked for."""
-    i, slope = at.index + m, motion.block[INCLINES, m]
+    slope = motion.block[INCLINES, m]
+    here, there = float(piece[at.index + m]), float(piece[at.index + m + 1])
     walk_to(system, m, at, motion)
-    examine(system, at.phase, 0, piece[i], piece[i + 1], slope, motion)
+    examine(system, at.phase, 0, here, there, slope, motion)
     return probe(system, at.phase, 0, slope, log, motion)
 
 
@@ -51,6 +52,7 @@ def search_next(system: System, piece: Array, at: Progress, log: Log, motion: Mo
     m = 0
     while not (at.marks >> m) & 1:
         m += 1
+    finding = NOTHING
     if not at.searching:
         for f in range(rows_in(system, at.phase)):
             motion.flags[ASKED, f] = f < log.peaks.size and (rising(f, at, log, motion) >> m) & 1 == 1
@@ -64,7 +66,7 @@ def search_next(system: System, piece: Array, at: Progress, log: Log, motion: Mo
     if at.searching or finding != NOTHING:
         i = at.offset + at.index + m
         time, until = i * system.dt, (i + 1) * system.dt
-        sample = Span(time, until, piece[at.index + m], motion.block[INCLINES, m], system.dt, 0.0, 0.0)
+        sample = Span(time, until, float(piece[at.index + m]), motion.block[INCLINES, m], system.dt, 0.0, 0.0)
         if not survey(system, at, sample, log, motion):
             return False
     walk_on(system, at, motion)

@@ -31,6 +31,8 @@ from rockflex.solve.layout import (
 from rockflex.solve.peaks import row_at
 from rockflex.solve.polynomials import evaluate
 
+NEGLIGIBLE = 1e-17  # of the first term of a series
+
 
 @kernel
 def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, slide: float) -> None:
@@ -49,7 +51,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, 
     for j in range(freedoms):
         series[n + j, 0] = motion.state[2 * n + 2 * j]
         series[n + j, 1] = motion.state[2 * n + 2 * j + 1] * step
-    square, terms = step * step, system.phases[phase].terms
+    square, terms = step * step, terms_over(system, phase, step)
     for k in range(terms, series.shape[1]):
         for i in range(series.shape[0]):
             series[i, k] = 0.0
@@ -97,6 +99,19 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, 
             series[n + j, k + 2] = turn * pair
             for i in range(n):
                 series[i, k + 2] -= system.border[phase, j, COUPLING, i] * turn * pair
+
+
+@kernel
+def terms_over(system: System, phase: int, step: float) -> int:
+    """Return the number of terms after which a series from t³ (uplift) converges over a step, as in `tables.terms_of`.
+
+    It is at most that over the finest step of the phase.
+    """
+    turn, order, term = system.phases[phase].fastest * step, 3, 1.0
+    while term > NEGLIGIBLE and order + 1 < system.phases[phase].terms:
+        order += 1
+        term *= turn / order
+    return order + 1
 
 
 @kernel

@@ -18,6 +18,7 @@ from rockflex._vectors import BLOCK
 from rockflex.models import SUMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis, Drift
 from rockflex.solve.exact.powers import put_powers
+from rockflex.solve.exact.series import NEGLIGIBLE
 from rockflex.solve.layout import (
     CHANGED,
     CONSTANT,
@@ -71,7 +72,7 @@ def terms_of(fastest: float, dt: float) -> int:
     """Return the number of terms after which a series from t³ (uplift) converges over the finest step of a phase."""
     turn = fastest * dt * 0.5 ** levels_of(fastest, dt)
     order, term = 3, 1.0
-    while term > 1e-17:
+    while term > NEGLIGIBLE:
         order += 1
         term *= turn / order
     return order + 1
@@ -168,7 +169,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
             system.fence_values[p, e] = fence.value
     count = len(phase.fences)
     if basis is None or arrow is None:
-        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, count, False, 0, 0, False, False, 0
+        system.phases[p] = phase.side, phase.free, False, phase.turns, 0, count, False, 0, 0, False, False, 0, 0.0
         return
     levels = levels_of(basis.fastest, dt)
     terms = terms_of(basis.fastest, dt)
@@ -179,7 +180,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     active = 0 if not marches else basis.moving if phase.free or at_rest else pairs
     dense = marches and basis.dense
     course = active, count, marches, levels, terms
-    system.phases[p] = phase.side, phase.free, decays, phase.turns, *course, True, dense, 0
+    system.phases[p] = phase.side, phase.free, decays, phase.turns, *course, True, dense, 0, basis.fastest
     system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
