@@ -2,10 +2,11 @@
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
+from rockflex._vectors import BLOCK
 from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.solve.layout import KEPT, Log
 
-MARGIN = 8  # largest number of states added between two pauses
+MARGIN = 8 + BLOCK  # largest number of states added between two pauses: at events, and over a block of samples
 
 
 @kernel

@@ -9,6 +9,7 @@ import math
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel, python_kernel
+from rockflex._vectors import BLOCK
 from rockflex.models import Impact, field_rates
 from rockflex.solve.adaptive.curves import values_of_rows
 from rockflex.solve.adaptive.layout import TOLD, Flow, Integrator, Stages
@@ -19,7 +20,7 @@ from rockflex.solve.exact.coordinates import to_coordinates, to_state
 from rockflex.solve.exact.deferred import search_deferred
 from rockflex.solve.exact.march import march
 from rockflex.solve.exact.probe import NOTHING
-from rockflex.solve.history import MARGIN, keep, room_left
+from rockflex.solve.history import keep, room_left
 from rockflex.solve.layout import (
     CARRY,
     EVENTS,
@@ -258,7 +259,8 @@ def carry(
     first = at.index
     most = min(STRETCH, level)
     if log.history.shape[0] > 0:
-        most = min(most, room_left(log) + MARGIN // 2)
+        # Whole blocks, so that a history leaves the motion as it is.
+        most = min(most, max(room_left(log) // BLOCK, 1) * BLOCK)
     march(system, piece, most, at, log, motion)
     log.work[LEFT] -= (at.index - first) * log.work[CARRY]
     return at.finding != NOTHING
