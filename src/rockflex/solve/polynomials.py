@@ -86,7 +86,7 @@ def only_root(polys: Array, row: int, start: float, stop: float, value: float, s
     Newton's steps are kept between the points known to lie before and behind the root.
     """
     last, _ = evaluate(polys, row, stop)
-    if last > 0.0:
+    if last >= 0.0:
         return np.inf
     before, behind = start, stop
     u = start - value / slope

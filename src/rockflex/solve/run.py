@@ -56,12 +56,14 @@ def run(
     system: System, steps: Integrator | None, impact: Impact, course: Course, at: Progress, log: Log, motion: Motion
 ) -> int:
     """Continue the motion; return how the run ended, or why it is interrupted."""
+    if at.deferred >= 0 and not search_deferred(system, course, at, log, motion):
+        return PAUSED
     if at.status == PAUSED:
         status = follow(system, steps, impact, course, at, log, motion)
         if status < 0 or status in (PAUSED, LACKS_PHASE):
             return status
         at.status = status
-    return at.status if search_deferred(system, course, at, log, motion) else PAUSED
+    return int(at.status) if search_deferred(system, course, at, log, motion) else PAUSED
 
 
 @inlined_kernel
@@ -263,4 +265,4 @@ def carry(
         most = min(most, max(room_left(log) // BLOCK, 1) * BLOCK)
     march(system, piece, most, at, log, motion)
     log.work[LEFT] -= (at.index - first) * log.work[CARRY]
-    return at.finding != NOTHING
+    return at.finding != NOTHING and not at.blocked  # otherwise the search for peaks is interrupted

@@ -48,14 +48,17 @@ def march(system: System, piece: Array, most: int, at: Progress, log: Log, motio
         while at.marks != 0:
             if not search_next(system, piece, at, log, motion):
                 return
+        stops = at.finding == EVENT
         if log.history.shape[0] > 0:
-            keep_samples(system, piece, at, log, motion)
-        pass_block(system, at, at.finding == EVENT, motion)
+            keep_samples(system, piece, at.count if stops else at.count - 1, at, log, motion)
+        pass_block(system, at, stops, motion)
         at.blocked = False
         at.stated = at.stated and at.count == 0
         at.index += at.count
-        if at.finding == EVENT:
+        if stops:
             return
+        if log.history.shape[0] > 0:
+            keep_now(system, piece, at.index, at, log, motion)
 
 
 @kernel
@@ -84,15 +87,21 @@ def watch(system: System, piece: Array, at: Progress, log: Log, motion: Motion) 
 
 
 @kernel
-def keep_samples(system: System, piece: Array, at: Progress, log: Log, motion: Motion) -> None:
-    """Add the states at the ends of the samples of the block to the history."""
-    for m in range(at.count):
+def keep_samples(system: System, piece: Array, count: int, at: Progress, log: Log, motion: Motion) -> None:
+    """Add the states at the ends of the first samples of the block to the history."""
+    for m in range(count):
         walk_to(system, m, at, motion)
         step(system, at.phase, 0, motion)
         for k in range(motion.w.shape[1]):
             motion.w[NOW, k] = motion.w[ENDS, k]
-        i, ground = at.index + m + 1, float(piece[at.index + m + 1])
         at.slope = motion.block[INCLINES, m]
-        to_state(system, at, ground, motion)
-        keep(log, (at.offset + i) * system.dt, system.phases[at.phase].side, ground, 0.0, motion.state)
+        keep_now(system, piece, at.index + m + 1, at, log, motion)
         walk_on(system, at, motion)
+
+
+@kernel
+def keep_now(system: System, piece: Array, i: int, at: Progress, log: Log, motion: Motion) -> None:
+    """Add the state that belongs to `motion.w[NOW]`, at a sample of the piece, to the history."""
+    ground = float(piece[i])
+    to_state(system, at, ground, motion)
+    keep(log, (at.offset + i) * system.dt, system.phases[at.phase].side, ground, 0.0, motion.state)
