@@ -3,8 +3,10 @@
 # (pyarrow comes without types)
 
 import json
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from zlib import crc32
 
 from rockflex._files import irregular
@@ -20,12 +22,48 @@ class PartError(Exception):
     """The reason why a file is not the expected part."""
 
 
-def encode(table: "pa.Table", study: str, number: int, versions: dict[str, Any]) -> bytes:
+@dataclass(frozen=True)
+class Part:
+    """A chunk as the content of its file: `number` of the chunk, its number of `rows`, and the `content`."""
+
+    number: int
+    rows: int
+    content: bytes
+
+
+@dataclass(frozen=True)
+class DamagedPart:
+    """A part that cannot be used: `number` of the chunk, `path` of the file, and the `reason`."""
+
+    number: int
+    path: Path
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.reason}"
+
+
+@dataclass(frozen=True)
+class PartMaker:
+    """What makes the parts of a study; small and picklable, so that any process can make them, without the folder.
+
+    `study` is the digest of the study, `versions` are those that every part records.
+    """
+
+    study: str
+    versions: Mapping[str, str]
+
+    def make(self, number: int, table: "pa.Table") -> Part:
+        """Return the part of a chunk."""
+        return Part(number, table.num_rows, encode(table, self.study, number, self.versions))
+
+
+def encode(table: "pa.Table", study: str, number: int, versions: Mapping[str, str]) -> bytes:
     """Return the content of the part's file."""
     import pyarrow as pa
     from pyarrow import parquet
 
-    origin = {"rockflex.study": study, "rockflex.chunk": str(number), "rockflex.versions": json.dumps(versions)}
+    origin = {"rockflex.study": study, "rockflex.chunk": str(number), "rockflex.versions": json.dumps(dict(versions))}
     sink = pa.BufferOutputStream()
     with parquet.ParquetWriter(sink, table.schema, compression="zstd") as writer:
         writer.write_table(table)
@@ -46,6 +84,12 @@ def verify(path: Path, study: str, number: int) -> bytes:
     if kind:
         raise PartError(f"it is {kind}")
     content = path.read_bytes()
+    check(content, study, number)
+    return content
+
+
+def check(content: bytes, study: str, number: int) -> None:
+    """Raise a `PartError` unless this is the content of a part's file."""
     if content[:4] != b"PAR1" or content[-4:] != b"PAR1" or len(content) < 12:
         raise PartError(f"it is no whole Parquet file, but {len(content)} bytes")
     place = content.rfind(MARKER)
@@ -59,7 +103,6 @@ def verify(path: Path, study: str, number: int) -> bytes:
         raise PartError("it belongs to another study")
     if origin.get(b"rockflex.chunk") != str(number).encode():
         raise PartError(f"it holds chunk {origin.get(b'rockflex.chunk', b'?').decode()}")
-    return content
 
 
 def read(path: Path, study: str, number: int) -> "pa.Table":
