@@ -27,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 import rockflex as rf
 from dask_cluster import Cluster
 from rockflex.parallel import core_count
+from rockflex.parallel._batches import RATE, TASK
 
 STRUCTURES, PULSES = 20, 50
 SAMPLE = 0.2  # s between looks at the memory
@@ -56,7 +57,7 @@ def main() -> None:
             console.print(line(found[-1]), highlight=False)
     console.print(table(found))
     law(found, console)
-    paper(found[-1], console)
+    paper(found, console)
 
 
 def in_own_process(runs: int, workers: int, chunk: int) -> dict[str, Any]:
@@ -237,24 +238,27 @@ def law(found: list[dict[str, Any]], console: Console) -> None:
     )
 
 
-def paper(one: dict[str, Any], console: Console) -> None:
-    """Work out a large study on many cores from the processor times of one measurement."""
-    run = one["busy"]["workers"] / one["runs"]
-    size = one["bytes"] / one["runs"] * RUNS
-    parts = RUNS / PART
-    writing = one["busy"]["client"] / one["bytes"]  # s a byte: checksums, columns and copies, all in proportion
-    computing = RUNS * run / CORES
-    tasks = min(parts, RUNS * run / max(1.0, CORES / 100.0))
+def paper(found: list[dict[str, Any]], console: Console) -> None:
+    """Work out a large study on many cores from the processor times."""
+    last = found[-1]
+    run, size = last["busy"]["workers"] / last["runs"], last["bytes"] / last["runs"]
+    client, (parts, tasks) = growth(found), (RUNS / PART, RUNS * run / max(TASK, CORES / RATE))
     rows = {
-        f"computing, {RUNS:.0e} runs of {run * 1e3:.2f} ms on {CORES} cores": computing,
-        f"client, {size / 1e9:.0f} GB in {parts:,.0f} parts, at its processor time a byte": writing * size,
-        f"store, {parts:,.0f} files one after the other, {SYNCED * 1e3:.0f} ms each": parts * SYNCED,
-        f"network into the client, {NETWORK * 8e-9:.0f} Gbit/s": size / NETWORK,
-        f"scheduler, {tasks:,.0f} tasks": tasks * one["busy"]["scheduler"] / one["tasks"],
+        f"computing: {RUNS:.0e} runs of {run * 1e3:.2f} ms on {CORES} cores": RUNS * run / CORES,
+        f"client: {client * 1e6:.1f} µs a run to take it, check it and write it": RUNS * client,
+        f"store: {parts:,.0f} files one after the other, {SYNCED * 1e3:.0f} ms each until on disk": parts * SYNCED,
+        f"network: {RUNS * size / 1e9:.0f} GB into the client, {NETWORK * 8e-9:.0f} Gbit/s": RUNS * size / NETWORK,
+        f"scheduler: {tasks:,.0f} tasks": tasks * last["busy"]["scheduler"] / last["tasks"],
     }
-    console.print("On paper (s), each by itself; the slowest decides:")
+    console.print(f"On paper, {RUNS:.0e} runs on {CORES} cores (s), each by itself; the slowest decides:")
     for label, seconds in rows.items():
         console.print(f"  {label}: {seconds:,.0f}", highlight=False)
+
+
+def growth(found: list[dict[str, Any]]) -> float:
+    """Processor time of the client in s for each further run; the first part of its time, to prepare, is left out."""
+    runs, busy = ([one["runs"] for one in found], [one["busy"]["client"] for one in found])
+    return float(np.polyfit(runs, busy, 1)[0]) if len(set(runs)) > 1 else busy[-1] / runs[-1]
 
 
 if __name__ == "__main__":

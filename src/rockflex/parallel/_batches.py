@@ -2,7 +2,7 @@
 
 AHEAD = 2  # tasks in flight for each thread of the cluster
 TASK = 1.0  # s of computing in a task, at least, where there is so much left
-RATE = 100.0  # tasks a second that a scheduler is given, at most; it manages about ten times as many
+RATE = 50.0  # tasks a second that a scheduler is given, at most; it manages several times as many
 
 
 def batch_size(left: int, threads: int, pace: float | None) -> int:
