@@ -27,7 +27,6 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 import rockflex as rf
 from dask_cluster import Cluster
 from rockflex.parallel import core_count
-from rockflex.parallel._batches import RATE, TASK
 
 STRUCTURES, PULSES = 20, 50
 SAMPLE = 0.2  # s between looks at the memory
@@ -241,24 +240,24 @@ def law(found: list[dict[str, Any]], console: Console) -> None:
 def paper(found: list[dict[str, Any]], console: Console) -> None:
     """Work out a large study on many cores from the processor times."""
     last = found[-1]
-    run, size = last["busy"]["workers"] / last["runs"], last["bytes"] / last["runs"]
-    client, (parts, tasks) = growth(found), (RUNS / PART, RUNS * run / max(TASK, CORES / RATE))
+    run, size, parts = last["busy"]["workers"] / last["runs"], last["bytes"] / last["runs"], RUNS / PART
+    client, scheduler = growth(found, "client"), last["busy"]["scheduler"] / last["tasks"]
     rows = {
         f"computing: {RUNS:.0e} runs of {run * 1e3:.2f} ms on {CORES} cores": RUNS * run / CORES,
-        f"client: {client * 1e6:.1f} µs a run to take it, check it and write it": RUNS * client,
-        f"store: {parts:,.0f} files one after the other, {SYNCED * 1e3:.0f} ms each until on disk": parts * SYNCED,
+        f"client: {parts:,.0f} parts of {PART:,d} runs, {client * 1e3:.1f} ms each as measured": parts * client,
+        f"store: {SYNCED * 1e3:.0f} ms for each part until it is on disk": parts * SYNCED,
         f"network: {RUNS * size / 1e9:.0f} GB into the client, {NETWORK * 8e-9:.0f} Gbit/s": RUNS * size / NETWORK,
-        f"scheduler: {tasks:,.0f} tasks": tasks * last["busy"]["scheduler"] / last["tasks"],
+        f"scheduler: a task for each part at most, {scheduler * 1e3:.1f} ms each": parts * scheduler,
     }
     console.print(f"On paper, {RUNS:.0e} runs on {CORES} cores (s), each by itself; the slowest decides:")
     for label, seconds in rows.items():
         console.print(f"  {label}: {seconds:,.0f}", highlight=False)
 
 
-def growth(found: list[dict[str, Any]]) -> float:
-    """Processor time of the client in s for each further run; the first part of its time, to prepare, is left out."""
-    runs, busy = ([one["runs"] for one in found], [one["busy"]["client"] for one in found])
-    return float(np.polyfit(runs, busy, 1)[0]) if len(set(runs)) > 1 else busy[-1] / runs[-1]
+def growth(found: list[dict[str, Any]], role: str) -> float:
+    """Processor time of a role in s for each further part; what it takes to start is left out."""
+    parts, busy = [one["parts"] for one in found], [one["busy"][role] for one in found]
+    return float(np.polyfit(parts, busy, 1)[0]) if len(set(parts)) > 1 else busy[-1] / parts[-1]
 
 
 if __name__ == "__main__":

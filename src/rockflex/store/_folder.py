@@ -13,7 +13,7 @@ from rockflex._files import path_of, sweep, write_whole
 from rockflex.store._frames import in_pandas
 from rockflex.store._lock import Lock
 from rockflex.store._manifest import MANIFEST, SPEC, Manifest
-from rockflex.store._parts import DamagedPart, Part, PartError, PartMaker, check, read, schema_of, verify
+from rockflex.store._parts import DamagedPart, Part, PartError, PartMaker, check, read, schema_at, verify
 from rockflex.store._refusals import refuse_foreign, refuse_other_columns, reported
 from rockflex.store._spec import listed
 
@@ -202,12 +202,11 @@ class StudyFolder:
             )
         self.lock.check()
         try:
-            check(part.content, self.manifest.study, place)
+            schema = check(part.content, self.manifest.study, place)
         except PartError as error:
             raise InputError(
                 f"Chunk {place} cannot be stored in {self.path}: {error}. Make it by the maker of this folder."
             ) from error
-        schema = schema_of(part.content)
         self._refuse_other_columns(place, schema)
         with reported(self.path, len(part.content)):
             path = write_whole(self._part(place), part.content)
@@ -293,7 +292,7 @@ class StudyFolder:
             path = self._part(other)
             try:
                 if other != number and path.exists():
-                    self._known[other] = schema_of(verify(path, self.manifest.study, other))
+                    self._known[other] = schema_at(path, self.manifest.study, other)
                     break
             except (PartError, OSError):
                 continue

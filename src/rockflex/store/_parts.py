@@ -80,16 +80,20 @@ def verify(path: Path, study: str, number: int) -> bytes:
     PartError
         If it is truncated, damaged, not a part, or a part of another study or chunk.
     """
-    kind = irregular(path)
-    if kind:
-        raise PartError(f"it is {kind}")
-    content = path.read_bytes()
+    content = _content(path)
     check(content, study, number)
     return content
 
 
-def check(content: bytes, study: str, number: int) -> None:
-    """Raise a `PartError` unless this is the content of a part's file."""
+def schema_at(path: Path, study: str, number: int) -> "pa.Schema":
+    """Return the columns of a part; raises the same errors as `verify`."""
+    return check(_content(path), study, number)
+
+
+def check(content: bytes, study: str, number: int) -> "pa.Schema":
+    """Return the columns of a part's file; raises the same errors as `verify`."""
+    from pyarrow import BufferReader, parquet
+
     if content[:4] != b"PAR1" or content[-4:] != b"PAR1" or len(content) < 12:
         raise PartError(f"it is no whole Parquet file, but {len(content)} bytes")
     place = content.rfind(MARKER)
@@ -98,11 +102,13 @@ def check(content: bytes, study: str, number: int) -> None:
     recorded = content[place + len(MARKER) :][:8]
     if recorded != b"%08x" % crc32(_sealed(content, BLANK)):
         raise PartError("its bytes do not agree with their checksum")
-    origin = _origin(content)
+    file = parquet.ParquetFile(BufferReader(content))
+    origin: dict[bytes, bytes] = file.metadata.metadata or {}
     if origin.get(b"rockflex.study") != study.encode():
         raise PartError("it belongs to another study")
     if origin.get(b"rockflex.chunk") != str(number).encode():
         raise PartError(f"it holds chunk {origin.get(b'rockflex.chunk', b'?').decode()}")
+    return file.schema_arrow
 
 
 def read(path: Path, study: str, number: int) -> "pa.Table":
@@ -112,19 +118,13 @@ def read(path: Path, study: str, number: int) -> "pa.Table":
     return parquet.ParquetFile(BufferReader(verify(path, study, number))).read()
 
 
-def schema_of(content: bytes) -> "pa.Schema":
-    """Return the columns and types that a reader of the file will see."""
-    from pyarrow import BufferReader, parquet
-
-    return parquet.read_schema(BufferReader(content))
+def _content(path: Path) -> bytes:
+    kind = irregular(path)
+    if kind:
+        raise PartError(f"it is {kind}")
+    return path.read_bytes()
 
 
 def _sealed(content: bytes, checksum: bytes) -> bytes:
     place = content.rindex(MARKER) + len(MARKER)
     return content[:place] + checksum + content[place + len(checksum) :]
-
-
-def _origin(content: bytes) -> dict[bytes, bytes]:
-    from pyarrow import BufferReader, parquet
-
-    return parquet.read_metadata(BufferReader(content)).metadata or {}
