@@ -30,6 +30,7 @@ from rockflex.parallel import core_count
 
 STRUCTURES, PULSES = 20, 50
 SAMPLE = 0.2  # s between looks at the memory
+IDLE = 5.0  # s in which the processor time of waiting is measured
 ROLES = ("client", "scheduler", "workers")
 RUNS, CORES = 1e8, 1000  # of the estimate
 PART = 10_000  # runs in a part of the estimate
@@ -131,12 +132,12 @@ def measure(runs: int, workers: int, chunk: int, folder: Path) -> dict[str, Any]
             "scheduler": [psutil.Process(cluster.scheduler.pid)],
             "workers": [psutil.Process(each.pid) for each in cluster.workers],
         }
-        idle = {role: -used(each) for role, each in processes.items()}
-        time.sleep(3.0)
-        idle = {role: (idle[role] + used(each)) / 3.0 for role, each in processes.items()}
         watch, tasks = Watch(processes), counted_tasks()
+        watch.start()  # its own time counts as idle
+        idle = {role: -used(each) for role, each in processes.items()}
+        time.sleep(IDLE)
         before = {role: used(each) for role, each in processes.items()}
-        watch.start()
+        idle = {role: (idle[role] + before[role]) / IDLE for role in processes}
         begun = time.monotonic()
         stored = rf.fill_study(
             study, folder / "study", dask=cluster.address, progress=lambda now: setattr(watch, "runs", now.runs)
