@@ -23,6 +23,7 @@ from .fragility import fit_stripes as fit_stripes
 from .fragility import risk_targeted_median as risk_targeted_median
 from .kinds import Progress as Progress
 from .kinds import estimate_time as estimate_time
+from .kinds import fill_study as fill_study
 from .kinds import load_study as load_study
 from .kinds import run_study as run_study
 from .modal import Adequacy as Adequacy

@@ -49,8 +49,8 @@ def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None 
         raise InputError(f"{name} must be a sequence of numbers in {unit}, but {_kind(values)} was given.", field=field)
     if array.ndim != 1:
         raise InputError(f"{name} must be one-dimensional, but an array of shape {array.shape} was given.", field=field)
-    bad = np.flatnonzero(~np.isfinite(array))
-    if bad.size:
+    if not np.isfinite(array).all():
+        bad = np.flatnonzero(~np.isfinite(array))
         raise InputError(
             f"{name} must be finite, but {bad.size} of {array.size} values are not, the first "
             f"({array[bad[0]]}) at index {bad[0]}. Remove or repair them before use.",

@@ -293,3 +293,43 @@ def test_help_has_examples():
         assert f"rockflex {command} study.toml --dry-run" in text
         assert "--dask" in text
     assert _study.epilog("ida").count("rockflex ida") == 3
+
+
+def test_a_share_is_stored_and_nothing_reported(study, tmp_path):
+    file = study("cloud", HEADS["cloud"] + "runs_per_chunk = 8\n")
+    for place in (1, 2):
+        done = invoke("cloud", file, "--out", tmp_path / f"share-{place}", "--share", f"{place}/2")
+        assert (done.exit_code, done.stdout) == (0, "")
+        assert f"Share {place}/2 is stored in" in done.stderr
+        assert f"{(3, 2)[place - 1]} of 5 parts" in done.stderr
+    for part in (tmp_path / "share-2" / "parts").iterdir():
+        part.rename(tmp_path / "share-1" / "parts" / part.name)
+    whole = invoke("cloud", file, "--out", tmp_path / "share-1")
+    assert whole.exit_code == 0
+    assert "5 of 5 parts are already in" in whole.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--share", "3"], '--share must be K/N, such as 3/10, but "3" was given'),
+        (["--share", "a/2"], '--share must be K/N, such as 3/10, but "a/2" was given'),
+        (["--share", "3/2"], "the number of the share must be a whole number from 1 to 2, but 3 was given"),
+        (
+            ["--share", "1/2", "--json"],
+            "--share only stores runs: it needs --out, and no --dry-run, --json or --strict",
+        ),
+        (["--share", "1/2", "--dry-run"], "--share only stores runs"),
+        (["--share", "1/2", "--strict"], "--share only stores runs"),
+    ],
+)
+def test_what_is_no_share_is_refused(study, tmp_path, options, message):
+    done = invoke("cloud", study("cloud"), "--out", tmp_path / "out", *options)
+    assert done.exit_code == 2
+    assert message in " ".join(done.stderr.split())
+
+
+def test_a_share_needs_a_folder(study):
+    done = invoke("cloud", study("cloud"), "--share", "1/2")
+    assert done.exit_code == 2
+    assert "it needs --out" in " ".join(done.stderr.split())

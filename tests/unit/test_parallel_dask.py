@@ -32,18 +32,51 @@ def test_the_parts_are_those_of_a_local_study_to_the_last_bit(tmp_path: Path, cl
     pd.testing.assert_frame_equal(StudyFolder.load(there).frame(), plan.whole())
 
 
-def test_few_chunks_are_in_flight(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
-    sent: list[int] = []
+@pytest.fixture
+def sent(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, ...]]:
+    """The batches of chunks that were sent as tasks."""
+    found: list[tuple[int, ...]] = []
     real = distributed.Client.submit
 
-    def submit(self: distributed.Client, function: object, name: str, number: int, *rest: object, **options: object):
-        sent.append(number)
-        return real(self, function, name, number, *rest, **options)
+    def submit(
+        self: distributed.Client, function: object, name: str, batch: tuple[int, ...], *rest: object, **options: object
+    ):
+        found.append(batch)
+        return real(self, function, name, batch, *rest, **options)
 
     monkeypatch.setattr(distributed.Client, "submit", submit)
-    for done, _ in enumerate(map_dask(ToyPlan(delay=0.02), range(20), cluster.address)):
-        assert len(sent) <= done + 4  # two for each of two threads
-    assert sent == list(range(20))
+    return found
+
+
+def test_few_tasks_are_in_flight(cluster: Cluster, sent: list[tuple[int, ...]]) -> None:
+    came: set[int] = set()
+    for number, _ in map_dask(ToyPlan(delay=0.02), range(20), cluster.address):
+        came.add(number)
+        assert sum(not came.issuperset(batch) for batch in sent) <= 4 + 1  # two for each of two threads, and this one
+    assert [number for batch in sent for number in batch] == list(range(20))
+
+
+def test_short_chunks_share_a_task(cluster: Cluster, sent: list[tuple[int, ...]]) -> None:
+    asked = [number for number in range(600) if number % 3]  # what is missing in a folder has gaps
+    found = dict(map_dask(ToyPlan(rows=3), asked, cluster.address))
+    assert sorted(found) == asked
+    assert found[500].to_pandas().equals(ToyPlan(rows=3).frame(500))
+    assert [number for batch in sent for number in batch] == asked
+    assert [len(batch) for batch in sent[:4]] == [1, 1, 1, 1]  # nothing is known of their time yet
+    assert len(sent) < 60
+    assert max(map(len, sent)) > 20
+    assert len(sent[-1]) <= 2  # all threads finish together
+
+
+def test_an_error_within_a_task_names_its_chunk(
+    cluster: Cluster, monkeypatch: pytest.MonkeyPatch, sent: list[tuple[int, ...]]
+) -> None:
+    monkeypatch.setattr(_dask, "batch_size", lambda left, threads, pace: 4)
+    with pytest.raises(ArithmeticError, match="beyond repair") as caught:
+        list(map_dask(FailingPlan(), range(8), cluster.address, retries=0))
+    assert sent == [(0, 1, 2, 3), (4, 5, 6, 7)]
+    assert "raised by chunk 2 on a worker" in caught.value.__notes__[0]
+    assert caught.value.__notes__[1].endswith("of the 8 chunks requested had come back.")
 
 
 def test_nothing_asked_is_nothing_done() -> None:
@@ -177,6 +210,17 @@ def test_a_chunk_that_kills_workers_is_named(tmp_path: Path) -> None:
     with (
         Cluster(tmp_path, workers=2, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as own,
         pytest.raises(ClusterError, match=message),
+    ):
+        list(map_dask(DeadlyPlan(), range(3), own.address))
+
+
+def test_a_task_that_kills_workers_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_dask, "batch_size", lambda left, threads, pace: 3)
+    with (
+        Cluster(tmp_path, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as own,
+        pytest.raises(
+            ClusterError, match=r"One of the chunks 0 to 2 was on one worker after another when it died; 0 of"
+        ),
     ):
         list(map_dask(DeadlyPlan(), range(3), own.address))
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 from dataclasses import replace
@@ -15,7 +16,7 @@ import pyarrow as pa
 import pytest
 
 from rockflex import InputError, _files
-from rockflex.store import StudyFolder
+from rockflex.store import StudyFolder, _folder
 from toy_study import SPEC, VERSIONS, ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=4, rows=30)
@@ -237,6 +238,43 @@ def test_bad_chunks_are_refused(tmp_path: Path) -> None:
         folder.write(1, retyped)  # the only part may be replaced
     with pytest.raises(InputError, match="was opened for reading"):
         StudyFolder.load(tmp_path).write(0, other)
+
+
+def test_a_part_made_elsewhere_is_the_same_file(tmp_path: Path) -> None:
+    with opened(str(tmp_path / "one"), PLAN) as folder, opened(str(tmp_path / "other"), PLAN) as other:
+        maker = pickle.loads(pickle.dumps(folder.maker))  # as on its way to a worker
+        part = maker.make(2, PLAN.chunk(2))
+        assert (part.number, part.rows) == (2, 30)
+        assert folder.add(part).read_bytes() == other.write(2, PLAN.chunk(2)).read_bytes() == part.content
+
+
+def test_parts_that_do_not_fit_are_refused(tmp_path: Path) -> None:
+    with opened(str(tmp_path), PLAN) as folder:
+        part = folder.maker.make(0, PLAN.chunk(0))
+        for wrong, message in (
+            (replace(part, number=1), r"Chunk 1 cannot be stored in .*: it holds chunk 0\. Make it by the maker"),
+            (replace(part, number=9), "number must be a whole number from 0 to 3, but 9 was given"),
+            (replace(part, content=part.content[:-9]), r"Chunk 0 cannot be stored in .*: it is no whole Parquet file"),
+            (replace(folder.maker, study="x").make(0, PLAN.chunk(0)), "it belongs to another study"),
+        ):
+            with pytest.raises(InputError, match=message):
+                folder.add(wrong)
+        assert folder.missing() == [0, 1, 2, 3]
+
+
+def test_the_columns_to_compare_with_are_looked_for_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = ToyPlan(n_chunks=40, rows=2)
+    run_study(str(tmp_path), plan)
+    (tmp_path / "parts" / "part-00000.parquet").unlink()
+    seen: list[int] = []
+    real = _folder.schema_at
+    with opened(str(tmp_path), plan) as folder:
+        monkeypatch.setattr(
+            _folder, "schema_at", lambda path, study, number: seen.append(number) or real(path, study, number)
+        )
+        for number in (0, 7, 8, 7):
+            folder.write(number, plan.chunk(number))
+    assert seen == [1]
 
 
 def test_changed_files_are_seen(done: Path) -> None:

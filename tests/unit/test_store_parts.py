@@ -11,7 +11,7 @@ from pyarrow import parquet
 
 from rockflex import InputError
 from rockflex.store import StudyFolder
-from rockflex.store._parts import PartError, encode, read, schema_of, verify
+from rockflex.store._parts import PartError, check, encode, read, verify
 from toy_study import SPEC, VERSIONS, ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=4, rows=30)
@@ -124,7 +124,7 @@ def test_parts_with_other_columns_are_refused_on_reading(done: Path) -> None:
     study = StudyFolder.load(done)
     content = encode(PLAN.chunk(1).drop_columns(["error"]), study.manifest.study, 1, VERSIONS)
     (done / "parts" / "part-00001.parquet").write_bytes(content)
-    assert "error" not in schema_of(content).names
+    assert "error" not in check(content, study.manifest.study, 1).names
     message = r"part-00001.parquet and the first part have other columns:\n  error: large_string, None\nAll chunks"
     with pytest.raises(InputError, match=message):
         study.table()

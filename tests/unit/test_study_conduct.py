@@ -100,6 +100,49 @@ def test_an_interrupted_study_goes_on(tmp_path):
     pd.testing.assert_frame_equal(rf.run_study(STUDY, folder), rf.run_study(STUDY))
 
 
+def test_shares_are_the_whole_study(tmp_path):
+    seen: list[rf.Progress] = []
+    for place in (1, 2):
+        share = rf.fill_study(STUDY, tmp_path / str(place), share=(place, 2), progress=seen.append)
+        assert share.missing() == [[1, 3], [0, 2, 4]][place - 1]
+    assert [(each.parts, each.done) for each in seen] == [(3, 0), (3, 1), (3, 2), (3, 3), (2, 0), (2, 1), (2, 2)]
+    for part in (tmp_path / "2" / "parts").iterdir():
+        part.rename(tmp_path / "1" / "parts" / part.name)
+    seen.clear()
+    whole = rf.fill_study(STUDY, tmp_path / "1", progress=seen.append)
+    assert [(each.kept, each.done) for each in seen] == [(5, 5)]
+    assert whole.finished
+    pd.testing.assert_frame_equal(rf.run_study(STUDY, tmp_path / "1"), rf.run_study(STUDY))
+    with pytest.raises(InputError, match="was opened for reading"):
+        whole.write(0, whole.table())
+
+
+def test_filling_a_folder_reads_no_table(tmp_path, monkeypatch):
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError
+
+    with monkeypatch.context() as patch:
+        patch.setattr(rf.StudyFolder, "table", refuse)
+        folder = rf.fill_study(STUDY, tmp_path / "study")
+    assert folder.table().num_rows == 24
+
+
+@pytest.mark.parametrize(
+    ("share", "message"),
+    [
+        ((0, 2), "the number of the share must be a whole number from 1 to 2, but 0 was given"),
+        ((3, 2), "the number of the share must be a whole number from 1 to 2, but 3 was given"),
+        ((1, 0), "the number of shares must be a whole number of at least 1, but 0 was given"),
+        ((1,), r"share must be two whole numbers, such as \(3, 10\), but \(1,\) was given"),
+        (2, r"share must be two whole numbers, such as \(3, 10\), but 2 was given"),
+    ],
+)
+def test_what_is_no_share_is_refused(tmp_path, share, message):
+    with pytest.raises(InputError, match=message):
+        rf.fill_study(STUDY, tmp_path / "study", share=share)
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.slow
 def test_a_cluster_gives_the_same_bits(tmp_path, cluster):
     here, there, spec = tmp_path / "here", tmp_path / "there", tmp_path / "study.toml"

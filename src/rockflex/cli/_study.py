@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
@@ -11,9 +11,10 @@ from rockflex.cli import _options as options
 from rockflex.kinds import StudyKind
 
 if TYPE_CHECKING:
-    import pandas as pd
-
+    from rockflex.kinds import Progress
     from rockflex.study.plan import Spec
+
+Result = TypeVar("Result")
 
 
 def epilog(command: str) -> str:
@@ -44,6 +45,14 @@ Workers = Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. 
 AnyVersion = Annotated[
     bool, typer.Option("--any-version", help="Resume a study that was started with other versions of the libraries.")
 ]
+Share = Annotated[
+    str | None,
+    typer.Option(
+        "--share",
+        metavar="K/N",
+        help="Only store share K of N of the study, each in a folder of its own; report nothing. For job arrays.",
+    ),
+]
 Strict = Annotated[bool, typer.Option("--strict", help="Exit with 1 if a run or a fit failed.")]
 
 
@@ -56,16 +65,31 @@ def command_of(kind: StudyKind) -> Callable[..., None]:
         dry_run: DryRun = False,
         dask: Dask = None,
         workers: Workers = None,
+        share: Share = None,
         any_version: AnyVersion = False,
         work_limit: options.WorkLimit = None,
         json: options.Json = False,
         strict: Strict = False,
     ) -> None:
         study = _load(kind, file, work_limit)
+        if share is not None:
+            if out is None or dry_run or json or strict:
+                raise InputError("--share only stores runs: it needs --out, and no --dry-run, --json or --strict.")
+            _store_share(study, file, out, share, dask, workers, any_version=any_version)
+            return
         if dry_run:
             _announce(study, file, workers, json=json)
             return
-        table, seconds = _run(study, file, out, dask, workers, any_version=any_version)
+        from rockflex.kinds import run_study
+
+        table, seconds = _watched(
+            study,
+            file,
+            out,
+            lambda progress: run_study(
+                study, out, workers=workers, dask=dask, any_version=any_version, progress=progress
+            ),
+        )
         from rockflex.cli._study_summary import summarise
 
         if out is not None:
@@ -120,14 +144,40 @@ def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> 
     )
 
 
-def _run(
-    study: "Spec", file: Path, out: Path | None, dask: str | None, workers: int | None, *, any_version: bool
-) -> "tuple[pd.DataFrame, float]":
-    """Return the table of a study and the time that it took in s; a terminal shows a progress bar."""
+def _store_share(
+    study: "Spec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
+) -> None:
+    """Store one share of a study."""
+    from rockflex.cli._console import note
+    from rockflex.kinds import fill_study
+
+    place, stroke, count = share.partition("/")
+    if not (stroke and place.isdecimal() and count.isdecimal()):
+        raise InputError(f'--share must be K/N, such as 3/10, but "{share}" was given.')
+    folder, _ = _watched(
+        study,
+        file,
+        out,
+        lambda progress: fill_study(
+            study,
+            out,
+            share=(int(place), int(count)),
+            workers=workers,
+            dask=dask,
+            any_version=any_version,
+            progress=progress,
+        ),
+    )
+    note(f"Share {share} is stored in {out}: {folder.n_chunks - len(folder.missing())} of {folder.n_chunks} parts")
+
+
+def _watched(
+    study: "Spec", file: Path, out: Path | None, work: "Callable[[Callable[[Progress], None]], Result]"
+) -> tuple[Result, float]:
+    """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
 
     from rockflex.cli._console import note, study_progress
-    from rockflex.kinds import Progress, run_study
     from rockflex.parallel import ClusterError
 
     last: list[Progress] = []
@@ -135,13 +185,13 @@ def _run(
     try:
         with study_progress(study.name or file.stem) as show:
 
-            def progress(now: Progress) -> None:
+            def progress(now: "Progress") -> None:
                 if not last and now.kept:
                     note(f"{now.kept} of {now.parts} parts are already in {out}")
                 last[:] = [now]
                 show(now.parts, now.done, now.runs)
 
-            table = run_study(study, out, workers=workers, dask=dask, any_version=any_version, progress=progress)
+            result = work(progress)
     except KeyboardInterrupt as stop:
         done = f"{last[0].done} of {last[0].parts} parts are stored in {out}" if last and out else "Nothing was stored"
         note(f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}.")
@@ -151,4 +201,4 @@ def _run(
 
         complain(str(error))
         raise typer.Exit(1) from error
-    return table, perf_counter() - start
+    return result, perf_counter() - start

@@ -5,4 +5,5 @@ from ._registry import KINDS as KINDS
 from ._registry import kind_named as kind_named
 from ._run import Progress as Progress
 from ._run import estimate_time as estimate_time
+from ._run import fill_study as fill_study
 from ._run import run_study as run_study

@@ -1,27 +1,27 @@
 """Running a study: here or on a cluster, in memory or in a folder from which it can be resumed."""
-# pyright: reportUnknownParameterType=false, reportUnknownLambdaType=false
-# (pyarrow comes without types)
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, SupportsIndex
+from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._versions import versions_of
 from rockflex.parallel import core_count, map_dask
-from rockflex.store import StudyFolder
+from rockflex.store import Part, PartMaker, StudyFolder
 from rockflex.study._runs import map_runs
 
 if TYPE_CHECKING:
     import pandas as pd
-    import pyarrow as pa
 
+    from rockflex.parallel import Chunks
     from rockflex.study.plan import ChunkedPlan, Spec
+
+Result = TypeVar("Result")
 
 LIBRARIES = ("rockflex", "numpy", "scipy", "numba")  # those that affect the numbers
 SAMPLE = 48  # largest number of units that an estimate runs
@@ -98,72 +98,167 @@ def run_study(
     1     1          4     rocking
     2     2          3     rocking
     """
-    from rockflex.kinds._load import load_study
     from rockflex.study.plan import to_frame
 
-    spec = load_study(study) if isinstance(study, str | Path) else study
+    if folder is not None:
+        filled = fill_study(study, folder, workers=workers, dask=dask, any_version=any_version, progress=progress)
+        return to_frame(filled.table())
+    plan, tables = _plan_of(_loaded(study), workers, dask), dict[int, Any]()
+
+    def keep(number: int, table: Any) -> int:
+        tables[number] = table
+        return table.num_rows
+
+    def so_far() -> "pd.DataFrame":
+        return to_frame(*(tables[number] for number in sorted(tables)))
+
+    _compute(plan, range(plan.n_chunks), lambda each: each, keep, so_far, workers, dask, progress)
+    return so_far()
+
+
+def fill_study(
+    study: "Spec | str | Path",
+    folder: str | Path,
+    *,
+    share: tuple[SupportsIndex, SupportsIndex] = (1, 1),
+    workers: SupportsIndex | None = None,
+    dask: str | None = None,
+    any_version: bool = False,
+    progress: Callable[[Progress], None] | None = None,
+) -> StudyFolder:
+    """Run a study, or the rest of one that was stopped, into a folder, and return the folder for reading.
+
+    Unlike `run_study` it reads no table, so that its memory does not grow with the number of runs.
+
+    Parameters
+    ----------
+    study, folder, workers, dask, any_version, progress
+        As in `run_study`.
+    share
+        ``(3, 10)`` computes the third of ten shares of the parts, every tenth from the third, so that ten jobs without
+        a common scheduler can divide a study, each into a folder of its own. The files in the folders' ``parts`` can
+        then be moved into those of any one of them, which is the whole study.
+
+    Raises
+    ------
+    InputError
+        As in `run_study`, and if `share` is not two whole numbers, of which the first is from 1 to the second, or if
+        the study's parts depend on each other.
+    ClusterError
+        As in `run_study`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockflex as rf
+    >>> study = rf.PopulationStudy(pairs=6, seed=1, runs_per_chunk=4, records={"suites": ["el-centro-1940"]})
+    >>> with tempfile.TemporaryDirectory() as path:
+    ...     rf.fill_study(study, path, share=(1, 2)).missing()
+    ...     rf.fill_study(study, path).finished
+    [1]
+    True
+    """
+    from rockflex.study.plan import to_frame
+
+    spec = _loaded(study)
+    plan = _plan_of(spec, workers, dask)
+    mine = _share_of(plan, share)
+    checksums = plan.checksums | spec.checksums()
+    with StudyFolder.open(
+        folder, spec.document(), plan.n_chunks, versions_of(LIBRARIES), checksums, any_version=any_version
+    ) as kept:
+
+        def keep(_: int, part: Part) -> int:
+            kept.add(part)
+            return part.rows
+
+        def so_far() -> "pd.DataFrame":
+            return to_frame(kept.table(partial=True))
+
+        def stored(plan: "ChunkedPlan") -> _PartPlan:
+            return _PartPlan(plan, kept.maker)
+
+        numbers = [number for number in kept.missing() if number in mine]
+        _compute(plan, numbers, stored, keep, so_far, workers, dask, progress, len(mine))
+    return StudyFolder.load(folder)
+
+
+@dataclass(frozen=True)
+class _PartPlan:
+    """A plan whose chunks are the content of files, so that they are made where they are computed."""
+
+    plan: "ChunkedPlan"
+    maker: PartMaker
+
+    def chunk(self, number: int) -> Part:
+        return self.maker.make(number, self.plan.chunk(number))
+
+
+def _loaded(study: "Spec | str | Path") -> "Spec":
+    from rockflex.kinds._load import load_study
+
+    return load_study(study) if isinstance(study, str | Path) else study
+
+
+def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None) -> "ChunkedPlan":
     if workers is not None and dask is not None:
         raise InputError(
             f"workers is for threads here, but {shown(workers)} was given together with the cluster at {dask}."
         )
     plan = spec.plan()
     plan.check_work()
-    if folder is None:
-        tables: dict[int, pa.Table] = {}
+    return plan
 
-        def so_far() -> "pd.DataFrame":
-            return to_frame(*(tables[number] for number in sorted(tables)))
 
-        _compute(plan, range(plan.n_chunks), tables.__setitem__, so_far, workers, dask, progress)
-        return so_far()
-    checksums = plan.checksums | spec.checksums()
-    with StudyFolder.open(
-        folder, spec.document(), plan.n_chunks, versions_of(LIBRARIES), checksums, any_version=any_version
-    ) as kept:
-        _compute(
-            plan,
-            kept.missing(),
-            kept.write,
-            lambda: to_frame(kept.table(partial=True)),
-            workers,
-            dask,
-            progress,
+def _share_of(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -> range:
+    if not isinstance(share, tuple) or len(share) != 2:  # pyright: ignore[reportUnnecessaryComparison, reportUnnecessaryIsInstance]
+        raise InputError(f"share must be two whole numbers, such as (3, 10), but {shown(share)} was given.")
+    count = whole_number("the number of shares", share[1], 1)
+    place = whole_number("the number of the share", share[0], 1, count)
+    if count > 1 and len(plan.rounds) > 1:
+        raise InputError(
+            "This study cannot be divided into shares, because later parts depend on earlier ones. Run it as a whole, "
+            "on a Dask cluster if it is long."
         )
-        return to_frame(kept.table())
+    return range(place - 1, plan.n_chunks, count)
 
 
 def _compute(
     plan: "ChunkedPlan",
-    numbers: "range | list[int]",
-    keep: "Callable[[int, pa.Table], object]",
+    numbers: Sequence[int],
+    sent: "Callable[[ChunkedPlan], Chunks[Result]]",
+    keep: Callable[[int, Result], int],
     so_far: "Callable[[], pd.DataFrame]",
     workers: SupportsIndex | None,
     dask: str | None,
     progress: Callable[[Progress], None] | None,
+    parts: int | None = None,
 ) -> None:
-    """Compute these chunks, round by round, and store each one when it is complete."""
-    done = kept = plan.n_chunks - len(numbers)
+    """Compute these of `parts` chunks, round by round; `keep` takes each one when it is done, and counts its rows."""
+    total = plan.n_chunks if parts is None else parts
+    done = kept = total - len(numbers)
     runs = 0
-    tell = progress or (lambda _: None)
-    tell(Progress(plan.n_chunks, done, kept, runs))
+    tell: Callable[[Progress], None] = progress or (lambda _: None)
+    tell(Progress(total, done, kept, runs))
     for place, each in enumerate(plan.rounds):
         missing = [number for number in numbers if number in each]
-        if done == plan.n_chunks:
+        if done == total:
             break
         if place:
             plan = plan.informed(so_far())
+        work = sent(plan)
         # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-        with closing(_here(plan, missing, workers) if dask is None else map_dask(plan, missing, dask)) as coming:
-            for number, table in coming:
-                keep(number, table)
-                done, runs = done + 1, runs + table.num_rows
-                tell(Progress(plan.n_chunks, done, kept, runs))
+        with closing(_here(work, missing, workers) if dask is None else map_dask(work, missing, dask)) as coming:
+            for number, result in coming:
+                runs += keep(number, result)
+                done += 1
+                tell(Progress(total, done, kept, runs))
 
 
 def _here(
-    plan: "ChunkedPlan", numbers: "range | list[int]", workers: SupportsIndex | None
-) -> "Generator[tuple[int, pa.Table]]":
-    yield from map_runs(lambda number: (number, plan.chunk(number)), numbers, workers)
+    work: "Chunks[Result]", numbers: Sequence[int], workers: SupportsIndex | None
+) -> Generator[tuple[int, Result]]:
+    yield from map_runs(lambda number: (number, work.chunk(number)), numbers, workers)
 
 
 def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:

@@ -191,7 +191,7 @@ class RockingProperties(Value):
         """The pivot with the smaller resisting moment, about which the base lifts first; the right one if equal."""
         return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
 
-    @property
+    @cached_property
     def symmetric(self) -> bool:
         """Whether both pivots are alike: no eccentricity, and every off-centre element has a mirror image."""
         return self.eccentricity == 0.0 and mirrored(self.elements)

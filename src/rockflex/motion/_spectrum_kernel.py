@@ -111,18 +111,23 @@ def oscillator_peaks(acceleration: Array, dt: float, omega: float, zeta: float) 
     rate, impulse, step, ramp = unit_responses(omega, zeta, dt)
     keep = rate + 2 * zeta * omega * impulse
     omega_d = omega * math.sqrt(1 - zeta * zeta)
+    turns_once = omega_d * dt < math.pi  # between two samples the relative acceleration has one zero at most
     u, v, sd, sv = 0.0, 0.0, 0.0, 0.0
+    w = -acceleration[0]
     for k in range(acceleration.size - 1):
-        a = acceleration[k]
-        slope = (acceleration[k + 1] - a) / dt
+        a, b = acceleration[k], acceleration[k + 1]
+        slope = (b - a) / dt
         u1 = keep * u + impulse * v - a * step - slope * ramp
         v1 = rate * v - omega * omega * impulse * u - a * impulse - slope * step
-        # Bounds on the curvature decide whether a new peak can occur between the two samples.
-        w = -a - 2 * zeta * omega * v - omega * omega * u
-        q = (-slope - zeta * omega * w - omega * omega * v) / omega_d
-        size = math.hypot(w, q)
+        w1 = -b - 2 * zeta * omega * v1 - omega * omega * u1
         end_u, end_v = max(abs(u), abs(u1)), max(abs(v), abs(v1))
-        if end_u + size * dt * dt / 8 > sd or end_v + size * dt / 2 > sv:
-            sd, sv = _peaks_inside(omega, zeta, u, v, a, slope, dt, sd, sv)
-        u, v = u1, v1
+        if turns_once and w * w1 > 0 and v * v1 > 0:  # v and u are monotonic
+            sd, sv = max(sd, end_u), max(sv, end_v)
+        else:
+            # Bounds on the curvature decide whether a new peak can occur between the two samples.
+            q = (-slope - zeta * omega * w - omega * omega * v) / omega_d
+            size = math.hypot(w, q)
+            if end_u + size * dt * dt / 8 > sd or end_v + size * dt / 2 > sv:
+                sd, sv = _peaks_inside(omega, zeta, u, v, a, slope, dt, sd, sv)
+        u, v, w = u1, v1, w1
     return sd, sv

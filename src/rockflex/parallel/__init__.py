@@ -1,6 +1,6 @@
 """Maps over independent tasks."""
 
-from rockflex.parallel._dask import ClusterError, map_dask
+from rockflex.parallel._dask import Chunks, ClusterError, map_dask
 from rockflex.parallel._threads import core_count, map_threads
 
-__all__ = ["ClusterError", "core_count", "map_dask", "map_threads"]
+__all__ = ["Chunks", "ClusterError", "core_count", "map_dask", "map_threads"]

@@ -1,51 +1,52 @@
 """A map over the chunks of a plan, on the workers of a Dask cluster that the user has started."""
-# pyright: reportUnknownParameterType=false
-# (pyarrow comes without types)
 
 import gc
 import pickle
 import time
-from collections.abc import Generator, Iterable
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
-from itertools import islice
-from typing import TYPE_CHECKING, Any, Protocol, SupportsIndex
+from queue import Empty, SimpleQueue
+from typing import Any, Generic, Protocol, SupportsIndex, TypeAlias, TypeVar
 from uuid import uuid4
 
 from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-
-if TYPE_CHECKING:
-    import pyarrow as pa
+from rockflex.parallel._batches import AHEAD, batch_size
 
 CONNECT = 10.0  # s
 LOOK = 5.0  # s between looks at the cluster while nothing comes
-AHEAD = 2  # chunks in flight for each thread of the cluster
+COUNT = 0.5  # s for which the number of threads is taken as known
+
+Result_co = TypeVar("Result_co", covariant=True)
+Batch: TypeAlias = tuple[int, ...]  # numbers of chunks
 
 
 class ClusterError(RuntimeError):
     """A cluster failed during the map; earlier chunks are valid, and the rest can be requested again."""
 
 
-class Chunks(Protocol):
+class Chunks(Protocol, Generic[Result_co]):
     """Work in numbered chunks; pure, deterministic and picklable."""
 
-    def chunk(self, number: int, /) -> "pa.Table": ...
+    def chunk(self, number: int, /) -> Result_co: ...
 
 
 def map_dask(
-    plan: Chunks,
+    plan: Chunks[Result_co],
     numbers: Iterable[int],
     address: str,
     *,
     retries: SupportsIndex = 2,
     patience: float = 600.0,
-) -> Generator[tuple[int, "pa.Table"]]:
+) -> Generator[tuple[int, Result_co]]:
     """Yield each number and ``plan.chunk(number)``, in order of completion, computed on a Dask cluster.
 
-    The plan is sent to every worker once, including workers that join later. If a worker dies, its chunks are computed
-    on another; each number is yielded once. The cluster is not contacted before the first value is requested.
+    The plan is sent to every worker once, including workers that join later. A task computes as many chunks as take
+    about a second, or longer on many threads, so that the scheduler keeps up; the results of one task at a time are
+    held here. If a worker dies, its chunks are computed on another; each number is yielded once. The cluster is not
+    contacted before the first value is requested.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def map_dask(
     address
         Address of the scheduler, such as ``"tcp://10.0.0.1:8786"``.
     retries
-        How often a chunk that raises an error is tried again.
+        How often a task with a chunk that raises an error is tried again.
     patience
         Time in s for which the cluster may be without any worker; may be infinite.
 
@@ -88,14 +89,17 @@ def map_dask(
         with _scheduler_lost(address, done, len(asked)):
             _refuse_workers(client, versions)
             client.register_plugin(PlanCarrier(content), name=name)
-        queue, running, alive = iter(asked), dict[Any, int](), time.monotonic()
+        tasks = _Tasks(
+            lambda batch: client.submit(compute, name, batch, versions, key=f"{name}-{batch[0]}", retries=again)
+        )
+        looked, threads, alive = -COUNT, 0, time.monotonic()
+        left = asked
         while done < len(asked):
             with _scheduler_lost(address, done, len(asked)):
-                threads = sum(client.nthreads().values())
-                for number in islice(queue, max(AHEAD * threads - len(running), 0)):
-                    key = f"{name}-{number}"
-                    running[client.submit(compute, name, number, versions, key=key, retries=again)] = number
-                finished = [(running.pop(future), *_outcome(future)) for future in _first(client, list(running))]
+                if time.monotonic() - looked > COUNT or not threads:
+                    threads, looked = sum(client.nthreads().values()), time.monotonic()
+                left = tasks.send(left, threads)
+                batch, results, error = tasks.first()
             now = time.monotonic()
             alive = now if threads else alive
             if now - alive > limit:
@@ -103,12 +107,12 @@ def map_dask(
                     f"The Dask scheduler at {address} has had no worker for {limit:g} s; {_count(done, len(asked))}. "
                     "Start workers and run it again."
                 )
-            for number, table, error in finished:
-                if error is not None:
-                    raise _explained(error, number, _count(done, len(asked)))
+            if error is not None:
+                raise _explained(error, batch, _count(done, len(asked)))
+            results.reverse()
+            for number in batch:  # each result is let go once it has been used
                 done += 1
-                yield number, table
-            finished.clear()
+                yield number, results.pop()
     finally:
         _leave(client, name)
 
@@ -134,7 +138,7 @@ def _leave(client: Any, name: str) -> None:
         client.close(timeout=2)
 
 
-def _pickled(plan: Chunks) -> bytes:
+def _pickled(plan: object) -> bytes:
     try:
         return pickle.dumps(plan, protocol=5)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
@@ -167,37 +171,52 @@ def _connected(address: str) -> Any:
             gc.enable()
 
 
-def _first(client: Any, futures: list[Any]) -> list[Any]:
-    """The futures that are done, once one of them is or the time is up."""
-    from distributed import wait
+class _Tasks:
+    """The tasks that are in flight, each a batch of chunks, and the time that a chunk takes."""
 
-    if not futures:  # as there is no worker
-        time.sleep(0.1)
-        return []
-    try:
-        with client.as_current():
-            ready: Any = wait(futures, timeout=LOOK, return_when="FIRST_COMPLETED")
-        return list(ready.done)
-    except TimeoutError:
-        return []
+    def __init__(self, submit: Callable[[Batch], Any]) -> None:
+        self.submit = submit
+        self.running = dict[Any, Batch]()
+        self.ready = SimpleQueue[Any]()  # asking for all futures each time would take as long as there are many
+        self.pace: float | None = None
+
+    def send(self, numbers: list[int], threads: int) -> list[int]:
+        """Send so many of these chunks that every thread has work, and return the others."""
+        place = 0
+        while place < len(numbers) and len(self.running) < AHEAD * threads:
+            batch = tuple(numbers[place : place + batch_size(len(numbers) - place, threads, self.pace)])
+            place += len(batch)
+            future = self.submit(batch)
+            self.running[future] = batch
+            future.add_done_callback(self.ready.put)
+        return numbers[place:] if place else numbers
+
+    def first(self) -> tuple[Batch, list[Any], BaseException | None]:
+        """Return the next batch that is done, with its results or its error; an empty one if none comes in time."""
+        try:
+            future = self.ready.get(timeout=LOOK if self.running else 0.1)
+        except Empty:
+            return (), [], None
+        batch = self.running.pop(future)
+        if future.status == "error":
+            return batch, [], future.exception()
+        results, seconds = future.result()
+        pace = seconds / len(batch)
+        self.pace = pace if self.pace is None else 0.5 * (self.pace + pace)
+        return batch, results, None
 
 
-def _outcome(future: Any) -> tuple[Any, BaseException | None]:
-    if future.status == "error":
-        return None, future.exception()
-    return future.result(), None
-
-
-def _explained(error: BaseException, number: int, count: str) -> BaseException:
+def _explained(error: BaseException, batch: Batch, count: str) -> BaseException:
     from distributed import KilledWorker
 
     if isinstance(error, KilledWorker):
+        which = f"Chunk {batch[0]}" if len(batch) == 1 else f"One of the chunks {batch[0]} to {batch[-1]}"
         message = (
-            f"Chunk {number} was on one worker after another when it died; {count}. Look for the reason in the "
-            "workers' logs, which most often is too little memory, and run it again."
+            f"{which} was on one worker after another when it died; {count}. Look for the reason in the workers' logs, "
+            "which most often is too little memory, and run it again."
         )
         return ClusterError(message)
-    error.add_note(f"This was raised by chunk {number} on a worker of the cluster; {count}.")
+    error.add_note(f"{count[0].upper()}{count[1:]}.")
     return error
 
 

@@ -1,7 +1,9 @@
 """Code that runs on the workers of a Dask cluster: it stores a plan and computes its chunks."""
 
 import pickle
+from functools import cache
 from threading import Lock
+from time import perf_counter
 from typing import Any
 
 from distributed import WorkerPlugin, get_worker
@@ -45,13 +47,22 @@ class PlanCarrier(WorkerPlugin):
             return self.plan
 
 
-def compute(name: str, number: int, versions: dict[str, str]) -> Any:
-    """Return a chunk of the plan stored under `name`, if this worker has the right versions."""
+def compute(name: str, numbers: tuple[int, ...], versions: dict[str, str]) -> tuple[list[Any], float]:
+    """Return the chunks of the plan stored under `name`, and the seconds they took, if the versions here are right."""
     refuse_other_versions(_here(), installed_versions(), versions)
     plugin: Any = get_worker().plugins[name]
-    return plugin.load().chunk(number)
+    plan, start = plugin.load(), perf_counter()
+    results: list[Any] = []
+    for number in numbers:
+        try:
+            results.append(plan.chunk(number))
+        except Exception as error:
+            error.add_note(f"This was raised by chunk {number} on a worker of the cluster, {_here()}.")
+            raise
+    return results, perf_counter() - start
 
 
+@cache
 def installed_versions() -> dict[str, str]:
     """Return the version of Python and of each package that matters; "none" for one that is not installed."""
     return versions_of(PACKAGES)

@@ -3,16 +3,17 @@
 # (pyarrow comes without types)
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, SupportsIndex
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._files import path_of, sweep, write_whole
+from rockflex.store._frames import in_pandas
 from rockflex.store._lock import Lock
 from rockflex.store._manifest import MANIFEST, SPEC, Manifest
-from rockflex.store._parts import PartError, encode, read, schema_of, verify
+from rockflex.store._parts import DamagedPart, Part, PartError, PartMaker, check, read, schema_at, verify
 from rockflex.store._refusals import refuse_foreign, refuse_other_columns, reported
 from rockflex.store._spec import listed
 
@@ -21,18 +22,6 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 PARTS, LOCK = "parts", "lock"
-
-
-@dataclass(frozen=True)
-class DamagedPart:
-    """A part that cannot be used: `number` of the chunk, `path` of the file, and the `reason`."""
-
-    number: int
-    path: Path
-    reason: str
-
-    def __str__(self) -> str:
-        return f"{self.path}: {self.reason}"
 
 
 @dataclass(frozen=True)
@@ -62,6 +51,7 @@ class StudyFolder:
     path: Path
     manifest: Manifest
     lock: Lock | None = None
+    _known: "dict[int, pa.Schema]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
     def open(
@@ -190,15 +180,39 @@ class StudyFolder:
         place = whole_number("number", number, 0, self.n_chunks - 1)
         if not isinstance(table, pa.Table):
             raise InputError(f"A chunk must be a pyarrow.Table, but {type(table).__name__} was given.")
+        return self.add(self.maker.make(place, table))
+
+    @property
+    def maker(self) -> PartMaker:
+        """What makes this study's parts from tables, in any process, for `add`."""
+        return PartMaker(self.manifest.study, self.manifest.versions)
+
+    def add(self, part: Part) -> Path:
+        """Write a part that `maker` has made, perhaps in another process; otherwise as `write`.
+
+        Raises
+        ------
+        InputError
+            If it is no part of this study or was damaged on its way; see also `write`.
+        """
+        place = whole_number("number", part.number, 0, self.n_chunks - 1)
         if self.lock is None:
             raise InputError(
                 f"{self.path} was opened for reading. To write, open it by StudyFolder.open with its specification."
             )
         self.lock.check()
-        content = encode(table, self.manifest.study, place, self.manifest.versions)
-        self._refuse_other_columns(place, schema_of(content))
-        with reported(self.path, len(content)):
-            return write_whole(self._part(place), content)
+        try:
+            schema = check(part.content, self.manifest.study, place)
+        except PartError as error:
+            raise InputError(
+                f"Chunk {place} cannot be stored in {self.path}: {error}. Make it by the maker of this folder."
+            ) from error
+        self._refuse_other_columns(place, schema)
+        with reported(self.path, len(part.content)):
+            path = write_whole(self._part(place), part.content)
+        if not self._known:
+            self._known[place] = schema
+        return path
 
     def table(self, *, partial: bool = False) -> "pa.Table":
         """Return all parts as one table, in the order of the chunks.
@@ -246,15 +260,7 @@ class StudyFolder:
         Columns from pandas keep their types; in other tables, integers and booleans become nullable types of pandas.
         Raises the same errors as `table`.
         """
-        import pandas as pd
-        import pyarrow as pa
-
-        table = self.table(partial=partial)
-        if b"pandas" in (table.schema.metadata or {}):
-            return table.to_pandas().reset_index(drop=True)
-        widths = {pa.int8(): "Int8", pa.int16(): "Int16", pa.int32(): "Int32", pa.int64(): "Int64"}
-        kinds: dict[Any, Any] = {kind: pd.api.types.pandas_dtype(name) for kind, name in widths.items()}
-        return table.to_pandas(types_mapper=(kinds | {pa.bool_(): pd.BooleanDtype()}).get)
+        return in_pandas(self.table(partial=partial))
 
     def close(self) -> None:
         """Let another process write into the folder."""
@@ -279,13 +285,16 @@ class StudyFolder:
             )
 
     def _refuse_other_columns(self, number: int, schema: "pa.Schema") -> None:
-        """Compare with the first intact part other than the one to be written."""
-        for other in range(self.n_chunks):
+        """Compare with an intact part other than the one to be written; it is looked for once."""
+        if number in self._known:
+            self._known.clear()
+        for other in () if self._known else range(self.n_chunks):
             path = self._part(other)
             try:
-                if other == number or not path.exists():
-                    continue
-                refuse_other_columns(path, schema_of(verify(path, self.manifest.study, other)), schema, number)
+                if other != number and path.exists():
+                    self._known[other] = schema_at(path, self.manifest.study, other)
+                    break
             except (PartError, OSError):
                 continue
-            return
+        for other, known in self._known.items():
+            refuse_other_columns(self._part(other), known, schema, number)
