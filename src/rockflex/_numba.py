@@ -15,10 +15,12 @@ OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model
 # A kernel called only by kernels needs no wrapper for Python, which takes as long to compile as the kernel.
 WITHIN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 PIPELINE: dict[str, Any] = {}
+ENTRY: dict[str, Any] = {}
 with suppress(ImportError, AttributeError):  # otherwise every kernel is compiled separately
-    from rockflex._numba_pipeline import Intermediate
+    from rockflex._numba_pipeline import Intermediate, Whole
 
     PIPELINE["pipeline_class"] = Intermediate
+    ENTRY["pipeline_class"] = Whole
 
 
 def compiled(function: Callable[..., Any], stamp: str) -> Any:
@@ -28,7 +30,7 @@ def compiled(function: Callable[..., Any], stamp: str) -> Any:
     cannot be set, nothing is cached, because it could become outdated.
     """
     try:
-        kernel = _without_counts(function, {"cache": True})
+        kernel = _without_counts(function, {"cache": True, "no_cfunc_wrapper": True, **ENTRY})
     except RuntimeError:  # numba finds no writable folder
         return _without_counts(function, {})
     file: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
