@@ -85,3 +85,23 @@ def direct(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[.
     with suppress(Exception):  # whatever a version raises
         return overloads[tuple(typeof(each) for each in arguments)].entry_point
     return kernel
+
+
+def when_compiling(tell: Callable[[Any], None]) -> None:
+    """Call `tell` with every kernel that is about to be compiled, as it was not found on disk."""
+    with suppress(ImportError, AttributeError):  # otherwise nothing is told
+        from numba.core import event
+
+        class Listener(event.Listener):
+            def on_start(self, event: Any) -> None:
+                tell(event.data["dispatcher"])
+
+            def on_end(self, event: Any) -> None:
+                pass
+
+        event.register("numba:compile", Listener())
+
+
+def folder_of(kernel: Any) -> str | None:
+    """Return the folder in which a kernel is cached; None if it is not."""
+    return getattr(getattr(kernel, "stats", None), "cache_path", None)

@@ -1,8 +1,8 @@
 """Lowering of kernels into less of LLVM's intermediate code.
 
 numba passes a tuple of arrays number by number, packs it into an aggregate at the start of a function, stores that on
-the stack, loads it for every use, and unpacks it again for every access and call. LLVM removes nine tenths of this code,
-but that takes most of the time of a compilation. Here most of it is never written.
+the stack, loads it for every use, and unpacks it again for every access and call. LLVM removes nine tenths of this
+code, but that takes most of the time of a compilation. Here most of it is never written.
 """
 
 from typing import Any

@@ -37,7 +37,7 @@ class IntermediateLowering(NativeLowering):
     """Lowering into a library without machine code."""
 
     _name = "intermediate_lowering"
-    lowering_class = TerseLower
+    lowering_class: Any = TerseLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
@@ -66,7 +66,7 @@ class WholeLowering(NativeLowering):
     """Lowering of an entry point, optimised with everything that it calls."""
 
     _name = "whole_lowering"
-    lowering_class = TerseLower
+    lowering_class: Any = TerseLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
