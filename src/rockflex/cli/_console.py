@@ -107,7 +107,8 @@ def steps(title: str) -> Generator[Callable[[str], None]]:
         return
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    with Progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), console=console) as bar:
+    look = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*look, console=console, transient=True) as bar:
         tasks: list[TaskID] = []
 
         def start(name: str) -> None:

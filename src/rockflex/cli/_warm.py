@@ -20,6 +20,6 @@ def warm() -> None:
     if done.folder is None:
         note("The compiled kernels cannot be kept, because no folder can be written. Set NUMBA_CACHE_DIR to one.")
     elif done.compiled == 0:
-        note(f"All kernels are compiled already, in {done.folder}.")
+        note(f"All kernels are compiled already, under {done.folder}.")
     else:
-        note(f"{done.compiled} kernels compiled in {duration(done.duration)}, kept in {done.folder}.")
+        note(f"{done.compiled} kernels compiled in {duration(done.duration)}, kept under {done.folder}.")

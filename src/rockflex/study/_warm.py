@@ -1,5 +1,6 @@
 """Compilation of all kernels ahead of need."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +27,7 @@ class Warmth:
     duration
         Time that it took, s.
     folder
-        Folder that holds the compiled kernels; None if they cannot be kept, because no folder can be written.
+        Folder under which the compiled kernels are; None if they cannot be kept, because no folder can be written.
     """
 
     compiled: int
@@ -65,8 +66,13 @@ def warm(progress: Callable[[str], None] | None = None) -> Warmth:
         if progress is not None:
             progress(name)
         step()
-    folder = folder_of(KERNELS[0])
-    return Warmth(_compiled() - before, perf_counter() - start, None if folder is None else Path(folder))
+    return Warmth(_compiled() - before, perf_counter() - start, _folder())
+
+
+def _folder() -> Path | None:
+    """Return the folder under which all compiled kernels are."""
+    folders = [folder for folder in map(folder_of, KERNELS) if folder is not None]
+    return Path(os.path.commonpath(folders)) if folders else None
 
 
 def _compiled() -> int:
