@@ -97,7 +97,8 @@ def _motion() -> GroundMotion:
 
 
 def _complete() -> None:
-    _ = _runs("MDOF-C").energy  # from the accelerations of a history
+    response = _runs("MDOF-C")
+    _ = response.energy, response.total_top_displacement  # from the accelerations and the curves of a history
 
 
 def _spectra() -> None:
