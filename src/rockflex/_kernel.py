@@ -3,16 +3,23 @@
 import ctypes
 import hashlib
 import re
+import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from rockflex._numba import compiled, compiled_within, direct
+from rockflex._numba import compiled, compiled_within, direct, when_compiling
 
 _C_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_size_t, ctypes.c_int64)
 
 _IMPORTS = re.compile(rb"^from rockflex\.([\w.]+) import", re.MULTILINE)
+
+KERNELS: list[Any] = []  # that Python calls, of the modules imported so far
+NOTICE = (
+    "rockflex is compiling its kernels, which takes some ten seconds. This happens once after an installation or an "
+    "upgrade, and `rockflex warm` does it ahead of need."
+)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -33,7 +40,33 @@ def inlined_kernel(function: F) -> F:
 
 def python_kernel(function: F) -> F:
     """Compile a kernel for calls from Python, with all kernels that it calls; the result is cached on disk."""
-    return cast("F", compiled(function, sources_digest()))
+    result = compiled(function, sources_digest())
+    KERNELS.append(result)
+    return cast("F", result)
+
+
+class Notice:
+    """Tells a person, once, that the first run is slow because kernels are being compiled.
+
+    Logs and pipes get no line.
+    """
+
+    def __init__(self) -> None:
+        self.told = False
+
+    def __call__(self, kernel: Any) -> None:
+        if not self.told and any(kernel is each for each in KERNELS):
+            self.told = True
+            if _somebody_reads():
+                print(NOTICE, file=sys.stderr, flush=True)
+
+
+def _somebody_reads() -> bool:
+    return "ipykernel" in sys.modules or (sys.stderr is not None and sys.stderr.isatty())  # a notebook is no terminal
+
+
+notice = Notice()
+when_compiling(notice)
 
 
 class Entry:
@@ -77,7 +110,8 @@ def sources_digest() -> str:
         for path in kernels
         for name in _IMPORTS.findall(sources[path])
     }
+    compilation = set(package.glob("_numba*.py"))
     digest = hashlib.sha256()
-    for path in sorted(kernels | (named & sources.keys())):
+    for path in sorted(kernels | compilation | (named & sources.keys())):
         digest.update(sources[path])
     return digest.hexdigest()

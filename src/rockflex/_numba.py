@@ -15,10 +15,12 @@ OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model
 # A kernel called only by kernels needs no wrapper for Python, which takes as long to compile as the kernel.
 WITHIN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 PIPELINE: dict[str, Any] = {}
+ENTRY: dict[str, Any] = {}
 with suppress(ImportError, AttributeError):  # otherwise every kernel is compiled separately
-    from rockflex._numba_pipeline import Intermediate
+    from rockflex._numba_pipeline import Intermediate, Whole
 
     PIPELINE["pipeline_class"] = Intermediate
+    ENTRY["pipeline_class"] = Whole
 
 
 def compiled(function: Callable[..., Any], stamp: str) -> Any:
@@ -28,7 +30,7 @@ def compiled(function: Callable[..., Any], stamp: str) -> Any:
     cannot be set, nothing is cached, because it could become outdated.
     """
     try:
-        kernel = _without_counts(function, {"cache": True})
+        kernel = _without_counts(function, {"cache": True, "no_cfunc_wrapper": True, **ENTRY})
     except RuntimeError:  # numba finds no writable folder
         return _without_counts(function, {})
     file: Any = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
@@ -83,3 +85,23 @@ def direct(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[.
     with suppress(Exception):  # whatever a version raises
         return overloads[tuple(typeof(each) for each in arguments)].entry_point
     return kernel
+
+
+def when_compiling(tell: Callable[[Any], None]) -> None:
+    """Call `tell` with every kernel that is about to be compiled, as it was not found on disk."""
+    with suppress(ImportError, AttributeError):  # otherwise nothing is told
+        from numba.core import event
+
+        class Listener(event.Listener):
+            def on_start(self, event: Any) -> None:
+                tell(event.data["dispatcher"])
+
+            def on_end(self, event: Any) -> None:
+                pass
+
+        event.register("numba:compile", Listener())
+
+
+def folder_of(kernel: Any) -> str | None:
+    """Return the folder in which a kernel is cached; None if it is not."""
+    return getattr(getattr(kernel, "stats", None), "cache_path", None)

@@ -7,11 +7,24 @@ Here only the outermost function is optimised, as a whole: it compiles sooner an
 
 from typing import Any, Literal
 
+from llvmlite.binding import newpassmanagers  # pyright: ignore[reportMissingTypeStubs]
 from numba import _dynfunc  # pyright: ignore[reportPrivateUsage, reportAttributeAccessIssue, reportUnknownVariableType]
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import PassManager, register_pass
-from numba.core.typed_passes import NativeLowering
+from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites
+from numba.core.untyped_passes import (
+    FindLiterallyCalls,
+    InlineClosureLikes,
+    InlineInlinables,
+    LiteralPropagationSubPipelinePass,
+    LiteralUnroll,
+    MakeFunctionToJitFunction,
+    RewriteDynamicRaises,
+    WithLifting,
+)
+
+from rockflex._numba_lowering import TerseLower
 
 # Looked up here, so that a version without them is detected before anything is compiled.
 make_function: Any = _dynfunc.make_function  # pyright: ignore[reportUnknownMemberType]
@@ -24,6 +37,7 @@ class IntermediateLowering(NativeLowering):
     """Lowering into a library without machine code."""
 
     _name = "intermediate_lowering"
+    lowering_class: Any = TerseLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
@@ -47,13 +61,84 @@ class IntermediateLowering(NativeLowering):
         return True
 
 
-class Intermediate(CompilerBase):
-    """numba's own pipeline except for the lowering."""
+@register_pass(mutates_CFG=True, analysis_only=False)
+class WholeLowering(NativeLowering):
+    """Lowering of an entry point, optimised with everything that it calls."""
+
+    _name = "whole_lowering"
+    lowering_class: Any = TerseLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
+
+    def run_pass(self, state: Any) -> Literal[True]:
+        """Lower one function."""
+        library = state.targetctx.codegen().create_library(state.func_id.func_qualname)
+        library.enable_object_caching()
+        library._optimize_final_module = lambda: optimize(library)
+        state.library = library
+        super().run_pass(state)
+        return True
+
+
+def optimize(library: Any) -> None:
+    """Optimise without unrolling or vectorising loops, which makes three times as much code, and no faster code."""
+    codegen = library._codegen
+    tuning = newpassmanagers.create_pipeline_tuning_options(3)
+    tuning.loop_vectorization = tuning.slp_vectorization = tuning.loop_unrolling = False
+    builder = newpassmanagers.create_pass_builder(codegen._tm, tuning)
+    builder.getModulePassManager().run(library._final_module, builder)
+
+
+class QuickFlags(Flags):
+    """numba's flags, which are compared at every call of a function; the original asks for each by name."""
+
+    __slots__ = ()
+
+    def values(self) -> dict[str, Any]:
+        """Return all values."""
+        return DEFAULTS | self._values  # pyright: ignore[reportAttributeAccessIssue]
+
+
+QuickFlags.__name__ = Flags.__name__  # part of the names of compiled functions
+DEFAULTS = {name: option.default for name, option in Flags.options.items()}  # pyright: ignore[reportAttributeAccessIssue]
+
+# Passes for what no kernel uses: closures, `with`, unrolled tuples, literal arguments, functions inlined by numba,
+# expressions of arrays, exceptions with computed arguments.
+UNUSED = {
+    FindLiterallyCalls,
+    InlineClosureLikes,
+    InlineInlinables,
+    InlineOverloads,
+    LiteralPropagationSubPipelinePass,
+    LiteralUnroll,
+    MakeFunctionToJitFunction,
+    NopythonRewrites,
+    RewriteDynamicRaises,
+    WithLifting,
+}
+
+
+class Terse(CompilerBase):
+    """numba's own pipeline without the passes for what no kernel uses."""
+
+    lowering: Any
 
     def define_pipelines(self) -> list[Any]:
         """Return the pipeline."""
-        passes = PassManager("intermediate")
+        self.state.flags.__class__ = QuickFlags
+        passes = PassManager(self.lowering._name)
         for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes:
-            passes.add_pass(IntermediateLowering if step is NativeLowering else step, why)
+            if step not in UNUSED:
+                passes.add_pass(self.lowering if step is NativeLowering else step, why)
         passes.finalize()
         return [passes]
+
+
+class Intermediate(Terse):
+    """For kernels that only kernels call."""
+
+    lowering = IntermediateLowering
+
+
+class Whole(Terse):
+    """For kernels that Python calls."""
+
+    lowering = WholeLowering

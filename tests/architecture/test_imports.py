@@ -41,6 +41,7 @@ FOUNDATION = {
     "_kernel",
     "_matrices",
     "_numba",
+    "_numba_lowering",
     "_numba_pipeline",
     "_schema",
     "_shown",
@@ -55,7 +56,7 @@ HOME = {
     "matplotlib": {"plot", "papers"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "numba": {"_numba", "_numba_pipeline"},
+    "numba": {"_numba", "_numba_lowering", "_numba_pipeline"},
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
@@ -200,6 +201,7 @@ def test_the_walk_sees_the_package() -> None:
     assert {"rockflex.__init__", "rockflex._kernel", "rockflex.solve.exact.march"} <= SOURCES.keys()
     assert {each.importer for each in FOUND if each.target.split(".")[0] == "numba"} == {
         "rockflex._numba",
+        "rockflex._numba_lowering",
         "rockflex._numba_pipeline",
     }
     assert any(each.when == DEFERRED for each in FOUND)

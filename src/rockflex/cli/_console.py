@@ -10,6 +10,7 @@ from rockflex._errors import RecordWarning
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.progress import Progress, TaskID
     from rich.table import Table
 
 
@@ -93,6 +94,35 @@ def progress(title: str, total: int | None = None) -> Generator[Callable[[int], 
     with Progress(console=console, transient=True) as bar:
         task = bar.add_task(title, total=total)
         yield lambda steps: bar.advance(task, steps)
+
+
+@contextmanager
+def steps(title: str) -> Generator[Callable[[str], None]]:
+    """Show the present step and its time on stderr, if it is a terminal; the yielded function starts a step."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    look = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*look, console=console, transient=True) as bar:
+        tasks: list[TaskID] = []
+
+        def start(name: str) -> None:
+            _end(bar, tasks)
+            tasks.append(bar.add_task(f"{title} {name}", total=1))
+
+        yield start
+        _end(bar, tasks)
+
+
+def _end(bar: "Progress", tasks: "list[TaskID]") -> None:
+    """Mark the last step as done."""
+    if tasks:
+        bar.update(tasks[-1], completed=1)
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 import math
 
 from rockflex._arrays import Array
-from rockflex._kernel import kernel
+from rockflex._kernel import kernel, python_kernel
 
 
 @kernel
@@ -105,7 +105,7 @@ def _peaks_inside(
     return max(sd, abs(end_u)), max(sv, abs(end_v))
 
 
-@kernel
+@python_kernel
 def oscillator_peaks(acceleration: Array, dt: float, omega: float, zeta: float) -> tuple[float, float]:
     """Largest |u| and |u'| of u'' + 2ζω u' + ω² u = -a(t), from rest, over the record."""
     rate, impulse, step, ramp = unit_responses(omega, zeta, dt)
