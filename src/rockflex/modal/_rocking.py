@@ -173,7 +173,7 @@ class RockingProperties(Value):
         InputError
             If `side` is neither.
         """
-        return self._by_side[checked_side(side)]
+        return self._by_side[side if type(side) is int and side in (1, -1) else checked_side(side)]
 
     @cached_property
     def _by_side(self) -> dict[int, Pivot]:
@@ -191,7 +191,7 @@ class RockingProperties(Value):
         """The pivot with the smaller resisting moment, about which the base lifts first; the right one if equal."""
         return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
 
-    @property
+    @cached_property
     def symmetric(self) -> bool:
         """Whether both pivots are alike: no eccentricity, and every off-centre element has a mirror image."""
         return self.eccentricity == 0.0 and mirrored(self.elements)
@@ -211,7 +211,7 @@ class RockingProperties(Value):
         """Sum of the tendons' initial forces in N."""
         return sum((tendon.initial_force for tendon in self.tendons), 0.0)
 
-    @property
+    @cached_property
     def resting_reaction(self) -> float:
         """Vertical reaction m_tot g + prestress of a base at rest, in N."""
         return self.m_tot * GRAVITY + self.prestress

@@ -47,6 +47,11 @@ class Task:
     free_vibration: float | None = 0.0
     history: bool = False
 
+    @property
+    def size(self) -> tuple[float | None, ...] | None:
+        """What the work depends on beside the model; None if it depends on every sample."""
+        return None if self.pace.flow else (self.record.size, self.dt, self.free_vibration, self.history)
+
     def work(self) -> Work:
         """Estimate the work of the run; the time to settle is taken as the longest period."""
         speed = float(np.abs(np.cumsum(self.record)).mean()) * self.dt if self.pace.flow else 0.0

@@ -14,6 +14,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
 from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
+from rockflex.solve._desk import Desks
 from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
@@ -31,18 +32,19 @@ from rockflex.solve.layout import (
     Motion,
     Progress,
     System,
-    motion_of,
 )
 from rockflex.solve.phases import CompiledPhases
 from rockflex.solve.progress import progress_at_start
 from rockflex.solve.run import run
 from rockflex.solve.status import Status
 
+LEVEL = np.zeros(0)  # no vertical acceleration
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
 MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
 EVENTS = 512  # initial room in a history for states between samples
 SLICE = 0.1  # of work in s, between checks whether to stop the run
 TOLERANCE = 1e-10  # relative, of a step
+SIZES = 64  # largest number of sizes of tasks remembered
 
 # Separate entries, because their argument types differ: the first has no vector field and is compiled without
 # integrator.
@@ -93,6 +95,8 @@ class Engine:
         self._n_peaks = 1 + len(quantities)
         self._signed = self._n_peaks + model.turning
         self._impact, self._failures = impact_of(model.law, model.properties)
+        self._desks = Desks(model, self._n_rows)
+        self._accepted = set[tuple[object, ...]]()
         with preparing(model):
             self._phases = CompiledPhases(model, quantities, most)
             # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
@@ -142,32 +146,21 @@ class Engine:
             If the run was stopped from outside.
         """
         task = self.task(acceleration, dt, free_vibration, history=history)
-        task.check(work_limit)
-        layout = self.model.layout
-        key, start = self.model.initial(state)
+        self._check(task, work_limit)
+        key, start = self._at_rest if state is None else self.model.initial(state)
         shaken = vertical is not None
         at = progress_at_start(self._place(key), stated=True)
         course = self._course(acceleration, vertical, dt, free_vibration)
-        room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
-        log = Log(
-            np.zeros(self._n_rows),
-            np.zeros(self._n_rows),
-            np.zeros(4, dtype=np.int64),
-            np.concatenate(([0.0], self.pace.prices(history=history))),
-            np.zeros((room_for, HEADER + layout.size)),
-            self._signed,
-        )
-        log.peaks[self._signed :] = -np.inf
-        if self.model.turning:
-            log.peaks[self._n_peaks] = np.inf  # of the row of θ', whose peak nobody asks for
+        log = self._log(course, history=history)
         left = math.inf if work_limit is None else work_limit
-        motion, steps = None, None
+        steps = None
+        desk = self._desks.taken(start)
         while True:
             system = self._phases.known_system(dt, shaken=shaken)
             if system is None:
                 with preparing(self.model):
                     system = self._phases.system(dt, self.pace.fastest, shaken=shaken)
-            motion = self._room(system, start, motion)
+            motion = desk.motion(system)
             steps = steps or self._integrator(motion, log, at)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
@@ -188,7 +181,42 @@ class Engine:
                 log = log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
             check_interruption()
         self._complain(status, at, dt, motion.state)
-        return self._solution(status, at, dt, log, motion.state, history=history)
+        self._desks.returned(desk)
+        return self._solution(status, at, dt, log, motion.state.copy(), history=history)
+
+    @cached_property
+    def _at_rest(self) -> tuple[Key, Array]:
+        return self.model.initial(None)
+
+    def _check(self, task: Task, limit: float | None) -> None:
+        """Check a task against the work limit, unless one of the same size was accepted before."""
+        size = task.size
+        if size is None or (size, limit) not in self._accepted:
+            task.check(limit)
+            if len(self._accepted) >= SIZES:
+                self._accepted.clear()
+            self._accepted.add((size, limit))
+
+    def _log(self, course: Course, *, history: bool) -> Log:
+        rows = self._n_rows
+        room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
+        peaks, work = self._first_peaks.copy(), self._prices[history].copy()
+        kept = np.zeros((room_for, HEADER + self.model.layout.size))
+        return Log(peaks, np.zeros(rows), np.zeros(4, dtype=np.int64), work, kept, self._signed)
+
+    @cached_property
+    def _first_peaks(self) -> Array:
+        peaks = np.zeros(self._n_rows)
+        peaks[self._signed :] = -np.inf
+        if self.model.turning:
+            peaks[self._n_peaks] = np.inf  # of the row of θ', whose peak nobody asks for
+        return peaks
+
+    @cached_property
+    def _prices(self) -> tuple[Array, Array]:
+        """What the kinds of work cost without and with a history, after the work left."""
+        plain, kept = (np.concatenate(([0.0], self.pace.prices(history=history))) for history in (False, True))
+        return plain, kept
 
     def _place(self, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
@@ -200,24 +228,12 @@ class Engine:
     def _course(self, acceleration: Array, vertical: Array | None, dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
         return Course(
-            # The compiled type is that of a writable array.
-            record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),
-            vertical=np.require([] if vertical is None else vertical, dtype=np.float64, requirements=("C", "W")),
+            record=_writable(acceleration),
+            vertical=LEVEL if vertical is None else _writable(vertical),
             quiet=QUIET,
             dt=dt,
             free=math.ceil(min(after / dt, MOST_SAMPLES) - 1e-9),
             settle=free_vibration is None,
-        )
-
-    def _room(self, system: System, state: Array, motion: Motion | None) -> Motion:
-        """Return the work arrays of the motion, enlarged to the number of terms that the phases need."""
-        terms = int(system.phases["terms"].max(initial=4))
-        if motion is None:
-            return motion_of(state, self.model.layout, self._n_rows + self.model.most_fences, terms)
-        if motion.series.shape[1] >= terms:
-            return motion
-        return motion._replace(
-            series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))
         )
 
     def _integrator(self, motion: Motion, log: Log, at: Progress) -> Integrator | None:
@@ -282,4 +298,11 @@ class Engine:
 
 def _samples(at: Progress) -> int:
     """Return the number of completed samples."""
-    return int(at.offset + at.index)
+    return int(at["offset"]) + int(at["index"])
+
+
+def _writable(values: Array) -> Array:
+    """Return an array of the compiled type, which is that of a writable array."""
+    if values.flags.carray and values.dtype == np.float64:
+        return values
+    return np.require(values, dtype=np.float64, requirements=("C", "W"))

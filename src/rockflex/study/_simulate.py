@@ -17,8 +17,8 @@ from rockflex.study._arguments import (
     ground_under,
     properties_of,
 )
-from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
+from rockflex.study._prepared import prepared
 
 
 def simulate(
@@ -99,6 +99,6 @@ def simulate(
     options = case_options(output, free_vibration, initial, work_limit)
     check_options(bouc_wen, impact, ground)
     properties = properties_of(structure)
-    tied = parse_model(model).of(properties, impact, bouc_wen, ground_under(properties, ground))
+    case = prepared(parse_model(model), properties, impact, bouc_wen, ground_under(properties, ground), options)
     check_motion(motion)
-    return Case(tied, **options).run(motion)
+    return case.run(motion)
