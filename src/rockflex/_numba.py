@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import Any, cast
 
 from numba import njit, typeof
+from numba.extending import get_cython_function_address
 
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
@@ -83,3 +84,8 @@ def direct(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[.
     with suppress(Exception):  # whatever a version raises
         return overloads[tuple(typeof(each) for each in arguments)].entry_point
     return kernel
+
+
+def address_in_cython(module: str, name: str) -> int:
+    """Return the address of a C function that a Cython module exports."""
+    return int(cast("Any", get_cython_function_address)(module, name))

@@ -20,6 +20,7 @@ from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
 from rockflex.solve.adaptive.layout import Integrator, stages_of
+from rockflex.solve.bare import BarePhases, is_bare
 from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import (
@@ -88,20 +89,17 @@ class Engine:
         tolerance: float = TOLERANCE,
     ) -> None:
         self.model = model
-        most = Quantities.none(model.layout.modes) if extremes is None else extremes
+        most = 0 if extremes is None else len(extremes)
         # The guard, which is the rotation, the quantities, those of which only the largest value matters, and the loss
         # of support.
-        self._n_rows = 2 + len(quantities) + model.turning + len(most)
+        self._n_rows = 2 + len(quantities) + model.turning + most
         self._n_peaks = 1 + len(quantities)
         self._signed = self._n_peaks + model.turning
         self._impact, self._failures = impact_of(model.law, model.properties)
         self._desks = Desks(model, self._n_rows)
         self._accepted = set[tuple[object, ...]]()
         with preparing(model):
-            self._phases = CompiledPhases(model, quantities, most)
-            # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
-            for side in model.sides if model.integrated else (0,):
-                self._phases.place(model.start(side))
+            self._phases = _phases_of(model, quantities, extremes)
             self._flow = flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
 
     @cached_property
@@ -149,17 +147,18 @@ class Engine:
         self._check(task, work_limit)
         key, start = self._at_rest if state is None else self.model.initial(state)
         shaken = vertical is not None
-        at = progress_at_start(self._place(key), stated=True)
+        phases = self._phases.at(dt, self.pace.fastest, shaken=shaken)
+        at = progress_at_start(self._place(phases, key), stated=True)
         course = self._course(acceleration, vertical, dt, free_vibration)
         log = self._log(course, history=history)
         left = math.inf if work_limit is None else work_limit
         steps = None
         desk = self._desks.taken(start)
         while True:
-            system = self._phases.known_system(dt, shaken=shaken)
+            system = phases.known_system(dt, shaken=shaken)
             if system is None:
                 with preparing(self.model):
-                    system = self._phases.system(dt, self.pace.fastest, shaken=shaken)
+                    system = phases.system(dt, self.pace.fastest, shaken=shaken)
             motion = desk.motion(system)
             steps = steps or self._integrator(motion, log, at)
             given = min(slice_of_work, left)
@@ -168,9 +167,9 @@ class Engine:
             left -= given - float(log.work[LEFT])
             if status == Status.LACKS_PHASE:
                 with preparing(self.model):
-                    self._phases.meet(int(at.phase), int(at.lacking))
-                if self._phases.dense:
-                    fastest = max(self.pace.fastest, self._phases.fastest)
+                    phases.meet(int(at.phase), int(at.lacking))
+                if phases.dense:
+                    fastest = max(self.pace.fastest, phases.fastest)
                     replace(task, pace=replace(self.pace, fastest=fastest, dense=True)).check(work_limit)
             elif status != Status.PAUSED:
                 break
@@ -218,12 +217,12 @@ class Engine:
         plain, kept = (np.concatenate(([0.0], self.pace.prices(history=history))) for history in (False, True))
         return plain, kept
 
-    def _place(self, key: Key) -> int:
+    def _place(self, phases: CompiledPhases | BarePhases, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
-        if self._phases.knows(key):
-            return self._phases.place(key)
+        if phases.knows(key):
+            return phases.place(key)
         with preparing(self.model):
-            return self._phases.place(key)
+            return phases.place(key)
 
     def _course(self, acceleration: Array, vertical: Array | None, dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
@@ -294,6 +293,17 @@ class Engine:
     def _raise(self, what: str, mend: str, state: Array) -> None:
         values = ", ".join(f"{value:.6g}" for value in state[: self.model.layout.core])
         raise SolverError(f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}")
+
+
+def _phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities | None) -> CompiledPhases | BarePhases:
+    """Return the phases of a model, with that in which runs start."""
+    if extremes is None and is_bare(model):
+        return BarePhases(model, quantities)
+    phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
+    # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
+    for side in model.sides if model.integrated else (0,):
+        phases.place(model.start(side))
+    return phases
 
 
 def _samples(at: Progress) -> int:

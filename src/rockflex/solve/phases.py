@@ -59,6 +59,11 @@ class CompiledPhases:
         # By time step, and whether the ground moves vertically; with the number of phases entered.
         self._systems: dict[tuple[float, bool], tuple[System, int]] = {}
 
+    def at(self, _dt: float, _fastest: float, *, shaken: bool) -> "CompiledPhases":
+        """Return the phases for a time step: these."""
+        del shaken
+        return self
+
     def place(self, key: Key) -> int:
         """Return the index of a phase in the tables; it is compiled if necessary."""
         known = self._places.get(key)

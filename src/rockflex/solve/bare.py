@@ -1,0 +1,134 @@
+"""The phases of a base that only rocks, without elements, prepared by one kernel."""
+
+from functools import cached_property, lru_cache
+from threading import RLock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._arrays import Array
+from rockflex._constants import GRAVITY
+from rockflex._kernel import Entry
+from rockflex.models import CLOSED, LANDS, LEFT, LIFTS, OVERTURNS, RIGHT, Key, LinearModel, Quantities, RockingModel
+from rockflex.solve.exact.bare import Bare, enter_bare
+from rockflex.solve.exact.tables import LONGEST_FALL, empty_system, levels_of
+from rockflex.solve.exact.uncoupled import Pairs, pairs_of
+from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWS, TURNED, System
+from rockflex.solve.phases import MOST_LEVELS, CompiledPhases
+
+SIDES = (CLOSED, RIGHT, LEFT)  # of the phases, in their order
+SPARE = 4  # sets of work arrays kept for each number of modes
+
+_enter = Entry(enter_bare)
+_spare: dict[int, list["Scratch"]] = {}
+
+
+def is_bare(model: RockingModel) -> bool:
+    """Return whether a model has three phases that differ only in numbers from those of other structures."""
+    p = model.properties
+    return type(model) is LinearModel and model.lifts and not p.elements and p.n_modes > 0 and model.gravity == GRAVITY
+
+
+class Scratch:
+    """Work arrays for the phases of a structure with N modes."""
+
+    def __init__(self, modes: int) -> None:
+        size = 2 * modes + 2
+        order = [*range(modes), 2 * modes, *range(modes, 2 * modes), 2 * modes + 1]  # positions, then speeds
+        self.pairs: Pairs = pairs_of(size, np.empty(size), np.array(order, dtype=np.int64))
+        self.accelerations: Array = np.empty((modes + 1, size + 2))
+        self.steady: Array = np.empty((3, size))
+
+
+class BarePhases:
+    """The phases of a model for which `is_bare` is true, with the methods of `CompiledPhases`.
+
+    Contact and rocking about both pivots are entered together. Whatever the kernel leaves alone is left to
+    `CompiledPhases`: time steps under which a phase cannot be uncoupled or overflows, and vertical motion of the ground.
+
+    Parameters
+    ----------
+    model
+        The model.
+    quantities
+        Quantities whose peaks are computed.
+    """
+
+    dense = False
+
+    def __init__(self, model: RockingModel, quantities: Quantities) -> None:
+        self._model = model
+        self._quantities = quantities
+        self._lock = RLock()
+        self._systems: dict[float, System | None] = {}
+        self.fastest = 0.0
+
+    def at(self, dt: float, fastest: float, *, shaken: bool) -> "BarePhases | CompiledPhases":
+        """Return the phases for a time step: these, if they can be entered together."""
+        if shaken:
+            return self._others
+        if dt not in self._systems:
+            with self._lock:
+                if dt not in self._systems:
+                    self._systems[dt] = self._entered(dt, fastest)
+        return self._others if self._systems[dt] is None else self
+
+    @cached_property
+    def _others(self) -> CompiledPhases:
+        return CompiledPhases(self._model, self._quantities, Quantities.none(self._model.layout.modes))
+
+    def knows(self, key: Key) -> bool:
+        """Return whether a phase is already compiled: all are."""
+        return key[0] in SIDES
+
+    def place(self, key: Key) -> int:
+        """Return the index of a phase in the tables."""
+        return SIDES.index(key[0])
+
+    def meet(self, phase: int, lacking: int) -> None:
+        """Compile the phase that a run needs: all are there."""
+
+    def known_system(self, dt: float, *, shaken: bool = False) -> System | None:
+        """Return the tables for one time step; None if they are not ready."""
+        return None if shaken else self._systems.get(dt)
+
+    def _entered(self, dt: float, fastest: float) -> System | None:
+        model, p = self._model, self._model.properties
+        rows = 2 + len(self._quantities)
+        levels = min(levels_of(fastest, dt), MOST_LEVELS)
+        system = empty_system(model, rows, dt, len(SIDES), levels, dense=False, shaken=False)
+        system.links[...] = _links()
+        right, left = p.pivot(RIGHT), p.pivot(LEFT)
+        spare = _spare.setdefault(p.n_modes, [])
+        try:
+            scratch = spare.pop()
+        except IndexError:
+            scratch = Scratch(p.n_modes)
+        bare = Bare(
+            modes=np.array((p.effective_mass, p.effective_height, np.sqrt(p.effective_mass), p.omega)),
+            pivots=np.array(((right.i_theta, right.arm), (left.i_theta, left.arm))),
+            moment=p.l0r,
+            mass=p.m_tot,
+            gravity=GRAVITY,
+            longest_fall=LONGEST_FALL,
+            shares=self._quantities.shares,
+            swings=self._quantities.swings,
+            accelerations=scratch.accelerations,
+            steady=scratch.steady,
+        )
+        found = _enter(system, bare, scratch.pairs)
+        if len(spare) < SPARE:
+            spare.append(scratch)
+        return system if found >= 0.0 else None
+
+
+@lru_cache(maxsize=1)
+def _links() -> NDArray[np.int64]:
+    """Return the events at the limits of the three phases, and the phases that follow."""
+    links = np.full((len(SIDES), CHANGED), -1, dtype=np.int64)
+    contact, right, left = range(len(SIDES))
+    links[:, BESIDE : BESIDE + 3] = contact, right, left
+    links[:, TURNED] = contact, right, left
+    links[:, EVENT : EVENT + 2] = (LIFTS, LIFTS), (LANDS, OVERTURNS), (OVERTURNS, LANDS)
+    links[:, FOLLOWS : FOLLOWS + 2] = (right, left), (contact, right), (left, contact)
+    return links
