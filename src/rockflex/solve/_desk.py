@@ -1,10 +1,12 @@
 """The work arrays of runs, handed on from run to run: to allocate them takes longer than to clear them."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models import RockingModel
-from rockflex.solve.layout import Motion, System, motion_of
+from rockflex.models import StateLayout
+from rockflex.solve.layout import Motion, motion_of
 
 FEWEST = 4  # terms of a power series
 SPARE = 8  # desks kept for later runs
@@ -22,7 +24,6 @@ class Desk:
     def __init__(self, fresh: Motion) -> None:
         self._fresh = fresh
         self._motion = Motion(*(array.copy() for array in fresh))
-        self._fits: System | None = None
 
     def cleared(self, start: Array) -> "Desk":
         """Return the desk as at the start of a run from a state."""
@@ -31,31 +32,28 @@ class Desk:
         self._motion.state[:] = start
         return self
 
-    def motion(self, system: System) -> Motion:
-        """Return the motion, with room for the terms that the phases need."""
-        if system is not self._fits:
-            terms, (rows, had) = int(system.phases["terms"].max(initial=FEWEST)), self._motion.polys.shape
-            if terms > had:
-                series = np.zeros((self._motion.series.shape[0], terms))
-                self._motion = self._motion._replace(series=series, polys=np.zeros((rows, terms)))
-            self._fits = system
+    def motion(self, terms: int) -> Motion:
+        """Return the motion, with room for power series of that many terms."""
+        rows, had = self._motion.polys.shape
+        if terms > had:
+            series = np.zeros((self._motion.series.shape[0], terms))
+            self._motion = self._motion._replace(series=series, polys=np.zeros((rows, terms)))
         return self._motion
 
 
 class Desks:
-    """The desks of an engine, of which every run takes one; threads may share them.
+    """Desks for runs with the same layout and number of rows, of which every run takes one; threads may share them.
 
     Parameters
     ----------
-    model
-        The model.
+    layout
+        The layout of the state.
     rows
-        Number of its rows, without fences.
+        Number of rows, with the fences.
     """
 
-    def __init__(self, model: RockingModel, rows: int) -> None:
-        state = np.zeros(model.layout.size)
-        self._fresh = motion_of(state, model.layout, rows + model.most_fences, FEWEST)
+    def __init__(self, layout: StateLayout, rows: int) -> None:
+        self._fresh = motion_of(np.zeros(layout.size), layout, rows, FEWEST)
         self._spare = list[Desk]()
 
     def taken(self, start: Array) -> Desk:
@@ -70,3 +68,9 @@ class Desks:
         """Take back the desk of a run that has ended."""
         if len(self._spare) < SPARE:
             self._spare.append(desk)
+
+
+@lru_cache(maxsize=32)
+def desks_of(layout: StateLayout, rows: int) -> Desks:
+    """Return the desks for a layout and a number of rows, the same ones for all models."""
+    return Desks(layout, rows)

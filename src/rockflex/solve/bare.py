@@ -1,6 +1,6 @@
 """The phases of a base that only rocks, without elements, prepared by one kernel."""
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 from threading import RLock
 
 import numpy as np
@@ -9,17 +9,33 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._kernel import Entry
-from rockflex.models import CLOSED, LANDS, LEFT, LIFTS, OVERTURNS, RIGHT, Key, LinearModel, Quantities, RockingModel
+from rockflex.models import (
+    CLOSED,
+    LANDS,
+    LEFT,
+    LIFTS,
+    OVERTURNS,
+    RIGHT,
+    Key,
+    LinearModel,
+    Quantities,
+    RockingModel,
+    StateLayout,
+)
 from rockflex.solve.exact.bare import Bare, enter_bare
 from rockflex.solve.exact.tables import LONGEST_FALL, empty_system, levels_of
 from rockflex.solve.exact.uncoupled import Pairs, pairs_of
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWS, TURNED, System
-from rockflex.solve.phases import MOST_LEVELS, CompiledPhases
+from rockflex.solve.phases import FEWEST_TERMS, MOST_LEVELS, CompiledPhases
 
+# The tables that the kernel fills; the others have no entries, or are the same for all structures.
+FILLED = tuple("phases limits border base push plain_rows basis forced rows row_forcing blocks bounds".split())
 SIDES = (CLOSED, RIGHT, LEFT)  # of the phases, in their order
+SIZES = 32  # kinds of empty tables kept
 SPARE = 4  # sets of work arrays kept for each number of modes
 
 _enter = Entry(enter_bare)
+_empty: dict[tuple[StateLayout, int, int], System] = {}
 _spare: dict[int, list["Scratch"]] = {}
 
 
@@ -55,13 +71,14 @@ class BarePhases:
     """
 
     dense = False
+    fastest = 0.0
 
     def __init__(self, model: RockingModel, quantities: Quantities) -> None:
         self._model = model
         self._quantities = quantities
         self._lock = RLock()
         self._systems: dict[float, System | None] = {}
-        self.fastest = 0.0
+        self.terms = FEWEST_TERMS
 
     def at(self, dt: float, fastest: float, *, shaken: bool) -> "BarePhases | CompiledPhases":
         """Return the phases for a time step: these, if they can be entered together."""
@@ -76,6 +93,17 @@ class BarePhases:
     @cached_property
     def _others(self) -> CompiledPhases:
         return CompiledPhases(self._model, self._quantities, Quantities.none(self._model.layout.modes))
+
+    def _empty(self, rows: int, levels: int) -> System:
+        """Return empty tables, which are the same for all structures with as many modes, rows and levels."""
+        key = (self._model.layout, rows, levels)
+        if key not in _empty:
+            if len(_empty) >= SIZES:
+                _empty.clear()
+            system = empty_system(self._model, rows, 0.0, len(SIDES), levels, dense=False, shaken=False)
+            system.links[...] = _links()
+            _empty[key] = system
+        return _empty[key]
 
     def knows(self, key: Key) -> bool:
         """Return whether a phase is already compiled: all are."""
@@ -96,8 +124,7 @@ class BarePhases:
         model, p = self._model, self._model.properties
         rows = 2 + len(self._quantities)
         levels = min(levels_of(fastest, dt), MOST_LEVELS)
-        system = empty_system(model, rows, dt, len(SIDES), levels, dense=False, shaken=False)
-        system.links[...] = _links()
+        system = _copied(self._empty(rows, levels), dt, np.array((p.omega**2, 2.0 * p.zeta * p.omega)))
         right, left = p.pivot(RIGHT), p.pivot(LEFT)
         spare = _spare.setdefault(p.n_modes, [])
         try:
@@ -116,13 +143,19 @@ class BarePhases:
             accelerations=scratch.accelerations,
             steady=scratch.steady,
         )
-        found = _enter(system, bare, scratch.pairs)
+        terms = _enter(system, bare, scratch.pairs)
         if len(spare) < SPARE:
             spare.append(scratch)
-        return system if found >= 0.0 else None
+        self.terms = max(self.terms, terms)
+        return system if terms > 0 else None
 
 
-@lru_cache(maxsize=1)
+def _copied(empty: System, dt: float, modes: Array) -> System:
+    """Return tables to be filled. Arrays without entries are shared, and so are those that the kernel leaves alone."""
+    arrays = {name: getattr(empty, name).copy() for name in FILLED}
+    return empty._replace(dt=dt, modes=modes, **arrays)
+
+
 def _links() -> NDArray[np.int64]:
     """Return the events at the limits of the three phases, and the phases that follow."""
     links = np.full((len(SIDES), CHANGED), -1, dtype=np.int64)

@@ -3,7 +3,7 @@
 import math
 from contextlib import AbstractContextManager
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
 from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
-from rockflex.solve._desk import Desks
+from rockflex.solve._desk import desks_of
 from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
@@ -96,11 +96,13 @@ class Engine:
         self._n_peaks = 1 + len(quantities)
         self._signed = self._n_peaks + model.turning
         self._impact, self._failures = impact_of(model.law, model.properties)
-        self._desks = Desks(model, self._n_rows)
+        self._desks = desks_of(model.layout, self._n_rows + model.most_fences)
         self._accepted = set[tuple[object, ...]]()
-        with preparing(model):
-            self._phases = _phases_of(model, quantities, extremes)
-            self._flow = flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
+        self._phases = _phases_of(model, quantities, extremes)
+        self._flow = None
+        if isinstance(model, NonlinearModel):
+            with preparing(model):
+                self._flow = flow_of(model, quantities, tolerance)
 
     @cached_property
     def pace(self) -> Pace:
@@ -159,7 +161,7 @@ class Engine:
             if system is None:
                 with preparing(self.model):
                     system = phases.system(dt, self.pace.fastest, shaken=shaken)
-            motion = desk.motion(system)
+            motion = desk.motion(phases.terms)
             steps = steps or self._integrator(motion, log, at)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
@@ -199,23 +201,10 @@ class Engine:
     def _log(self, course: Course, *, history: bool) -> Log:
         rows = self._n_rows
         room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
-        peaks, work = self._first_peaks.copy(), self._prices[history].copy()
+        peaks = _first_peaks(rows, self._signed, self._n_peaks if self.model.turning else rows).copy()
+        work = _prices(self.model.layout.modes, rows, history).copy()
         kept = np.zeros((room_for, HEADER + self.model.layout.size))
         return Log(peaks, np.zeros(rows), np.zeros(4, dtype=np.int64), work, kept, self._signed)
-
-    @cached_property
-    def _first_peaks(self) -> Array:
-        peaks = np.zeros(self._n_rows)
-        peaks[self._signed :] = -np.inf
-        if self.model.turning:
-            peaks[self._n_peaks] = np.inf  # of the row of θ', whose peak nobody asks for
-        return peaks
-
-    @cached_property
-    def _prices(self) -> tuple[Array, Array]:
-        """What the kinds of work cost without and with a history, after the work left."""
-        plain, kept = (np.concatenate(([0.0], self.pace.prices(history=history))) for history in (False, True))
-        return plain, kept
 
     def _place(self, phases: CompiledPhases | BarePhases, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
@@ -300,10 +289,26 @@ def _phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities
     if extremes is None and is_bare(model):
         return BarePhases(model, quantities)
     phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
-    # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
-    for side in model.sides if model.integrated else (0,):
-        phases.place(model.start(side))
+    with preparing(model):
+        # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
+        for side in model.sides if model.integrated else (0,):
+            phases.place(model.start(side))
     return phases
+
+
+@lru_cache(maxsize=64)
+def _first_peaks(rows: int, signed: int, turning: int) -> Array:
+    """Return the peaks at the start of a run; `turning` is the row of θ', if there is one, whose peak nobody asks for."""
+    peaks = np.zeros(rows)
+    peaks[signed:] = -np.inf
+    peaks[turning : turning + 1] = np.inf
+    return peaks
+
+
+@lru_cache(maxsize=64)
+def _prices(modes: int, rows: int, history: bool) -> Array:  # noqa: FBT001 - part of a key
+    """Return what the kinds of work cost in s, after the work left."""
+    return np.array((0.0, *Pace(modes, rows, 0.0).prices(history=history)))
 
 
 def _samples(at: Progress) -> int:

@@ -24,6 +24,7 @@ from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWING, FOLLOWS, TURNED, TURNING, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance
+FEWEST_TERMS = 4
 CAPACITY = 3  # initial number of phases: contact, and rocking on either side
 
 
@@ -44,6 +45,7 @@ class CompiledPhases:
     """
 
     def __init__(self, model: RockingModel, quantities: Quantities, extremes: Quantities) -> None:
+        self.terms = FEWEST_TERMS  # of the power series of all phases, over every time step
         self._lock = RLock()
         self._model = model
         self._quantities = quantities
@@ -173,6 +175,7 @@ class CompiledPhases:
                 put_heavier(system, p, self._phases[p], heavier, self._rows_of(self._heavier, heavier))
         # Runs that continue with the previous tables must not reach a phase for which they have no room.
         system = system._replace(links=self._links(system.links.shape[0]))
+        self.terms = max(self.terms, int(system.phases["terms"].max()))
         self._systems[dt, shaken] = system, count
         return system
 

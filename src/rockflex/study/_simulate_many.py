@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
 
+# Some runs of a structure: its index, the first and the last of them, and its case for each model, once prepared.
+Part = tuple[int, int, int, list[Case | str | None]]
+
 
 def simulate_many(
     structures: Structures,
@@ -126,11 +129,18 @@ def simulate_many(
         except InputError as error:
             return str(error)
 
-    def tasks() -> Iterator[tuple[int, int, int, list[Case | str | None]]]:
+    def tasks() -> Iterator[list[Part]]:
+        task, runs = list[Part](), 0
         for index in range(len(everything)):
             cases: list[Case | str | None] = [None] * len(chosen)
             for first in range(0, each, CHUNK):
-                yield index, first, min(first + CHUNK, each), cases
+                task.append((index, first, min(first + CHUNK, each), cases))
+                runs += task[-1][2] - first
+                if runs >= CHUNK:
+                    yield task
+                    task, runs = [], 0
+        if task:
+            yield task
 
     def result_of(index: int, place: int, cases: list[Case | str | None]) -> Row:
         motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
@@ -147,9 +157,9 @@ def simulate_many(
             responses[index * each + place] = response
         return results_of(response) | {"status": STATUSES.index(response.status)}
 
-    def work(task: tuple[int, int, int, list[Case | str | None]]) -> ArrowTable:
-        index, first, last, cases = task
-        return tabulate([result_of(index, place, cases) for place in range(first, last)], columns)
+    def work(task: list[Part]) -> ArrowTable:
+        runs = ((index, place, cases) for index, first, last, cases in task for place in range(first, last))
+        return tabulate([result_of(*run) for run in runs], columns)
 
     columns = {"status": STATUSES, "error": str, **RESULTS}
     results = to_frame(*in_order(work, tasks(), workers))

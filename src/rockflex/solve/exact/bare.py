@@ -50,21 +50,22 @@ class Bare(NamedTuple):
 
 
 @python_kernel
-def enter_bare(system: System, bare: Bare, pairs: Pairs) -> float:
-    """Enter all three phases; return the largest eigenvalue, or a negative number if they need closer attention.
+def enter_bare(system: System, bare: Bare, pairs: Pairs) -> int:
+    """Enter all three phases; return the terms that their power series need, or 0 if they need closer attention.
 
     That is the case if the coordinates cannot be told apart, something overflows, or the levels do not suffice.
     """
-    fastest = enter_contact(system, bare, pairs)
-    for p in (RIGHT, LEFT):
-        found = enter_rocking(system, bare, pairs, p) if fastest >= 0.0 else -1.0
-        fastest = max(fastest, found) if found >= 0.0 else -1.0
-    return fastest
+    if not enter_contact(system, bare, pairs):
+        return 0
+    if not (enter_rocking(system, bare, pairs, RIGHT) and enter_rocking(system, bare, pairs, LEFT)):
+        return 0
+    phases = system.phases
+    return int(max(phases[CLOSED].terms, phases[RIGHT].terms, phases[LEFT].terms))
 
 
 @kernel
-def enter_contact(system: System, bare: Bare, pairs: Pairs) -> float:
-    """Enter contact (Eq. 15), which is uncoupled already; return the largest eigenvalue."""
+def enter_contact(system: System, bare: Bare, pairs: Pairs) -> bool:
+    """Enter contact (Eq. 15), which is uncoupled already; return whether it could be done."""
     n, fastest = bare.modes.shape[1], 0.0
     half, basis, steady = n + 1, system.basis[CLOSED], bare.steady
     for i in range(n):
@@ -94,15 +95,15 @@ def enter_contact(system: System, bare: Bare, pairs: Pairs) -> float:
     basis[OUT, n, 2 * n] = basis[INTO, 2 * n, n] = 1.0
     basis[OUT, half + n, 2 * n + 1] = basis[INTO, 2 * n + 1, half + n] = 1.0
     if not fastest < math.inf or levels_over(fastest, system.dt) >= system.blocks.shape[1]:
-        return -1.0
+        return False
     describe(system, CLOSED, 0.0, fastest, n, True)
     fill(system, CLOSED, steady, pairs.blocks, pairs.roots, system.phases[CLOSED].levels)
-    return fastest
+    return True
 
 
 @kernel
-def enter_rocking(system: System, bare: Bare, pairs: Pairs, p: int) -> float:
-    """Enter rocking about one pivot (Eq. 23); return the largest eigenvalue, or a negative number."""
+def enter_rocking(system: System, bare: Bare, pairs: Pairs, p: int) -> bool:
+    """Enter rocking about one pivot (Eq. 23); return whether it could be done."""
     n = bare.modes.shape[1]
     pivot, side = p - RIGHT, 1.0 if p == RIGHT else -1.0
     inertia, arm = bare.pivots[pivot, 0], bare.pivots[pivot, 1]
@@ -119,9 +120,9 @@ def enter_rocking(system: System, bare: Bare, pairs: Pairs, p: int) -> float:
     system.limits[p, LOW, 0], system.limits[p, HIGH, 0] = (0.0, QUARTER_TURN) if p == RIGHT else (-QUARTER_TURN, 0.0)
     enter_rows(system, bare, p, side)
     if not free > 0.0:
-        return -1.0
+        return False
     if (p == RIGHT or bare.pivots[0, 0] != bare.pivots[1, 0]) and not uncouple_rocking(bare, pairs, flexibility):
-        return -1.0
+        return False
     enter_basis(system, p, pairs)
     clear(bare.steady)
     for i in range(n):
@@ -137,10 +138,10 @@ def enter_rocking(system: System, bare: Bare, pairs: Pairs, p: int) -> float:
         fastest = max(fastest, math.hypot(roots[0], roots[1]), math.hypot(roots[2], roots[3]))
         largest = max(largest, roots[0])
     if not largest * system.dt <= bare.longest_fall or levels_over(fastest, system.dt) >= system.blocks.shape[1]:
-        return -1.0
+        return False
     describe(system, p, side, fastest, n + 1, largest < 0.0)
     fill(system, p, bare.steady, pairs.blocks, pairs.roots, system.phases[p].levels)
-    return fastest
+    return True
 
 
 @kernel
