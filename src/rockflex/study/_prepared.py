@@ -1,4 +1,4 @@
-"""Cases prepared for `simulate`, kept for its next calls with the same structure."""
+"""Cases that `simulate` prepared, kept for its next calls with the same structure."""
 
 from collections import OrderedDict
 from collections.abc import Hashable
@@ -6,49 +6,69 @@ from threading import Lock
 from typing import Any
 
 from rockflex.modal import Ground, RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, Restitution, SidedRestitution, VVELComplete, VVELSimplified
+from rockflex.models import (
+    BoucWen,
+    ImpactLaw,
+    Model,
+    Restitution,
+    SidedRestitution,
+    VVELComplete,
+    VVELSimplified,
+)
+from rockflex.motion import GroundMotion
+from rockflex.response import Response
 from rockflex.study._case import Case
 
 MOST = 32  # cases kept
-LARGEST = 8_000_000  # bytes of the tables of one of them
-FIXED = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
+LARGEST = 8_000_000  # bytes of the tables of a case
+FIXED = (type(None), VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
 
 _kept: OrderedDict[Hashable, tuple[Case, RockingProperties, Ground | None]] = OrderedDict()
 _lock = Lock()
 
 
-def prepared(
+def run_prepared(
     model: Model,
     properties: RockingProperties,
     impact: ImpactLaw | None,
     bouc_wen: BoucWen | None,
     ground: Ground | None,
+    motion: GroundMotion,
     options: dict[str, Any],
-) -> Case:
-    """Return the case of a model and a structure, the same one as before if all arguments are the same.
+) -> Response:
+    """Run a motion on a structure, with the case of an earlier run if everything but the motion is the same.
 
-    The structure and the ground are the same only if they are the same objects, which cannot change. A user-defined
-    impact law can, so that its cases are not kept.
+    The structure and the ground are the same only if they are the same objects, which cannot change; a user-defined
+    impact law can. A case is kept only for the time step of its run, and not if its run failed or its tables are
+    expensive, so that no run depends on those before it.
 
     Raises
     ------
     InputError
-        If the model does not apply to the structure, or its numbers overflow.
+        If the model does not apply to the structure, its numbers overflow, or the run exceeds its work limit.
+    SolverError
+        If the run cannot be solved.
     """
-    if impact is not None and type(impact) not in FIXED:
-        return Case(model.of(properties, impact, bouc_wen, ground), **options)
-    initial = options["initial"]
-    rest = (model, impact, bouc_wen, options["free_vibration"], options["work_limit"], options["history"])
-    key = (id(properties), id(ground), id(initial), *rest)
+    rest = (options["free_vibration"], options["work_limit"], options["history"], motion.dt)
+    key = (id(properties), id(ground), id(options["initial"]), model, impact, bouc_wen, *rest)
+    case = _known(key) if type(impact) in FIXED else None
+    if case is not None:
+        return case.run(motion)
+    case = Case(model.of(properties, impact, bouc_wen, ground), **options)
+    response = case.run(motion)
+    if type(impact) in FIXED and not case.engine.dense and case.engine.size <= LARGEST:
+        with _lock:
+            # What a key identifies is kept with it, so that no later object can have its place in memory.
+            _kept[key] = case, properties, ground
+            if len(_kept) > MOST:
+                _kept.popitem(last=False)
+    return response
+
+
+def _known(key: Hashable) -> Case | None:
     with _lock:
         found = _kept.get(key)
-        if found is not None:
-            _kept.move_to_end(key)
-            return found[0]
-    case = Case(model.of(properties, impact, bouc_wen, ground), **options)
-    with _lock:
-        # What a key identifies is kept with it, so that no later object can have its place in memory.
-        _kept[key] = case, properties, ground
-        while len(_kept) > MOST:
-            _kept.popitem(last=False)
-    return case
+        if found is None:
+            return None
+        _kept.move_to_end(key)
+        return found[0]

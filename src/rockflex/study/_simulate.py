@@ -18,7 +18,7 @@ from rockflex.study._arguments import (
     properties_of,
 )
 from rockflex.study._initial import InitialState
-from rockflex.study._prepared import prepared
+from rockflex.study._prepared import run_prepared
 
 
 def simulate(
@@ -99,6 +99,6 @@ def simulate(
     options = case_options(output, free_vibration, initial, work_limit)
     check_options(bouc_wen, impact, ground)
     properties = properties_of(structure)
-    case = prepared(parse_model(model), properties, impact, bouc_wen, ground_under(properties, ground), options)
+    choice, below = parse_model(model), ground_under(properties, ground)
     check_motion(motion)
-    return case.run(motion)
+    return run_prepared(choice, properties, impact, bouc_wen, below, motion, options)

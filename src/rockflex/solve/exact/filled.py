@@ -85,7 +85,7 @@ def fill_forcing(system: System, p: int, steady: Array) -> None:
 
 @kernel
 def step_pair(out: Array, k: int, block: Array, roots: Array, h: float) -> None:
-    """Enter exp(B h) of a pair: e^{λ₁h} I + (e^{λ₁h} - e^{λ₂h})/(λ₁ - λ₂) (B - λ₁ I), for λ = σ ± iω in real numbers."""
+    """Enter exp(B h) of a pair: e^{λ₁h} I + (e^{λ₁h} - e^{λ₂h})/(λ₁ - λ₂) (B - λ₁ I); λ = σ ± iω in real numbers."""
     growth = math.exp(roots[0] * h)
     if roots[1] != 0.0:
         turn = roots[1] * h

@@ -121,6 +121,11 @@ def empty_system(
     )
 
 
+def size_of(system: System) -> int:
+    """Return the memory of all tables in bytes."""
+    return sum(table.nbytes for table in system if isinstance(table, np.ndarray))
+
+
 def grown(system: System, larger: System) -> System:
     """Return `larger` with the content of `system`."""
     for old, new in zip(system[2:], larger[2:], strict=True):
