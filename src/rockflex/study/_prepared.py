@@ -21,7 +21,7 @@ from rockflex.study._case import Case
 
 MOST = 32  # cases kept
 LARGEST = 8_000_000  # bytes of the tables of a case
-FIXED = (type(None), VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
+FIXED = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
 
 _kept: OrderedDict[Hashable, tuple[Case, RockingProperties, Ground | None]] = OrderedDict()
 _lock = Lock()
@@ -51,12 +51,13 @@ def run_prepared(
     """
     rest = (options["free_vibration"], options["work_limit"], options["history"], motion.dt)
     key = (id(properties), id(ground), id(options["initial"]), model, impact, bouc_wen, *rest)
-    case = _known(key) if type(impact) in FIXED else None
+    keeps = impact is None or type(impact) in FIXED
+    case = _known(key) if keeps else None
     if case is not None:
         return case.run(motion)
     case = Case(model.of(properties, impact, bouc_wen, ground), **options)
     response = case.run(motion)
-    if type(impact) in FIXED and not case.engine.dense and case.engine.size <= LARGEST:
+    if keeps and not case.engine.dense and case.engine.size <= LARGEST:
         with _lock:
             # What a key identifies is kept with it, so that no later object can have its place in memory.
             _kept[key] = case, properties, ground
