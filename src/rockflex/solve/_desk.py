@@ -23,7 +23,7 @@ class Desk:
 
     def __init__(self, fresh: Motion) -> None:
         self._fresh = fresh
-        self._motion = Motion(*(array.copy() for array in fresh))
+        self._motion = Motion._make(array.copy() for array in fresh)
 
     def cleared(self, start: Array) -> "Desk":
         """Return the desk as at the start of a run from a state."""
