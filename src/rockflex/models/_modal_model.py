@@ -95,8 +95,6 @@ class ModalModel(Value):
         start = np.zeros(layout.size)
         if state is not None:
             start[: state.size] = state
-        elif not self.elements:
-            return (CLOSED,), start
         key, memory = self.begin(float(start[layout.rotation]), float(start[layout.spin]))
         start[layout.memory : layout.memory + layout.remembered] = memory
         return key, start

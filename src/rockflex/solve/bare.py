@@ -23,16 +23,14 @@ from rockflex.models import (
     StateLayout,
 )
 from rockflex.solve.exact.bare import Bare, enter_bare
+from rockflex.solve.exact.filled import Tables
 from rockflex.solve.exact.tables import LONGEST_FALL, empty_system, levels_of, size_of
 from rockflex.solve.exact.uncoupled import Pairs, pairs_of
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWS, TURNED, System
 from rockflex.solve.phases import FEWEST_TERMS, MOST_LEVELS, CompiledPhases
 
 # The tables that the kernel fills; the others have no entries, or are the same for all structures.
-FILLED = (
-    *("phases", "limits", "border", "base", "push", "plain_rows"),
-    *("basis", "forced", "rows", "row_forcing", "blocks", "bounds"),
-)
+FILLED = tuple(name for name in Tables._fields if name not in ("dt", "modes"))
 SIDES = (CLOSED, RIGHT, LEFT)  # of the phases, in their order
 SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
 SIZES = 32  # kinds of empty tables kept
@@ -173,7 +171,7 @@ class BarePhases:
             accelerations=scratch.accelerations,
             steady=scratch.steady,
         )
-        terms = _enter(system, bare, scratch.pairs)
+        terms = _enter(Tables(*(getattr(system, name) for name in Tables._fields)), bare, scratch.pairs)
         if len(spare) < SPARE:
             spare.append(scratch)
         self.terms = max(self.terms, terms)

@@ -12,7 +12,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._kernel import kernel, python_kernel
 from rockflex.solve.exact.eigen import find_eigenvectors
-from rockflex.solve.exact.filled import fill, levels_over, terms_over
+from rockflex.solve.exact.filled import Tables, fill, levels_over, terms_over
 from rockflex.solve.exact.uncoupled import Pairs, enter, enter_roots, uncouple
 from rockflex.solve.layout import (
     CONSTANT,
@@ -27,7 +27,6 @@ from rockflex.solve.layout import (
     OMEGA2,
     OUT,
     STIFFNESS,
-    System,
 )
 
 CLOSED, RIGHT, LEFT = 0, 1, 2  # indices of the phases
@@ -50,7 +49,7 @@ class Bare(NamedTuple):
 
 
 @python_kernel
-def enter_bare(system: System, bare: Bare, pairs: Pairs) -> int:
+def enter_bare(system: Tables, bare: Bare, pairs: Pairs) -> int:
     """Enter all three phases; return the terms that their power series need, or 0 if they need closer attention.
 
     That is the case if the coordinates cannot be told apart, something overflows, or the levels do not suffice.
@@ -64,7 +63,7 @@ def enter_bare(system: System, bare: Bare, pairs: Pairs) -> int:
 
 
 @kernel
-def enter_contact(system: System, bare: Bare, pairs: Pairs) -> bool:
+def enter_contact(system: Tables, bare: Bare, pairs: Pairs) -> bool:
     """Enter contact (Eq. 15), which is uncoupled already; return whether it could be done."""
     n, fastest = bare.modes.shape[1], 0.0
     half, basis, steady = n + 1, system.basis[CLOSED], bare.steady
@@ -102,7 +101,7 @@ def enter_contact(system: System, bare: Bare, pairs: Pairs) -> bool:
 
 
 @kernel
-def enter_rocking(system: System, bare: Bare, pairs: Pairs, p: int) -> bool:
+def enter_rocking(system: Tables, bare: Bare, pairs: Pairs, p: int) -> bool:
     """Enter rocking about one pivot (Eq. 23); return whether it could be done."""
     n = bare.modes.shape[1]
     pivot, side = p - RIGHT, 1.0 if p == RIGHT else -1.0
@@ -160,7 +159,7 @@ def uncouple_rocking(bare: Bare, pairs: Pairs, flexibility: float) -> bool:
 
 
 @kernel
-def enter_basis(system: System, p: int, pairs: Pairs) -> None:
+def enter_basis(system: Tables, p: int, pairs: Pairs) -> None:
     """Enter the coordinates, which are those of positions, then speeds, in the scale of energies."""
     basis, size = system.basis[p], pairs.scale.size
     for i in range(size):
@@ -171,7 +170,7 @@ def enter_basis(system: System, p: int, pairs: Pairs) -> None:
 
 
 @kernel
-def describe(system: System, p: int, side: float, fastest: float, active: int, decays: bool) -> None:
+def describe(system: Tables, p: int, side: float, fastest: float, active: int, decays: bool) -> None:
     """Enter what a phase is."""
     phase = system.phases[p]
     phase.side, phase.free, phase.decays = side, p != CLOSED, decays
@@ -180,7 +179,7 @@ def describe(system: System, p: int, side: float, fastest: float, active: int, d
 
 
 @kernel
-def enter_rows(system: System, bare: Bare, p: int, side: float) -> None:
+def enter_rows(system: Tables, bare: Bare, p: int, side: float) -> None:
     """Enter the rows of a phase, and the accelerations that they contain, as `models` defines them."""
     n, rows, accelerations = bare.modes.shape[1], system.plain_rows[p], bare.accelerations
     columns = rows.shape[1]
@@ -217,7 +216,7 @@ def enter_rows(system: System, bare: Bare, p: int, side: float) -> None:
 
 
 @kernel
-def enter_quantity(system: System, bare: Bare, f: int, row: Array, side: float) -> None:
+def enter_quantity(system: Tables, bare: Bare, f: int, row: Array, side: float) -> None:
     """Enter the row of one quantity."""
     n, shares, columns = bare.modes.shape[1], bare.shares[f], row.size
     for c in range(columns):

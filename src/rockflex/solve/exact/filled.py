@@ -1,12 +1,32 @@
 """Propagators and curvature bounds in kernels, as `tables` describes them, for a phase that is uncoupled."""
 
 import math
+from typing import Any, NamedTuple
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
-from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES, System
+from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES
 
 SMALLEST_TERM = 1e-17  # of a series that starts at t³, relative to its first one
+
+
+class Tables(NamedTuple):
+    """The tables of `System` that are filled for a base without elements; fewer arrays compile faster."""
+
+    dt: float
+    modes: Array
+    phases: Any
+    limits: Array
+    border: Array
+    base: Array
+    push: Array
+    plain_rows: Array
+    basis: Array
+    forced: Array
+    rows: Array
+    row_forcing: Array
+    blocks: Array
+    bounds: Array
 
 
 @kernel
@@ -27,10 +47,10 @@ def terms_over(fastest: float, dt: float) -> int:
 
 
 @kernel
-def fill(system: System, p: int, steady: Array, blocks: Array, roots: Array, levels: int) -> None:
+def fill(system: Tables, p: int, steady: Array, blocks: Array, roots: Array, levels: int) -> None:
     """Enter the tables of a phase whose rows and basis are entered.
 
-    `steady` (3 + M, S) is the forced solution as states; `blocks` and `roots` (K, 4) describe the pairs.
+    `steady` (3, S) is the forced solution as states; `blocks` and `roots` (K, 4) describe the pairs.
     """
     fill_rows(system, p, blocks)
     fill_forcing(system, p, steady)
@@ -43,7 +63,7 @@ def fill(system: System, p: int, steady: Array, blocks: Array, roots: Array, lev
 
 
 @kernel
-def fill_rows(system: System, p: int, blocks: Array) -> None:
+def fill_rows(system: Tables, p: int, blocks: Array) -> None:
     """Enter the rows over the coordinates, and their derivatives."""
     plain, basis, rows = system.plain_rows[p], system.basis[p, OUT], system.rows[p]
     size, half = basis.shape[0], blocks.shape[0]
@@ -60,10 +80,9 @@ def fill_rows(system: System, p: int, blocks: Array) -> None:
 
 
 @kernel
-def fill_forcing(system: System, p: int, steady: Array) -> None:
+def fill_forcing(system: Tables, p: int, steady: Array) -> None:
     """Enter the forced motion in coordinates and in the rows."""
     plain, back, size = system.plain_rows[p], system.basis[p, INTO], steady.shape[1]
-    first = system.layout.memory
     for f in range(steady.shape[0]):
         for k in range(size):
             total = 0.0
@@ -78,8 +97,6 @@ def fill_forcing(system: System, p: int, steady: Array) -> None:
                 total += plain[r, plain.shape[1] - 2]
             elif f == 2:
                 total += plain[r, plain.shape[1] - 1]
-            elif f > 2:
-                total += plain[r, first + f - 3]
             system.row_forcing[p, r, f] = total
 
 
@@ -101,7 +118,7 @@ def step_pair(out: Array, k: int, block: Array, roots: Array, h: float) -> None:
 
 
 @kernel
-def bound_rows(system: System, p: int, level: int, blocks: Array, roots: Array, h: float) -> None:
+def bound_rows(system: Tables, p: int, level: int, blocks: Array, roots: Array, h: float) -> None:
     """Enter sag, swing and ripple of every row over a step."""
     rows, half = system.rows[p], blocks.shape[0]
     for k in range(half):

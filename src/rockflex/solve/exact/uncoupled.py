@@ -8,10 +8,8 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
+from rockflex.solve.exact.basis import WORST_CONDITION
 from rockflex.solve.exact.eigen import Eigen, eigen_of
-
-WORST_CONDITION = 1e5  # of the eigenvectors in energy scale: beyond it five digits are lost
-STILL = -1  # in `Pairs.partners`: not the first of a pair
 
 
 class Pairs(NamedTuple):
