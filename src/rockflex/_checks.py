@@ -3,6 +3,7 @@
 import math
 import operator
 from collections.abc import Collection
+from contextlib import suppress
 from numbers import Real
 from typing import Any, SupportsIndex, TypeVar
 
@@ -80,6 +81,8 @@ def finite(name: str, value: float, unit: str) -> float:
 
 def real_or_nan(value: object) -> float:
     """Return a real number as a float; NaN for booleans, strings, arrays, and numbers too large for a float."""
+    if type(value) is float:  # the other tests take long
+        return value
     if isinstance(value, bool) or not isinstance(value, Real):
         return math.nan
     try:
@@ -106,16 +109,13 @@ def whole_number(
 
     `field` as in `in_range`.
     """
-    span = f"of at least {low}" if high is None else f"from {low} to {high}"
-    message = f"{name} must be a whole number {span}, but {shown(value)} was given."
-    if isinstance(value, bool | np.bool_):
-        raise InputError(message, field=field or name)
-    try:
-        number = operator.index(value)
-    except TypeError as error:
-        raise InputError(message, field=field or name) from error
-    if number < low or (high is not None and number > high):
-        raise InputError(message, field=field or name)
+    number = None
+    if not isinstance(value, bool | np.bool_):
+        with suppress(TypeError):
+            number = operator.index(value)
+    if number is None or number < low or (high is not None and number > high):
+        span = f"of at least {low}" if high is None else f"from {low} to {high}"
+        raise InputError(f"{name} must be a whole number {span}, but {shown(value)} was given.", field=field or name)
     return number
 
 

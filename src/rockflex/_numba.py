@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import Any, cast
 
 from numba import njit, typeof
+from numba.extending import get_cython_function_address
 
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
@@ -105,3 +106,8 @@ def when_compiling(tell: Callable[[Any], None]) -> None:
 def folder_of(kernel: Any) -> str | None:
     """Return the folder in which a kernel is cached; None if it is not."""
     return getattr(getattr(kernel, "stats", None), "cache_path", None)
+
+
+def address_in_cython(module: str, name: str) -> int:
+    """Return the address of a C function that a Cython module exports."""
+    return int(cast("Any", get_cython_function_address)(module, name))

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
+
+V = TypeVar("V", bound="Value")
 
 
 class Value:
@@ -39,6 +41,14 @@ class Value:
     def __setstate__(self, state: dict[str, Any]) -> None:
         _freeze(state.values())
         vars(self).update(state)
+
+
+def changed(value: V, **changes: Any) -> V:
+    """Return a copy of a value with some fields changed to others that need no checks."""
+    other = object.__new__(type(value))
+    _freeze(changes.values())
+    vars(other).update(dict(_items(value)) | changes)
+    return other
 
 
 def _freeze(values: Iterable[Any]) -> None:

@@ -20,6 +20,11 @@ _VECTOR = ir.VectorType(ir.DoubleType(), BLOCK)
 _LANES = ir.VectorType(ir.IntType(32), BLOCK)
 
 
+def padded(size: int) -> int:
+    """Return a size rounded up to a multiple of `BLOCK`."""
+    return -(-size // BLOCK) * BLOCK
+
+
 def _plain_row(
     values: Array,
     constant: float,

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
 from rockflex._checks import dimensions, finite_matrix, finite_vector, mode_count
-from rockflex._values import Value
+from rockflex._values import Value, changed
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -61,4 +61,4 @@ class FloorModes(Value):
             If the structure has fewer modes than `n_modes`.
         """
         k = mode_count(n_modes, self.n_modes)
-        return FloorModes(self.heights, self.displacement[:, :k], self.force[:, :k])
+        return changed(self, displacement=self.displacement[:, :k].copy(), force=self.force[:, :k].copy())

@@ -131,6 +131,10 @@ def pivot_of(
 ) -> Pivot:
     """Return one pivot of a structure from its `RockingProperties` and a height that defines the slenderness."""
     arm = half_width - side * eccentricity
+    inertia = pivot_inertia(side * eccentricity, half_width, i_theta, translational_inertia, m_tot)
+    weight, limit = m_tot * GRAVITY * arm, _OVERTURNING_SHARE * math.atan2(arm, height)
+    if not elements:
+        return Pivot(side, arm, inertia, weight, 0.0, 0.0, 0.0, 0.0, -l0r * GRAVITY, limit)
     # Both pivots of a symmetric base must give identical numbers, to the last digit and in any order of the tendons.
     towards = 1 if alike else side
     tendons = [each for each in elements if isinstance(each, Tendon)]
@@ -145,14 +149,14 @@ def pivot_of(
     return Pivot(
         side=side,
         arm=arm,
-        i_theta=pivot_inertia(side * eccentricity, half_width, i_theta, translational_inertia, m_tot),
-        weight_moment=m_tot * GRAVITY * arm,
+        i_theta=inertia,
+        weight_moment=weight,
         prestress_moment=prestress,
         tendon_stiffness=stiffness,
         axial_stiffness_moment=pull,
         dissipator_moment=sum((locked_force(each) * abs(arm - towards * each.position) for each in elements), 0.0),
         rocking_stiffness=stiffness - l0r * GRAVITY,
-        nominal_overturning_rotation=_OVERTURNING_SHARE * math.atan2(arm, height),
+        nominal_overturning_rotation=limit,
     )
 
 

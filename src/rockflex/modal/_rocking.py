@@ -13,7 +13,7 @@ from rockflex._arrays import Array
 from rockflex._checks import damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._constants import GRAVITY
-from rockflex._values import Value
+from rockflex._values import Value, changed
 from rockflex.modal._devices import BaseElement, element_set, mirrored
 from rockflex.modal._floors import FloorModes
 from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_of
@@ -173,7 +173,7 @@ class RockingProperties(Value):
         InputError
             If `side` is neither.
         """
-        return self._by_side[checked_side(side)]
+        return self._by_side[side if type(side) is int and side in (1, -1) else checked_side(side)]
 
     @cached_property
     def _by_side(self) -> dict[int, Pivot]:
@@ -194,7 +194,7 @@ class RockingProperties(Value):
     @cached_property
     def symmetric(self) -> bool:
         """Whether both pivots are alike: no eccentricity, and every off-centre element has a mirror image."""
-        return self.eccentricity == 0.0 and mirrored(self.elements)
+        return self.eccentricity == 0.0 and (not self.elements or mirrored(self.elements))
 
     @property
     def weight_moment(self) -> float:
@@ -209,9 +209,9 @@ class RockingProperties(Value):
     @property
     def prestress(self) -> float:
         """Sum of the tendons' initial forces in N."""
-        return sum((tendon.initial_force for tendon in self.tendons), 0.0)
+        return sum((tendon.initial_force for tendon in self.tendons), 0.0) if self.elements else 0.0
 
-    @property
+    @cached_property
     def resting_reaction(self) -> float:
         """Vertical reaction m_tot g + prestress of a base at rest, in N."""
         return self.m_tot * GRAVITY + self.prestress
@@ -288,7 +288,7 @@ class RockingProperties(Value):
         k = whole_number("n_modes", n_modes, 0, self.n_modes)
         if k == self.n_modes:
             return self
-        return replace(
+        return changed(
             self,
             omega=self.omega[:k],
             effective_mass=self.effective_mass[:k],

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -249,6 +250,13 @@ def parse_model(model: str | Model) -> Model:
     """
     if isinstance(model, Model):
         return model
+    if not isinstance(model, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model.")
+    return _labelled(model)
+
+
+@lru_cache(maxsize=256)
+def _labelled(label: str) -> Model:
     named = {
         "fixed": Model(lifts=False),
         "fixed-BW": Model(lifts=False, yields=True),
@@ -257,18 +265,18 @@ def parse_model(model: str | Model) -> Model:
         "rigid": Model(0),
         "rigid-C": Model(0, complete=True),
     }
-    found = _PATTERN.fullmatch(model) if isinstance(model, str) else None  # pyright: ignore[reportUnnecessaryIsInstance]
+    found = _PATTERN.fullmatch(label)
     if found is None:
-        if isinstance(model, str) and model in named:  # pyright: ignore[reportUnnecessaryIsInstance]
-            return named[model]
-        raise InputError(f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model.")
+        if label in named:
+            return named[label]
+        raise InputError(f"Unknown model {shown(label)}. Expected {_EXPECTED}, or a Model.")
     lifts, complete = found["kind"] != "fixed", found["kind"] == "C"
     closures: dict[str | None, Literal["SI", "E"] | None] = {"SI": "SI", "E": "E"}
     closure = closures.get(found["closure"])
     n_modes = None if found["all"] else int(found["count"]) - lifts
     odd = (found["all"] and not lifts) or n_modes == 0 or (closure is not None and not complete)
     if odd:
-        raise InputError(f"Unknown model {shown(model)}. Expected {_EXPECTED}, or a Model.")
+        raise InputError(f"Unknown model {shown(label)}. Expected {_EXPECTED}, or a Model.")
     return Model(
         n_modes, lifts, complete, closure, yields=found["yields"] is not None, missing_mass=found["missing"] is not None
     )

@@ -1,5 +1,6 @@
 """The layout of the state vector, of rows, and of the states in a history."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from rockflex._arrays import Array
@@ -84,6 +85,7 @@ class StateLayout(NamedTuple):
         return states[:, HEADER + place]
 
 
+@lru_cache(maxsize=256)
 def layout_of(
     modes: int,
     *,

@@ -49,8 +49,10 @@ class LinearModel(ModalModel):
         """
         p = self.properties
         weight = p.l0r * GRAVITY
-        return self.lifts and any(
-            meets(stiffnesses_of(p, self.elements, side), weight, NEUTRAL * weight) for side in (RIGHT, LEFT)
+        return (
+            bool(p.elements)
+            and self.lifts
+            and any(meets(stiffnesses_of(p, self.elements, side), weight, NEUTRAL * weight) for side in (RIGHT, LEFT))
         )
 
     @property

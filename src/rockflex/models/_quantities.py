@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -60,7 +61,7 @@ class Quantities:
             elif name in OF_SHIFT:
                 shifts[:, OF_SHIFT.index(name)] = share
             else:
-                values[:, _column(name, modes)] = share
+                values[:, _columns(modes)[name]] = share
         return cls(values, swings, shifts, np.full(count, kind, dtype=np.int64))
 
     @classmethod
@@ -82,24 +83,25 @@ class Quantities:
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
 
 
-def _column(name: str, modes: int) -> slice | int:
-    if name in OF_MODES:
-        first = OF_MODES.index(name) * modes
-        return slice(first, first + modes)
-    return OF_BASE.index(name) - len(OF_BASE)
+@lru_cache(maxsize=256)
+def _columns(modes: int) -> dict[str, slice | int]:
+    """Return the places of the shares in a row of `Quantities.shares`, by name."""
+    of_modes = {name: slice(k * modes, (k + 1) * modes) for k, name in enumerate(OF_MODES)}
+    return of_modes | {name: k - len(OF_BASE) for k, name in enumerate(OF_BASE)}
 
 
 def collected(modes: int, shares: Sequence[Share]) -> Quantities:
     """Return one quantity for each pair of kind and shares."""
-    total = Quantities.of(len(shares), modes)
-    for k, (kind, values) in enumerate(shares):
-        total.kinds[k] = kind
-        for name, share in values.items():
+    count, columns = len(shares), _columns(modes)
+    values, shifts = np.zeros((count, 3 * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
+    for row, shift, (_, given) in zip(values, shifts, shares, strict=True):
+        for name, share in given.items():
             if name in OF_SHIFT:
-                total.shifts[k, OF_SHIFT.index(name)] = share
+                shift[OF_SHIFT.index(name)] = share
             else:
-                total.shares[k, _column(name, modes)] = share
-    return total
+                row[columns[name]] = share
+    kinds = np.array([kind for kind, _ in shares], dtype=np.int64)
+    return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, kinds)
 
 
 def joined(parts: Sequence[Quantities]) -> Quantities:

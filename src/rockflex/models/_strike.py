@@ -16,6 +16,7 @@ SHARED, SCALED, CALLED = 0, 1, 2  # kinds of law: Eq. 25 or a restitution; scale
 
 
 SHORTEST = 1e-4  # s: the default of `Restitution`
+WITHOUT = Restitution(0.0, SHORTEST)
 
 
 class Impact(NamedTuple):
@@ -39,7 +40,7 @@ def impact_of(law: ImpactLaw, properties: RockingProperties) -> tuple[Impact, li
     own = None
     if not isinstance(law, VVELSimplified | VVELComplete | Restitution | SidedRestitution):
         own = OwnLaw(law, properties)
-    right = left = Restitution(0.0, SHORTEST)
+    right = left = WITHOUT
     if isinstance(law, SidedRestitution):
         right, left = law.right, law.left
     elif isinstance(law, Restitution):

@@ -16,6 +16,17 @@ def core_count() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
 
 
+def worker_count(workers: SupportsIndex | None) -> int:
+    """Return the number of workers; None means one per core.
+
+    Raises
+    ------
+    InputError
+        If `workers` is neither None nor a whole number of at least 1.
+    """
+    return core_count() if workers is None else whole_number("workers", workers, 1)
+
+
 def map_threads(
     function: Callable[[Task], Result],
     tasks: Iterable[Task],
@@ -43,7 +54,7 @@ def map_threads(
     InputError
         If `workers` is neither None nor a whole number of at least 1.
     """
-    count = core_count() if workers is None else whole_number("workers", workers, 1)
+    count = worker_count(workers)
     if count == 1:
         yield from map(function, tasks)
         return

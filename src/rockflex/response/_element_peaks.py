@@ -83,6 +83,8 @@ def element_peaks(model: RockingModel, moves: Sequence[Moves], final_state: Arra
 
 def moves_about_pivots(model: RockingModel, reach: Reach) -> list[Moves]:
     """Return the extremes of the elements of a base that rotates about its edges."""
+    if not model.properties.elements:
+        return []
     stretch = model.stretch_per_arm(np.array(reach.rotation)).tolist()
     return [_moves(model, each, stretch, reach.swing) for each in model.properties.elements]
 

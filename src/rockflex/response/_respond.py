@@ -14,6 +14,9 @@ from rockflex.response._history import History
 from rockflex.response._response import Response
 from rockflex.solve import Solution
 
+MAXIMA = tuple(f"max_{name}" for name in GLOBAL)
+TIMES = tuple(f"time_of_{name}" for name in MAXIMA)
+
 
 def respond(model: RockingModel, motion: str, solution: Solution, *, floors: bool = False) -> Response:
     """Return the response for a solution whose rows are those of `asked_of`, with or without the floors."""
@@ -43,9 +46,8 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0
     left_ground = left_ground or (rotation > 0.0 and not isinstance(model, SpringModel))
     status = "rocking" if left_ground else "no_uplift"
-    known = {f"max_{name}": value for name, value in zip(GLOBAL, peaks[: len(GLOBAL)].tolist(), strict=True)}
-    at = solution.peak_times[1 : 1 + len(GLOBAL)].tolist()
-    times = {f"time_of_max_{name}": value for name, value in zip(GLOBAL, at, strict=True)}
+    known = dict(zip(MAXIMA, peaks[: len(GLOBAL)].tolist(), strict=True))
+    times = dict(zip(TIMES, solution.peak_times[1 : 1 + len(GLOBAL)].tolist(), strict=True))
     if p.top_height is None:
         known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
     of_elements = element_peaks(model, moves, solution.final_state)

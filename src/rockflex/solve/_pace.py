@@ -9,9 +9,6 @@ work.
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from rockflex._arrays import Array
 from rockflex.models import RockingModel, stiffness_of_fuses
 
 LOOKS = 0.8  # into a sample, per radian beyond the first by which the phase of the fastest vibration advances
@@ -73,7 +70,7 @@ class Pace:
     flow: float = 0.0
     dense: bool = False
 
-    def prices(self, *, history: bool) -> Array:
+    def prices(self, *, history: bool) -> tuple[float, float, float, float]:
         """Return the work in s of a sample, a look, a power series and an attempted step, as in `Log.work`."""
         pairs, rows = self.modes + 1, self.rows
         both = rows * pairs
@@ -83,20 +80,23 @@ class Pace:
         look = 0.05 + 0.08 * rows + 0.0015 * both
         series = 0.5 + 0.15 * rows + 0.003 * both
         step = 1.1 + 0.12 * self.modes + 0.02 * rows
-        return MICRO * np.array([sample, look, series, step])
+        return MICRO * sample, MICRO * look, MICRO * series, MICRO * step
 
-    def work(self, samples: float, dt: float, velocity: float = 0.0, *, history: bool) -> Work:
+    def work(
+        self, samples: float, dt: float, velocity: float = 0.0, *, history: bool, fastest: float | None = None
+    ) -> Work:
         """Estimate the work of a run over `samples` steps of `dt` s with continuous rocking.
 
-        `velocity` is the mean ground speed in m/s, which matters for a yielding spring.
+        `velocity` is the mean ground speed in m/s, which matters for a yielding spring, and `fastest` the frequency in
+        rad/s of the fastest vibration that takes work, if that is not the fastest of all.
         """
-        sample, look, _, step = self.prices(history=history).tolist()
-        turned = self.fastest * dt
+        sample, look, _, step = self.prices(history=history)
+        turned = (self.fastest if fastest is None else fastest) * dt
         if self.integrated:
             flowing = step * velocity * self.flow * dt / RELAXING if self.flow else 0.0
             return Work(samples * (sample + step), samples * step * turned / TURN, samples * flowing)
         looks = look * LOOKS * max(turned - 1.0, 0.0)
-        return Work(samples * (sample + look * SEARCH), samples * looks + self._tables(turned))
+        return Work(samples * (sample + look * SEARCH), samples * looks + self._tables(dt))
 
     def energy(self, samples: float, dt: float) -> float:
         """Estimate the work in s of computing the energies after the run."""
@@ -104,9 +104,9 @@ class Pace:
         each = 1.5 + 0.5 * self.modes + turned * (3.5 + 0.4 * turned) * (1.0 + self.modes / 10.0)
         return MICRO * samples * each
 
-    def _tables(self, turned: float) -> float:
+    def _tables(self, dt: float) -> float:
         """Return the work for the bounds of a dense phase: one matrix product per point of the finest grid."""
-        pairs = self.modes + 1
+        pairs, turned = self.modes + 1, self.fastest * dt
         return MICRO * 2.0 * max(turned, 1.0) * (8.0 + 0.01 * self.rows * pairs**2) if self.dense else 0.0
 
 
@@ -116,8 +116,9 @@ def pace_of(model: RockingModel, rows: int) -> Pace:
     The highest frequency is a bound that needs no eigenvalues and is at most one per cent too high.
     """
     p = model.properties
-    squares = p.omega**2
-    moments = p.effective_mass * p.effective_height**2
+    squares = [omega * omega for omega in p.omega.tolist()]
+    heights = p.effective_height.tolist()
+    moments = [mass * height * height for mass, height in zip(p.effective_mass.tolist(), heights, strict=True)]
     bounds = (
         _highest_square(squares, moments, pivot.i_theta, pivot.rocking_stiffness + stiffness_of_fuses(p, pivot.side))
         for pivot in (p.pivots if model.lifts else ())
@@ -125,24 +126,28 @@ def pace_of(model: RockingModel, rows: int) -> Pace:
     return _pace(model, rows, math.sqrt(max(bounds, default=0.0)))
 
 
-def _highest_square(squares: Array, moments: Array, inertia: float, stiffness: float) -> float:
+def _highest_square(squares: list[float], moments: list[float], inertia: float, stiffness: float) -> float:
     """Return a bound of the highest ω² of oscillators with ω_n² and a_n = m*_n h*_n² on a rocking base.
 
     The frequencies obey λ (I - Σ a_n) = k + Σ a_n ω_n² + Σ a_n ω_n⁴/(λ - ω_n²). Setting all ω_n in the last sum to
     the highest is exact for one mode and gives a quadratic equation for λ - ω_N².
     """
-    free = inertia - float(moments.sum())  # the inertia that belongs to no mode
-    highest = float(squares.max(initial=0.0))
+    free = inertia - sum(moments)  # the inertia that belongs to no mode
+    highest = max(squares, default=0.0)
     if not free > 0.0:
         return math.inf
-    half = 0.5 * ((stiffness + float(moments @ squares)) / free - highest)
-    beyond = half + math.sqrt(half**2 + float(moments @ squares**2) / free)
+    twice, more = 0.0, 0.0  # Σ a_n ω_n² and Σ a_n ω_n⁴
+    for square, moment in zip(squares, moments, strict=True):
+        twice += moment * square
+        more += moment * square * square
+    half = 0.5 * ((stiffness + twice) / free - highest)
+    beyond = half + math.sqrt(half * half + more / free)
     found = highest + max(beyond, 0.0)
     return math.inf if math.isnan(found) else found
 
 
 def _pace(model: RockingModel, rows: int, fastest: float) -> Pace:
-    highest = max(fastest, float(model.properties.omega.max(initial=0.0)))
+    highest = max(fastest, max(model.properties.omega.tolist(), default=0.0))
     known = Pace(model.properties.n_modes, rows, highest, model.integrated)
     if model.bouc_wen is None:
         return known

@@ -1,7 +1,7 @@
 """The specification of a run, the check of its work against a limit, and the messages if it is exceeded."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -47,15 +47,16 @@ class Task:
     free_vibration: float | None = 0.0
     history: bool = False
 
+    @property
+    def size(self) -> tuple[float | None, ...] | None:
+        """What the work depends on beside the model; None if it depends on every sample."""
+        return None if self.pace.flow else (self.record.size, self.dt, self.free_vibration, self.history)
+
     def work(self) -> Work:
         """Estimate the work of the run; the time to settle is taken as the longest period."""
         speed = float(np.abs(np.cumsum(self.record)).mean()) * self.dt if self.pace.flow else 0.0
         samples = self.record.size + self._free / self.dt
-        tables = self.pace.work(0.0, self.dt, history=self.history).vibration
-        found = replace(self.pace, fastest=self.fastest, dense=False).work(
-            samples, self.dt, speed, history=self.history
-        )
-        return replace(found, vibration=found.vibration + tables)
+        return self.pace.work(samples, self.dt, speed, history=self.history, fastest=self.fastest)
 
     @property
     def fastest(self) -> float:

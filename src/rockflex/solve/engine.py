@@ -3,7 +3,7 @@
 import math
 from contextlib import AbstractContextManager
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -14,11 +14,13 @@ from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
 from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
+from rockflex.solve._desk import desks_of
 from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
 from rockflex.solve.adaptive.layout import Integrator, stages_of
+from rockflex.solve.bare import BarePhases, is_bare
 from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import (
@@ -31,18 +33,19 @@ from rockflex.solve.layout import (
     Motion,
     Progress,
     System,
-    motion_of,
 )
 from rockflex.solve.phases import CompiledPhases
 from rockflex.solve.progress import progress_at_start
 from rockflex.solve.run import run
 from rockflex.solve.status import Status
 
+LEVEL = np.zeros(0)  # no vertical acceleration
 QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
 MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
 EVENTS = 512  # initial room in a history for states between samples
 SLICE = 0.1  # of work in s, between checks whether to stop the run
 TOLERANCE = 1e-10  # relative, of a step
+SIZES = 64  # largest number of sizes of tasks remembered
 
 # Separate entries, because their argument types differ: the first has no vector field and is compiled without
 # integrator.
@@ -86,19 +89,30 @@ class Engine:
         tolerance: float = TOLERANCE,
     ) -> None:
         self.model = model
-        most = Quantities.none(model.layout.modes) if extremes is None else extremes
+        most = 0 if extremes is None else len(extremes)
         # The guard, which is the rotation, the quantities, those of which only the largest value matters, and the loss
         # of support.
-        self._n_rows = 2 + len(quantities) + model.turning + len(most)
+        self._n_rows = 2 + len(quantities) + model.turning + most
         self._n_peaks = 1 + len(quantities)
         self._signed = self._n_peaks + model.turning
         self._impact, self._failures = impact_of(model.law, model.properties)
-        with preparing(model):
-            self._phases = CompiledPhases(model, quantities, most)
-            # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
-            for side in model.sides if model.integrated else (0,):
-                self._phases.place(model.start(side))
-            self._flow = flow_of(model, quantities, tolerance) if isinstance(model, NonlinearModel) else None
+        self._desks = desks_of(model.layout, self._n_rows + model.most_fences)
+        self._accepted = set[tuple[object, ...]]()
+        self._phases = _phases_of(model, quantities, extremes)
+        self._flow = None
+        if isinstance(model, NonlinearModel):
+            with preparing(model):
+                self._flow = flow_of(model, quantities, tolerance)
+
+    @property
+    def dense(self) -> bool:
+        """Whether some phase so far cannot be uncoupled."""
+        return self._phases.dense
+
+    @property
+    def size(self) -> int:
+        """Memory of all tables so far in bytes."""
+        return self._phases.size
 
     @cached_property
     def pace(self) -> Pace:
@@ -142,32 +156,22 @@ class Engine:
             If the run was stopped from outside.
         """
         task = self.task(acceleration, dt, free_vibration, history=history)
-        task.check(work_limit)
-        layout = self.model.layout
-        key, start = self.model.initial(state)
+        self._check(task, work_limit)
+        key, start = self._at_rest if state is None else self.model.initial(state)
         shaken = vertical is not None
-        at = progress_at_start(self._place(key), stated=True)
+        phases = self._phases.at(dt, self.pace.fastest, shaken=shaken)
+        at = progress_at_start(self._place(phases, key), stated=True)
         course = self._course(acceleration, vertical, dt, free_vibration)
-        room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
-        log = Log(
-            np.zeros(self._n_rows),
-            np.zeros(self._n_rows),
-            np.zeros(4, dtype=np.int64),
-            np.concatenate(([0.0], self.pace.prices(history=history))),
-            np.zeros((room_for, HEADER + layout.size)),
-            self._signed,
-        )
-        log.peaks[self._signed :] = -np.inf
-        if self.model.turning:
-            log.peaks[self._n_peaks] = np.inf  # of the row of θ', whose peak nobody asks for
+        log = self._log(course, history=history)
         left = math.inf if work_limit is None else work_limit
-        motion, steps = None, None
+        steps = None
+        desk = self._desks.taken(start)
         while True:
-            system = self._phases.known_system(dt, shaken=shaken)
+            system = phases.known_system(dt, shaken=shaken)
             if system is None:
                 with preparing(self.model):
-                    system = self._phases.system(dt, self.pace.fastest, shaken=shaken)
-            motion = self._room(system, start, motion)
+                    system = phases.system(dt, self.pace.fastest, shaken=shaken)
+            motion = desk.motion(phases.terms)
             steps = steps or self._integrator(motion, log, at)
             given = min(slice_of_work, left)
             log.work[LEFT] = given
@@ -175,9 +179,9 @@ class Engine:
             left -= given - float(log.work[LEFT])
             if status == Status.LACKS_PHASE:
                 with preparing(self.model):
-                    self._phases.meet(int(at.phase), int(at.lacking))
-                if self._phases.dense:
-                    fastest = max(self.pace.fastest, self._phases.fastest)
+                    phases.meet(int(at.phase), int(at.lacking))
+                if phases.dense:
+                    fastest = max(self.pace.fastest, phases.fastest)
                     replace(task, pace=replace(self.pace, fastest=fastest, dense=True)).check(work_limit)
             elif status != Status.PAUSED:
                 break
@@ -188,36 +192,46 @@ class Engine:
                 log = log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
             check_interruption()
         self._complain(status, at, dt, motion.state)
-        return self._solution(status, at, dt, log, motion.state, history=history)
+        self._desks.returned(desk)
+        return self._solution(status, at, dt, log, motion.state.copy(), history=history)
 
-    def _place(self, key: Key) -> int:
+    @cached_property
+    def _at_rest(self) -> tuple[Key, Array]:
+        return self.model.initial(None)
+
+    def _check(self, task: Task, limit: float | None) -> None:
+        """Check a task against the work limit, unless one of the same size was accepted before."""
+        size = task.size
+        if size is None or (size, limit) not in self._accepted:
+            task.check(limit)
+            if len(self._accepted) >= SIZES:
+                self._accepted.clear()
+            self._accepted.add((size, limit))
+
+    def _log(self, course: Course, *, history: bool) -> Log:
+        rows = self._n_rows
+        room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
+        peaks = _first_peaks(rows, self._signed, self._n_peaks if self.model.turning else rows).copy()
+        work = _prices(self.model.layout.modes, rows, history).copy()
+        kept = np.zeros((room_for, HEADER + self.model.layout.size))
+        return Log(peaks, np.zeros(rows), np.zeros(4, dtype=np.int64), work, kept, self._signed)
+
+    def _place(self, phases: CompiledPhases | BarePhases, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
-        if self._phases.knows(key):
-            return self._phases.place(key)
+        if phases.knows(key):
+            return phases.place(key)
         with preparing(self.model):
-            return self._phases.place(key)
+            return phases.place(key)
 
     def _course(self, acceleration: Array, vertical: Array | None, dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
         return Course(
-            # The compiled type is that of a writable array.
-            record=np.require(acceleration, dtype=np.float64, requirements=("C", "W")),
-            vertical=np.require([] if vertical is None else vertical, dtype=np.float64, requirements=("C", "W")),
+            record=_writable(acceleration),
+            vertical=LEVEL if vertical is None else _writable(vertical),
             quiet=QUIET,
             dt=dt,
             free=math.ceil(min(after / dt, MOST_SAMPLES) - 1e-9),
             settle=free_vibration is None,
-        )
-
-    def _room(self, system: System, state: Array, motion: Motion | None) -> Motion:
-        """Return the work arrays of the motion, enlarged to the number of terms that the phases need."""
-        terms = int(system.phases["terms"].max(initial=4))
-        if motion is None:
-            return motion_of(state, self.model.layout, self._n_rows + self.model.most_fences, terms)
-        if motion.series.shape[1] >= terms:
-            return motion
-        return motion._replace(
-            series=np.zeros((motion.series.shape[0], terms)), polys=np.zeros((motion.polys.shape[0], terms))
         )
 
     def _integrator(self, motion: Motion, log: Log, at: Progress) -> Integrator | None:
@@ -280,6 +294,40 @@ class Engine:
         raise SolverError(f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}")
 
 
+def _phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities | None) -> CompiledPhases | BarePhases:
+    """Return the phases of a model, with that in which runs start."""
+    if extremes is None and is_bare(model):
+        return BarePhases(model, quantities)
+    phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
+    with preparing(model):
+        # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
+        for side in model.sides if model.integrated else (0,):
+            phases.place(model.start(side))
+    return phases
+
+
+@lru_cache(maxsize=64)
+def _first_peaks(rows: int, signed: int, turning: int) -> Array:
+    """Return the peaks at the start of a run; `turning` is the row of θ', if any, whose peak nobody asks for."""
+    peaks = np.zeros(rows)
+    peaks[signed:] = -np.inf
+    peaks[turning : turning + 1] = np.inf
+    return peaks
+
+
+@lru_cache(maxsize=64)
+def _prices(modes: int, rows: int, history: bool) -> Array:
+    """Return what the kinds of work cost in s, after the work left."""
+    return np.array((0.0, *Pace(modes, rows, 0.0).prices(history=history)))
+
+
 def _samples(at: Progress) -> int:
     """Return the number of completed samples."""
-    return int(at.offset + at.index)
+    return int(at["offset"]) + int(at["index"])
+
+
+def _writable(values: Array) -> Array:
+    """Return an array of the compiled type, which is that of a writable array."""
+    if values.flags.carray and values.dtype == np.float64:
+        return values
+    return np.require(values, dtype=np.float64, requirements=("C", "W"))

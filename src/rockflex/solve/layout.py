@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
-from rockflex._vectors import BLOCK
+from rockflex._vectors import BLOCK, padded
 from rockflex.models import PULLS, SUMS, StateLayout
 
 Progress = Any  # a record of `rockflex.solve.progress`
@@ -226,11 +226,6 @@ class Motion(NamedTuple):
     still: Array  # (S,): constant part of the forced motion
     offset: Array  # (F + E,): constant part of the rows
     pivots: Array  # (2, 9): `Field.pivots`, with the sums over the elements
-
-
-def padded(size: int) -> int:
-    """Return a size rounded up to a multiple of `BLOCK`."""
-    return -(-size // BLOCK) * BLOCK
 
 
 def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motion:

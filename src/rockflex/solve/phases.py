@@ -20,10 +20,11 @@ from rockflex.models import (
     under_more_gravity,
 )
 from rockflex.solve.exact.basis import Basis, Drift, basis_of, drift_of, with_constant
-from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase
+from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase, size_of
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWING, FOLLOWS, TURNED, TURNING, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance
+FEWEST_TERMS = 4
 CAPACITY = 3  # initial number of phases: contact, and rocking on either side
 
 
@@ -44,6 +45,7 @@ class CompiledPhases:
     """
 
     def __init__(self, model: RockingModel, quantities: Quantities, extremes: Quantities) -> None:
+        self.terms = FEWEST_TERMS  # of the power series of all phases, over every time step
         self._lock = RLock()
         self._model = model
         self._quantities = quantities
@@ -58,6 +60,11 @@ class CompiledPhases:
         self._linked = np.zeros((0, 0), dtype=np.int64), 0  # the last links, and how many phases they know
         # By time step, and whether the ground moves vertically; with the number of phases entered.
         self._systems: dict[tuple[float, bool], tuple[System, int]] = {}
+
+    def at(self, _dt: float, _fastest: float, *, shaken: bool) -> "CompiledPhases":
+        """Return the phases for a time step: these."""
+        del shaken
+        return self
 
     def place(self, key: Key) -> int:
         """Return the index of a phase in the tables; it is compiled if necessary."""
@@ -168,6 +175,7 @@ class CompiledPhases:
                 put_heavier(system, p, self._phases[p], heavier, self._rows_of(self._heavier, heavier))
         # Runs that continue with the previous tables must not reach a phase for which they have no room.
         system = system._replace(links=self._links(system.links.shape[0]))
+        self.terms = max(self.terms, int(system.phases["terms"].max()))
         self._systems[dt, shaken] = system, count
         return system
 
@@ -184,6 +192,11 @@ class CompiledPhases:
     def dense(self) -> bool:
         """Whether some phase so far cannot be uncoupled, so that its bounds are computed point by point."""
         return any(basis.dense for basis in self._bases if isinstance(basis, Basis))
+
+    @property
+    def size(self) -> int:
+        """Memory of all tables so far in bytes."""
+        return sum(size_of(system) for system, _ in self._systems.values())
 
     @property
     def fastest(self) -> float:

@@ -58,7 +58,7 @@ class Case:
             )
         with preparing(self.model):
             asked = asked_of(self.model, floors=self.floors)
-            engine = Engine(self.model, asked if self.extra is None else asked + self.extra, extremes_of(self.model))
+        engine = Engine(self.model, asked if self.extra is None else asked + self.extra, extremes_of(self.model))
         object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:

@@ -1,6 +1,8 @@
 """What the tables of all studies hold of a run: its status and its peaks."""
 
 from collections.abc import Iterable
+from functools import cache
+from operator import attrgetter
 from typing import Any
 
 from rockflex.modal import RockingProperties, Tendon
@@ -17,7 +19,15 @@ OF_GROUND = ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlemen
 
 def results_of(response: Response, suffix: str = "") -> dict[str, Any]:
     """Return the status of a response, and every number and flag by its name; `suffix` is added to each name."""
-    return {name + suffix: getattr(response, name) for name in ("status", *RESULTS)}
+    return dict(zip(_named(suffix), _values_of(response), strict=True))
+
+
+_values_of = attrgetter("status", *RESULTS)
+
+
+@cache
+def _named(suffix: str) -> tuple[str, ...]:
+    return tuple(name + suffix for name in ("status", *RESULTS))
 
 
 def result_columns(

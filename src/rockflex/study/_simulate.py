@@ -17,8 +17,8 @@ from rockflex.study._arguments import (
     ground_under,
     properties_of,
 )
-from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
+from rockflex.study._prepared import run_prepared
 
 
 def simulate(
@@ -99,6 +99,6 @@ def simulate(
     options = case_options(output, free_vibration, initial, work_limit)
     check_options(bouc_wen, impact, ground)
     properties = properties_of(structure)
-    tied = parse_model(model).of(properties, impact, bouc_wen, ground_under(properties, ground))
+    choice, below = parse_model(model), ground_under(properties, ground)
     check_motion(motion)
-    return Case(tied, **options).run(motion)
+    return run_prepared(choice, properties, impact, bouc_wen, below, motion, options)

@@ -22,8 +22,9 @@ from rockflex.study._arguments import (
 )
 from rockflex.study._case import Case
 from rockflex.study._initial import InitialState
+from rockflex.study._prepared import FIXED
 from rockflex.study._results import RESULTS, STATUSES, results_of
-from rockflex.study._runs import in_order
+from rockflex.study._runs import in_order, in_order_apart
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import ArrowTable, Row, tabulate, to_frame
 from rockflex.study._yielding import hysteresis_of
@@ -32,6 +33,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
+MANY = 256  # structures from which preparing them, which holds the interpreter lock, is left to processes
+
+# Some runs of a structure: its index, the first and the last of them, and its case for each model, once prepared.
+Part = tuple[int, int, int, list[Case | str | None]]
 
 
 def simulate_many(
@@ -50,8 +55,9 @@ def simulate_many(
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
-    The runs are shared among threads; the kernels release the interpreter lock. With ``output="peaks"`` only the table
-    grows with the number of runs.
+    The runs are shared among threads; the kernels release the interpreter lock. Peaks of hundreds of structures with a
+    few runs each are shared among processes, where this one can be copied: on Linux, without other threads. With
+    ``output="peaks"`` only the table grows with the number of runs.
 
     Parameters
     ----------
@@ -68,7 +74,7 @@ def simulate_many(
         none, which must then have one mode. All models start from the same initial state. A run fails if its model has
         fewer modes than the state has values, or a fixed base where the state rotates.
     workers
-        Number of threads; None for one a core.
+        Number of threads or processes; None for one a core.
     work_limit
         Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
     ground
@@ -111,7 +117,6 @@ def simulate_many(
     chosen = models_of(models)
     yielding = hysteresis_of(chosen, bouc_wen)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
-    refused: list[WorkLimitError] = []
     shape = (len(everything), len(records), len(chosen), len(factors))
     inner = len(chosen) * len(factors)  # runs of one structure under one motion
     each = len(records) * inner
@@ -126,13 +131,20 @@ def simulate_many(
         except InputError as error:
             return str(error)
 
-    def tasks() -> Iterator[tuple[int, int, int, list[Case | str | None]]]:
+    def tasks() -> Iterator[list[Part]]:
+        task, runs = list[Part](), 0
         for index in range(len(everything)):
             cases: list[Case | str | None] = [None] * len(chosen)
             for first in range(0, each, CHUNK):
-                yield index, first, min(first + CHUNK, each), cases
+                task.append((index, first, min(first + CHUNK, each), cases))
+                runs += task[-1][2] - first
+                if runs >= CHUNK or index == 0:  # the first one comes before all others, see `in_order_apart`
+                    yield task
+                    task, runs = [], 0
+        if task:
+            yield task
 
-    def result_of(index: int, place: int, cases: list[Case | str | None]) -> Row:
+    def result_of(index: int, place: int, cases: list[Case | str | None], refused: list[WorkLimitError]) -> Row:
         motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
         case = cases[which] = cases[which] or case_of(index, which)
         if isinstance(case, str):
@@ -147,12 +159,16 @@ def simulate_many(
             responses[index * each + place] = response
         return results_of(response) | {"status": STATUSES.index(response.status)}
 
-    def work(task: tuple[int, int, int, list[Case | str | None]]) -> ArrowTable:
-        index, first, last, cases = task
-        return tabulate([result_of(index, place, cases) for place in range(first, last)], columns)
+    def work(task: list[Part]) -> tuple[ArrowTable, list[WorkLimitError]]:
+        refused = list[WorkLimitError]()
+        runs = ((index, place, cases) for index, first, last, cases in task for place in range(first, last))
+        return tabulate([result_of(*run, refused) for run in runs], columns), refused
 
     columns = {"status": STATUSES, "error": str, **RESULTS}
-    results = to_frame(*in_order(work, tasks(), workers))
+    own = impact is not None and type(impact) not in FIXED  # it may keep what it is told
+    many = len(everything) >= MANY and each <= CHUNK and not (options["history"] or own or callable(ground))
+    found = (in_order_apart if many else in_order)(work, tasks(), workers)
+    results, refused = to_frame(*(table for table, _ in found)), [error for _, errors in found for error in errors]
     if len(refused) == len(results):
         raise refused[0]
 

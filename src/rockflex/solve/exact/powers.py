@@ -7,44 +7,54 @@ coordinates grow at most exponentially.
 
 import math
 
+import numpy as np
+
 from rockflex._arrays import Array
-from rockflex._kernel import kernel, python_kernel
+from rockflex._kernel import Entry, kernel, python_kernel
 from rockflex._vectors import BLOCK
+from rockflex.solve.exact.entries import Tables, tables_of
 from rockflex.solve.layout import SAG, VALUES, ZERO, System
 
 WHOLE = ZERO  # the level of a whole sample
 MOST_GROWTH = 20.0  # e-folds of a pair within a block; beyond it, a block is shorter
 
 
+def put_powers(system: System, p: int) -> None:
+    """Enter the tables of a phase for blocks of samples, from its other tables."""
+    if system.phases[p]["dense"]:
+        step = system.propagator[p, WHOLE]
+        _coupled(tables_of(system), p, step, np.zeros((2, *step.shape)))
+    else:
+        _uncoupled(tables_of(system), p)
+
+
 @python_kernel
-def put_powers(system: System, p: int, work: Array) -> None:
-    """Enter the tables of a phase for blocks of samples, from its other tables; `work` (2, S, S) if it is dense."""
-    size, slopes = 2 * system.blocks.shape[3], system.forced[p, 1]
-    fastest = 0.0
-    for k in range(system.blocks.shape[3]):
-        fastest = max(fastest, math.log(growth_of(system, p, k)))
-    length = BLOCK if fastest * BLOCK <= MOST_GROWTH else max(int(MOST_GROWTH / fastest), 1)
-    system.phases[p].block = length
-    for f in range(system.rows.shape[2]):
-        for m in range(length):
-            before = system.rows[p, VALUES, f] if m == 0 else system.ahead[p, f, :, m - 1]
-            kick = 0.0
-            for k in range(size):
-                value = a_sample_before(system, p, before, k)
-                system.ahead[p, f, k, m] = value
-                kick -= value * slopes[k]
-            system.kicked[p, f, BLOCK + m] = kick
-    if not system.phases[p].dense:
-        put_leap(system, p, length)
-    put_leeway(system, p, length, work)
+def put_uncoupled_powers(tables: Tables, p: int) -> None:
+    """Enter the tables of an uncoupled phase."""
+    enter_powers(tables, p)
 
 
 @kernel
-def growth_of(system: System, p: int, k: int) -> float:
+def enter_powers(tables: Tables, p: int) -> None:
+    """Enter the tables of an uncoupled phase, in other kernels."""
+    fastest = 0.0
+    for k in range(tables.blocks.shape[3]):
+        fastest = max(fastest, math.log(growth_of(tables, p, k)))
+    length = BLOCK if fastest * BLOCK <= MOST_GROWTH else max(int(MOST_GROWTH / fastest), 1)
+    tables.phases[p].block = length
+    enter_rows_ahead(tables, p, length)
+    enter_leap(tables, p, length)
+    for k in range(tables.blocks.shape[3]):
+        growth = growth_of(tables, p, k) ** (length - 1)
+        for f in range(tables.rows.shape[2]):
+            tables.leeway[p, f, k] = tables.bounds[p, SAG, WHOLE, f, k] * growth
+    enter_stray(tables, p)
+
+
+@kernel
+def growth_of(tables: Tables, p: int, k: int) -> float:
     """Return the largest factor, at least one, by which the norm of a pair grows in a sample."""
-    if system.phases[p].dense:
-        return 1.0
-    step = system.blocks[p, WHOLE, :, k]
+    step = tables.blocks[p, WHOLE, :, k]
     squares = 0.5 * (step[0] * step[0] + step[1] * step[1] + step[2] * step[2] + step[3] * step[3])
     volume = step[0] * step[3] - step[1] * step[2]
     largest = squares + math.sqrt(max(squares * squares - volume * volume, 0.0))
@@ -52,78 +62,105 @@ def growth_of(system: System, p: int, k: int) -> float:
 
 
 @kernel
-def a_sample_before(system: System, p: int, row: Array, k: int) -> float:
-    """Return the k-th entry of a row, if it is taken over the coordinates one sample earlier."""
-    pairs = system.blocks.shape[3]
-    if system.phases[p].dense:
-        total = 0.0
-        for i in range(2 * pairs):
-            total += row[i] * system.propagator[p, WHOLE, i, k]
-        return total
-    pair, column = k % pairs, 0 if k < pairs else 1
-    step = system.blocks[p, WHOLE, :, pair]
-    return row[pair] * step[column] + row[pairs + pair] * step[2 + column]
+def enter_rows_ahead(tables: Tables, p: int, length: int) -> None:
+    """Enter the rows at later samples over the present coordinates, and over a present jump of the slope."""
+    pairs = tables.blocks.shape[3]
+    for f in range(tables.rows.shape[2]):
+        ahead, kicked, row = tables.ahead[p, f], tables.kicked[p, f], tables.rows[p, VALUES, f]
+        for m in range(length):
+            kicked[BLOCK + m] = 0.0
+        for k in range(pairs):
+            a, b = tables.blocks[p, WHOLE, 0, k], tables.blocks[p, WHOLE, 1, k]
+            c, d = tables.blocks[p, WHOLE, 2, k], tables.blocks[p, WHOLE, 3, k]
+            x, y = row[k], row[pairs + k]
+            forced, forced_rate = tables.forced[p, 1, k], tables.forced[p, 1, pairs + k]
+            for m in range(length):
+                x, y = x * a + y * c, x * b + y * d
+                ahead[k, m], ahead[pairs + k, m] = x, y
+                kicked[BLOCK + m] -= x * forced + y * forced_rate
 
 
 @kernel
-def put_leap(system: System, p: int, length: int) -> None:
+def enter_leap(tables: Tables, p: int, length: int) -> None:
     """Enter what a block makes of its first coordinates, and of the jumps of the slope before each of its samples."""
-    pairs = system.blocks.shape[3]
+    pairs = tables.blocks.shape[3]
     for k in range(pairs):
-        step, leap = system.blocks[p, WHOLE, :, k], system.leap[p, :, k]
+        step, leap = tables.blocks[p, WHOLE, :, k], tables.leap[p, :, k]
         leap[0] = leap[3] = 1.0
         leap[1] = leap[2] = 0.0
-        x, y = -system.forced[p, 1, k], -system.forced[p, 1, pairs + k]
+        x, y = -tables.forced[p, 1, k], -tables.forced[p, 1, pairs + k]
         for m in range(length):
             x, y = step[0] * x + step[1] * y, step[2] * x + step[3] * y
-            system.pushed[p, length - 1 - m, k] = x
-            system.pushed[p, length - 1 - m, pairs + k] = y
+            tables.pushed[p, length - 1 - m, k] = x
+            tables.pushed[p, length - 1 - m, pairs + k] = y
             one, two = leap[0], leap[1]
             leap[0], leap[2] = step[0] * one + step[1] * leap[2], step[2] * one + step[3] * leap[2]
             leap[1], leap[3] = step[0] * two + step[1] * leap[3], step[2] * two + step[3] * leap[3]
 
 
 @kernel
-def put_leeway(system: System, p: int, length: int, work: Array) -> None:
-    """Enter bounds of the deviation of each row from its chords over a block, and of what the jumps add to them."""
-    pairs, dense = system.blocks.shape[3], system.phases[p].dense
-    for f in range(system.rows.shape[2]):
-        for k in range(pairs):
-            growth = growth_of(system, p, k) ** (length - 1)
-            system.leeway[p, f, k] = system.bounds[p, SAG, WHOLE, f, k] * growth
-    if dense:
-        raise_coupled_leeway(system, p, length, work)
-    for f in range(system.rows.shape[2]):
+def enter_stray(tables: Tables, p: int) -> None:
+    """Enter what jumps of the slope within a block add to the deviation of the rows from their chords."""
+    pairs = tables.blocks.shape[3]
+    for f in range(tables.rows.shape[2]):
         stray = 0.0
         for k in range(pairs):
-            stray += system.leeway[p, f, k] * math.hypot(system.forced[p, 1, k], system.forced[p, 1, pairs + k])
-        system.stray[p, f] = stray
+            x, y = tables.forced[p, 1, k], tables.forced[p, 1, pairs + k]
+            stray += tables.leeway[p, f, k] * math.sqrt(x * x + y * y)
+        tables.stray[p, f] = stray
+
+
+@python_kernel
+def put_coupled_powers(tables: Tables, p: int, step: Array, work: Array) -> None:
+    """Enter the same tables of a phase that cannot be uncoupled; `step` (S, S) is its propagator over a sample.
+
+    `work` has shape (2, S, S). The coordinates at the end of a block are computed sample by sample.
+    """
+    size = step.shape[0]
+    tables.phases[p].block = BLOCK
+    for f in range(tables.rows.shape[2]):
+        for m in range(BLOCK):
+            kick = 0.0
+            for k in range(size):
+                value = 0.0
+                for i in range(size):
+                    before = tables.rows[p, VALUES, f, i] if m == 0 else tables.ahead[p, f, i, m - 1]
+                    value += before * step[i, k]
+                tables.ahead[p, f, k, m] = value
+                kick -= value * tables.forced[p, 1, k]
+            tables.kicked[p, f, BLOCK + m] = kick
+    enter_coupled_leeway(tables, p, step, work)
+    enter_stray(tables, p)
 
 
 @kernel
-def raise_coupled_leeway(system: System, p: int, length: int, work: Array) -> None:
-    """Raise the leeway of coupled pairs to what their norms may come to within the block."""
-    pairs, step, power, next_power = system.blocks.shape[3], system.propagator[p, WHOLE], work[0], work[1]
-    for i in range(2 * pairs):
-        for j in range(2 * pairs):
-            power[i, j] = step[i, j]
-    for _ in range(1, length):
-        for f in range(system.rows.shape[2]):
+def enter_coupled_leeway(tables: Tables, p: int, step: Array, work: Array) -> None:
+    """Enter bounds of the deviation from the chords, from what the norms of the pairs may come to within the block."""
+    pairs, size, power, next_power = step.shape[0] // 2, step.shape[0], work[0], work[1]
+    for i in range(size):
+        for j in range(size):
+            power[i, j] = 1.0 if i == j else 0.0
+    for _ in range(BLOCK):
+        for f in range(tables.rows.shape[2]):
             for k in range(pairs):
                 bound = 0.0
                 for j in range(pairs):
-                    bound += system.bounds[p, SAG, WHOLE, f, j] * block_norm(power, j, k, pairs)
-                system.leeway[p, f, k] = max(system.leeway[p, f, k], bound)
-        for i in range(2 * pairs):
-            for j in range(2 * pairs):
+                    bound += tables.bounds[p, SAG, WHOLE, f, j] * block_norm(power, j, k)
+                tables.leeway[p, f, k] = max(tables.leeway[p, f, k], bound)
+        for i in range(size):
+            for j in range(size):
                 next_power[i, j] = 0.0
-                for m in range(2 * pairs):
+                for m in range(size):
                     next_power[i, j] += power[i, m] * step[m, j]
         power, next_power = next_power, power
 
 
 @kernel
-def block_norm(matrix: Array, i: int, j: int, pairs: int) -> float:
-    """Return the norm of what pair j contributes to pair i."""
+def block_norm(matrix: Array, i: int, j: int) -> float:
+    """Return the Frobenius norm of what pair j contributes to pair i."""
+    pairs = matrix.shape[0] // 2
     squares = matrix[i, j] ** 2 + matrix[i, pairs + j] ** 2
     return math.sqrt(squares + matrix[pairs + i, j] ** 2 + matrix[pairs + i, pairs + j] ** 2)
+
+
+_uncoupled, _coupled = Entry(put_uncoupled_powers), Entry(put_coupled_powers)  # their argument types never differ

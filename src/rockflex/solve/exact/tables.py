@@ -13,8 +13,7 @@ from scipy.linalg import expm
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._kernel import Entry
-from rockflex._vectors import BLOCK
+from rockflex._vectors import BLOCK, padded
 from rockflex.models import SUMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis, Drift
 from rockflex.solve.exact.powers import put_powers
@@ -39,10 +38,7 @@ from rockflex.solve.layout import (
     SWING,
     VALUES,
     System,
-    padded,
 )
-
-_put_powers = Entry(put_powers)  # its argument types never differ
 
 LONGEST_FALL = 300.0  # e-folds of the rotation within a time step; more would overflow
 
@@ -134,6 +130,11 @@ def empty_system(
     )
 
 
+def size_of(system: System) -> int:
+    """Return the memory of all tables in bytes."""
+    return sum(table.nbytes for table in system if isinstance(table, np.ndarray))
+
+
 def grown(system: System, larger: System) -> System:
     """Return `larger` with the content of `system`."""
     for old, new in zip(system[2:], larger[2:], strict=True):
@@ -204,7 +205,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
         system.blocks[p], system.bounds[p] = system.blocks[twin], system.bounds[twin]
         if basis.dense:
             system.propagator[p] = system.propagator[twin]
-        _put_powers(system, p, _work(basis))
+        put_powers(system, p)
         return
     steps: Array = dt * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     system.blocks[p, own] = _blocks(basis, steps)
@@ -214,13 +215,7 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     else:
         bounds = _bounds(basis, rows, first, steps)
     system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
-    _put_powers(system, p, _work(basis))
-
-
-def _work(basis: Basis) -> Array:
-    """Return the work arrays of `put_powers`."""
-    size = basis.basis.shape[0] if basis.dense else 0
-    return np.zeros((2, size, size))
+    put_powers(system, p)
 
 
 def put_heavier(system: System, p: int, phase: Phase, heavier: Phase, rows: Array) -> None:
