@@ -72,7 +72,7 @@ def test_a_law_of_the_user_is_asked_anew(prepared):
     law.share = 0.1
     other = rf.simulate(frame, PULSE, "2DOF-S", impact=law, free_vibration=2.0)
     assert one.n_impacts > 0
-    assert one.max_base_moment != other.max_base_moment
+    assert not np.allclose(one.modal_velocity[-1], other.modal_velocity[-1])
     assert len(prepared) == 2
 
 
@@ -134,14 +134,14 @@ needs_fork = pytest.mark.skipif(not may_fork(), reason="this process cannot be c
 @needs_fork
 def test_many_structures_give_the_same_table_in_processes(copied):
     frames = {f"{t:.3g} s": make_frame(n_stories=2, period=t) for t in np.linspace(0.3, 1.5, 20)}
-    frames["stiff"] = make_frame(n_stories=2, period=9e-7)  # exceeds the work limit
+    frames["low"] = make_frame(n_stories=1)  # has one mode only
     options = {"models": ["2DOF-S", "3DOF-S"], "scales": (0.5, 1.0)}
     alone = rf.simulate_many(frames, PULSE, workers=1, **options)
     assert not copied
     together = rf.simulate_many(frames, PULSE, workers=2, **options)
     assert copied
     assert together.equals(alone)
-    assert alone["error"].notna().sum() == 4
+    assert alone["error"].notna().sum() == 2
 
 
 @needs_fork
