@@ -1,9 +1,10 @@
 """Solvers: one engine for all models, exact for linear phases, and integrated to about ten digits for the others."""
 
 from rockflex.solve._pace import Pace, Work, pace_of
+from rockflex.solve._preparing import preparing
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task, WorkLimitError
-from rockflex.solve.engine import Engine, preparing
+from rockflex.solve.engine import Engine
 from rockflex.solve.exact.closed_form import ClosedForm
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, stopping_when
 

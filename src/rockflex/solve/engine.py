@@ -1,26 +1,26 @@
 """A model prepared for runs, and the loop that executes a run slice by slice."""
 
 import math
-from contextlib import AbstractContextManager
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex._shown import shown
 from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
+from rockflex.solve._beginning import first_peaks, prices_of, writable
 from rockflex.solve._desk import desks_of
 from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
+from rockflex.solve._preparing import phases_of, preparing
 from rockflex.solve._solution import Solution
 from rockflex.solve._task import Task
 from rockflex.solve.adaptive.layout import Integrator, stages_of
-from rockflex.solve.bare import BarePhases, is_bare
+from rockflex.solve.bare import BarePhases
 from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import (
@@ -50,20 +50,6 @@ SIZES = 64  # largest number of sizes of tasks remembered
 # Separate entries, because their argument types differ: the first has no vector field and is compiled without
 # integrator.
 _closed_form, _integrated = Entry(run), Entry(run)
-
-
-def preparing(model: RockingModel) -> AbstractContextManager[None]:
-    """Report arithmetic failures during the preparation of an engine in terms of the parameters of the model."""
-    return computable(lambda: _described(model))
-
-
-def _described(model: RockingModel) -> str:
-    p = model.properties
-    modes = f"omega from {p.omega.min():.3g} to {p.omega.max():.3g} rad/s, " if p.n_modes else ""
-    return (
-        f"The motion of {model.label} with {modes}i_theta = {p.i_theta:.3g} kg m², l0r = {p.l0r:.3g} kg m, "
-        f"m_tot = {p.m_tot:.3g} kg and half_width = {p.half_width:.3g} m"
-    )
 
 
 class Engine:
@@ -98,7 +84,7 @@ class Engine:
         self._impact, self._failures = impact_of(model.law, model.properties)
         self._desks = desks_of(model.layout, self._n_rows + model.most_fences)
         self._accepted = set[tuple[object, ...]]()
-        self._phases = _phases_of(model, quantities, extremes)
+        self._phases = phases_of(model, quantities, extremes)
         self._flow = None
         if isinstance(model, NonlinearModel):
             with preparing(model):
@@ -211,8 +197,8 @@ class Engine:
     def _log(self, course: Course, *, history: bool) -> Log:
         rows = self._n_rows
         room_for = course.record.size + EVENTS + (0 if course.settle else course.free) + MARGIN if history else 0
-        peaks = _first_peaks(rows, self._signed, self._n_peaks if self.model.turning else rows).copy()
-        work = _prices(self.model.layout.modes, rows, history).copy()
+        peaks = first_peaks(rows, self._signed, self._n_peaks if self.model.turning else rows).copy()
+        work = prices_of(self.model.layout.modes, rows, history).copy()
         kept = np.zeros((room_for, HEADER + self.model.layout.size))
         return Log(peaks, np.zeros(rows), np.zeros(4, dtype=np.int64), work, kept, self._signed)
 
@@ -226,8 +212,8 @@ class Engine:
     def _course(self, acceleration: Array, vertical: Array | None, dt: float, free_vibration: float | None) -> Course:
         after = self._patience() if free_vibration is None else free_vibration
         return Course(
-            record=_writable(acceleration),
-            vertical=LEVEL if vertical is None else _writable(vertical),
+            record=writable(acceleration),
+            vertical=LEVEL if vertical is None else writable(vertical),
             quiet=QUIET,
             dt=dt,
             free=math.ceil(min(after / dt, MOST_SAMPLES) - 1e-9),
@@ -294,40 +280,6 @@ class Engine:
         raise SolverError(f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}")
 
 
-def _phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities | None) -> CompiledPhases | BarePhases:
-    """Return the phases of a model, with that in which runs start."""
-    if extremes is None and is_bare(model):
-        return BarePhases(model, quantities)
-    phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
-    with preparing(model):
-        # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
-        for side in model.sides if model.integrated else (0,):
-            phases.place(model.start(side))
-    return phases
-
-
-@lru_cache(maxsize=64)
-def _first_peaks(rows: int, signed: int, turning: int) -> Array:
-    """Return the peaks at the start of a run; `turning` is the row of θ', if any, whose peak nobody asks for."""
-    peaks = np.zeros(rows)
-    peaks[signed:] = -np.inf
-    peaks[turning : turning + 1] = np.inf
-    return peaks
-
-
-@lru_cache(maxsize=64)
-def _prices(modes: int, rows: int, history: bool) -> Array:
-    """Return what the kinds of work cost in s, after the work left."""
-    return np.array((0.0, *Pace(modes, rows, 0.0).prices(history=history)))
-
-
 def _samples(at: Progress) -> int:
     """Return the number of completed samples."""
     return int(at["offset"]) + int(at["index"])
-
-
-def _writable(values: Array) -> Array:
-    """Return an array of the compiled type, which is that of a writable array."""
-    if values.flags.carray and values.dtype == np.float64:
-        return values
-    return np.require(values, dtype=np.float64, requirements=("C", "W"))

@@ -20,6 +20,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
 from rockflex._vectors import BLOCK, padded
 from rockflex.models import PULLS, SUMS, StateLayout
+from rockflex.solve.records import DEFERRED
 
 Progress = Any  # a record of `rockflex.solve.progress`
 
@@ -74,41 +75,6 @@ SIZE, RATE, MOVES, TURNS_BY = 0, 1, 2, 3
 SAG, SWING, RIPPLE = 0, 1, 2
 
 
-def record_of(fields: list[tuple[str, Any]]) -> np.dtype[Any]:
-    """Return the type of a record whose fields are attributes."""
-    return np.dtype((np.record, np.dtype(fields, align=True)))
-
-
-PHASE = record_of(
-    [
-        ("side", np.float64),  # pivot about which the base rotates
-        ("free", np.bool_),  # whether it rotates: it neither rests on the ground nor is held at a rotation
-        ("decays", np.bool_),  # whether free vibration comes to rest
-        ("turns", np.int64),  # sign of |θ|' while an element yields or slides; 0 if none does
-        ("active", np.int64),  # number of pairs of coordinates that may move
-        ("fences", np.int64),
-        ("marches", np.bool_),  # whether it is advanced over whole samples, rather than by power series
-        ("levels", np.int64),  # of the grid
-        ("terms", np.int64),  # of the power series that converge over the finest step
-        ("linear", np.bool_),  # solved in closed form
-        ("dense", np.bool_),  # linear, but cannot be uncoupled
-        ("block", np.int64),  # samples that its tables cover at once, at most `BLOCK`
-        ("fastest", np.float64),  # largest eigenvalue magnitude, rad/s
-    ]
-)
-
-# A block of samples in which peaks may lie; it need not be searched if later samples turn out to be higher.
-DEFERRED = record_of(
-    [
-        ("waits", np.bool_),
-        ("phase", np.int64),
-        ("offset", np.int64),  # samples before the stretch of acceleration
-        ("index", np.int64),  # its first sample within the stretch
-        ("slope", np.float64),  # of the acceleration, to which w refers
-        ("count", np.int64),  # samples that no event ends
-        ("stated", np.bool_),  # whether the state is that at the start of the block
-    ]
-)
 MOST_DEFERRED = 16  # blocks; any further one is searched at once
 
 # A literal 0 has its own type in numba, for which every callee would be compiled again.

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from rockflex.solve.layout import Progress, record_of
+from rockflex.solve.layout import Progress
+from rockflex.solve.records import record_of
 from rockflex.solve.status import Status
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.

@@ -9,7 +9,6 @@ import math
 
 import numpy as np
 
-from rockflex._arrays import Array
 from rockflex._kernel import Entry, kernel, python_kernel
 from rockflex._vectors import BLOCK
 from rockflex.solve.exact.entries import Tables, tables_of
@@ -22,8 +21,7 @@ MOST_GROWTH = 20.0  # e-folds of a pair within a block; beyond it, a block is sh
 def put_powers(system: System, p: int) -> None:
     """Enter the tables of a phase for blocks of samples, from its other tables."""
     if system.phases[p]["dense"]:
-        step = system.propagator[p, WHOLE]
-        _coupled(tables_of(system), p, step, np.zeros((2, *step.shape)))
+        put_coupled_powers(system, p)
     else:
         _uncoupled(tables_of(system), p)
 
@@ -110,57 +108,19 @@ def enter_stray(tables: Tables, p: int) -> None:
         tables.stray[p, f] = stray
 
 
-@python_kernel
-def put_coupled_powers(tables: Tables, p: int, step: Array, work: Array) -> None:
-    """Enter the same tables of a phase that cannot be uncoupled; `step` (S, S) is its propagator over a sample.
-
-    `work` has shape (2, S, S). The coordinates at the end of a block are computed sample by sample.
-    """
-    size = step.shape[0]
-    tables.phases[p].block = BLOCK
-    for f in range(tables.rows.shape[2]):
-        for m in range(BLOCK):
-            kick = 0.0
-            for k in range(size):
-                value = 0.0
-                for i in range(size):
-                    before = tables.rows[p, VALUES, f, i] if m == 0 else tables.ahead[p, f, i, m - 1]
-                    value += before * step[i, k]
-                tables.ahead[p, f, k, m] = value
-                kick -= value * tables.forced[p, 1, k]
-            tables.kicked[p, f, BLOCK + m] = kick
-    enter_coupled_leeway(tables, p, step, work)
-    enter_stray(tables, p)
+def put_coupled_powers(system: System, p: int) -> None:
+    """Enter the same tables of a phase that cannot be uncoupled: w at the end of a block is computed step by step."""
+    step, rows, slopes = system.propagator[p, WHOLE], system.rows[p, VALUES], system.forced[p, 1]
+    pairs, sag, power = step.shape[0] // 2, system.bounds[p, SAG, WHOLE], np.eye(step.shape[0])
+    system.phases[p]["block"] = BLOCK
+    for m in range(BLOCK):
+        # The norms of the pairs are bounded by those of the blocks of the power.
+        norms = np.sqrt((power.reshape(2, pairs, 2, pairs) ** 2).sum(axis=(0, 2)))
+        system.leeway[p] = np.maximum(system.leeway[p], sag @ norms)
+        power = step @ power
+        system.ahead[p, :, :, m] = rows @ power
+        system.kicked[p, :, BLOCK + m] = -system.ahead[p, :, :, m] @ slopes
+    system.stray[p] = system.leeway[p] @ np.hypot(slopes[:pairs], slopes[pairs:])
 
 
-@kernel
-def enter_coupled_leeway(tables: Tables, p: int, step: Array, work: Array) -> None:
-    """Enter bounds of the deviation from the chords, from what the norms of the pairs may come to within the block."""
-    pairs, size, power, next_power = step.shape[0] // 2, step.shape[0], work[0], work[1]
-    for i in range(size):
-        for j in range(size):
-            power[i, j] = 1.0 if i == j else 0.0
-    for _ in range(BLOCK):
-        for f in range(tables.rows.shape[2]):
-            for k in range(pairs):
-                bound = 0.0
-                for j in range(pairs):
-                    bound += tables.bounds[p, SAG, WHOLE, f, j] * block_norm(power, j, k)
-                tables.leeway[p, f, k] = max(tables.leeway[p, f, k], bound)
-        for i in range(size):
-            for j in range(size):
-                next_power[i, j] = 0.0
-                for m in range(size):
-                    next_power[i, j] += power[i, m] * step[m, j]
-        power, next_power = next_power, power
-
-
-@kernel
-def block_norm(matrix: Array, i: int, j: int) -> float:
-    """Return the Frobenius norm of what pair j contributes to pair i."""
-    pairs = matrix.shape[0] // 2
-    squares = matrix[i, j] ** 2 + matrix[i, pairs + j] ** 2
-    return math.sqrt(squares + matrix[pairs + i, j] ** 2 + matrix[pairs + i, pairs + j] ** 2)
-
-
-_uncoupled, _coupled = Entry(put_uncoupled_powers), Entry(put_coupled_powers)  # their argument types never differ
+_uncoupled = Entry(put_uncoupled_powers)  # its argument types never differ

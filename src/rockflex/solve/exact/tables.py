@@ -30,7 +30,6 @@ from rockflex.solve.layout import (
     LEVERAGE,
     LOW,
     OUT,
-    PHASE,
     RIPPLE,
     SAG,
     SLOPES,
@@ -39,6 +38,7 @@ from rockflex.solve.layout import (
     VALUES,
     System,
 )
+from rockflex.solve.records import PHASE
 
 LONGEST_FALL = 300.0  # e-folds of the rotation within a time step; more would overflow
 

@@ -1,0 +1,34 @@
+"""The phases of a model, prepared in the way that suits it."""
+
+from contextlib import AbstractContextManager
+
+from rockflex._computable import computable
+from rockflex.models import Quantities, RockingModel
+from rockflex.solve.bare import BarePhases, is_bare
+from rockflex.solve.phases import CompiledPhases
+
+
+def preparing(model: RockingModel) -> AbstractContextManager[None]:
+    """Report arithmetic failures during the preparation of an engine in terms of the parameters of the model."""
+    return computable(lambda: _described(model))
+
+
+def _described(model: RockingModel) -> str:
+    p = model.properties
+    modes = f"omega from {p.omega.min():.3g} to {p.omega.max():.3g} rad/s, " if p.n_modes else ""
+    return (
+        f"The motion of {model.label} with {modes}i_theta = {p.i_theta:.3g} kg m², l0r = {p.l0r:.3g} kg m, "
+        f"m_tot = {p.m_tot:.3g} kg and half_width = {p.half_width:.3g} m"
+    )
+
+
+def phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities | None) -> CompiledPhases | BarePhases:
+    """Return the phases of a model, with that in which runs start."""
+    if extremes is None and is_bare(model):
+        return BarePhases(model, quantities)
+    phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
+    with preparing(model):
+        # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
+        for side in model.sides if model.integrated else (0,):
+            phases.place(model.start(side))
+    return phases
