@@ -95,7 +95,7 @@ def test_both_ways_move_alike(name):
 def test_peaks_do_not_depend_on_the_way(n, monkeypatch):
     motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
     model = Model(n).of(make_frame(n_stories=3, aspect_ratio=9.0).rocking())
-    engine = Engine(model, asked_of(model))
+    engine = Engine(model, asked_of(model), many=True)
     assert isinstance(engine._phases, BarePhases)
     found = engine.run(motion.acceleration, motion.dt)
     monkeypatch.setattr("rockflex.solve.engine.is_bare", lambda _: False)

@@ -27,7 +27,6 @@ def prepared(given, label, dt=MOTION.dt):
     """The phases of contact and of rocking to the right, uncoupled, and their tables for a time step."""
     tied = parse_model(label).of(Frame(**given).rocking())
     phases = Engine(tied, asked_of(tied))._phases
-    phases = getattr(phases, "others", phases)  # the general ones: only they can be dense
     places = [phases.place(tied.start(side)) for side in (0, 1)]
     assert phases.dense == any(phases._bases[place].dense for place in places)
     return [phases._bases[place] for place in places], phases.system(dt, 0.0), places

@@ -31,7 +31,7 @@ def prepared(n):
     And the places of the phases by side.
     """
     tied = Model(n).of(Frame(**GIVEN).rocking())
-    phases = Engine(tied, asked_of(tied))._phases.others
+    phases = Engine(tied, asked_of(tied))._phases
     places = {side: phases.place(tied.start(int(side))) for side in (0.0, 1.0, -1.0)}
     return phases.system(DT, 0.0), places, Exact(**frame_properties(**GIVEN, n_modes=n).kwargs(), dt=DT, substeps=1)
 

@@ -256,7 +256,7 @@ def test_phases_that_differ_by_constant_forces_alone_share_their_tables(name):
     """Rocking to the left is made from rocking to the right: it is what it would be of its own."""
     engine, system, _ = prepared(name)
     tied = engine.model
-    other = Engine(tied, asked_of(tied, floors=True))._phases.others
+    other = Engine(tied, asked_of(tied, floors=True))._phases
     assert [other.place(tied.start(side)) for side in (0, -1)] == [0, 1]
     alone = other.system(DT, 0.0)
     for table in ("basis", "forced", "rows", "row_forcing", "blocks", "bounds", "plain_rows", "push", "base", "border"):

@@ -22,9 +22,11 @@ def _described(model: RockingModel) -> str:
     )
 
 
-def phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities | None) -> CompiledPhases | BarePhases:
+def phases_of(
+    model: RockingModel, quantities: Quantities, extremes: Quantities | None, *, many: bool
+) -> CompiledPhases | BarePhases:
     """Return the phases of a model, with that in which runs start."""
-    if extremes is None and is_bare(model):
+    if many and extremes is None and is_bare(model):
         return BarePhases(model, quantities)
     phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
     with preparing(model):

@@ -65,6 +65,8 @@ class Engine:
         Quantities of which only the largest value matters, not the magnitude.
     tolerance
         Relative error tolerance per step of integrated phases.
+    many
+        Whether engines of many structures are needed: a kernel then prepares them, which must itself be compiled first.
     """
 
     def __init__(
@@ -73,6 +75,8 @@ class Engine:
         quantities: Quantities,
         extremes: Quantities | None = None,
         tolerance: float = TOLERANCE,
+        *,
+        many: bool = False,
     ) -> None:
         self.model = model
         most = 0 if extremes is None else len(extremes)
@@ -84,7 +88,7 @@ class Engine:
         self._impact, self._failures = impact_of(model.law, model.properties)
         self._desks = desks_of(model.layout, self._n_rows + model.most_fences)
         self._accepted = set[tuple[object, ...]]()
-        self._phases = phases_of(model, quantities, extremes)
+        self._phases = phases_of(model, quantities, extremes, many=many)
         self._flow = None
         if isinstance(model, NonlinearModel):
             with preparing(model):

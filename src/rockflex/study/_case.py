@@ -10,6 +10,8 @@ from rockflex.solve import Engine, Solution, Task, preparing
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
 
+MANY = 256  # structures from which it is worth while to compile the kernel that prepares them, and to start processes
+
 
 @dataclass(frozen=True, eq=False)
 class Case:
@@ -31,6 +33,8 @@ class Case:
         Whether the peaks of the floors are tracked.
     extra
         Additional quantities whose peaks are tracked.
+    many
+        Whether many structures have a case like this, see `Engine`.
     engine
         The engine of the model, ready to run records.
 
@@ -47,6 +51,7 @@ class Case:
     history: bool = False
     floors: bool = False
     extra: Quantities | None = None
+    many: bool = False
     engine: Engine = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -58,7 +63,8 @@ class Case:
             )
         with preparing(self.model):
             asked = asked_of(self.model, floors=self.floors)
-        engine = Engine(self.model, asked if self.extra is None else asked + self.extra, extremes_of(self.model))
+        asked = asked if self.extra is None else asked + self.extra
+        engine = Engine(self.model, asked, extremes_of(self.model), many=self.many)
         object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:

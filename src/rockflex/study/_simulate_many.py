@@ -20,7 +20,7 @@ from rockflex.study._arguments import (
     ground_under,
     properties_of,
 )
-from rockflex.study._case import Case
+from rockflex.study._case import MANY, Case
 from rockflex.study._initial import InitialState
 from rockflex.study._prepared import FIXED
 from rockflex.study._results import RESULTS, STATUSES, results_of
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
-MANY = 256  # structures from which preparing them, which holds the interpreter lock, is left to processes
 
 # Some runs of a structure: its index, the first and the last of them, and its case for each model, once prepared.
 Part = tuple[int, int, int, list[Case | str | None]]
@@ -127,7 +126,9 @@ def simulate_many(
         try:
             properties = properties_of(everything[index])
             below = ground_under(properties, ground)
-            return Case(chosen[which].of(properties, impact, yielding[which], below), **options)
+            return Case(
+                chosen[which].of(properties, impact, yielding[which], below), **options, many=len(everything) >= MANY
+            )
         except InputError as error:
             return str(error)
 

@@ -22,7 +22,7 @@ from rockflex.study._arguments import (
     properties_of,
     work_limit_of,
 )
-from rockflex.study._case import Case
+from rockflex.study._case import MANY, Case
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Columns, Row, kinds_of
@@ -160,7 +160,8 @@ class Bench:
             properties = self.structures[structure]
             ground = ground_under(properties, given.ground)
             tied = given.models[model].of(properties, given.impact, self._yielding[model], ground)
-            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.friction)
+            many = len(self.structures) >= MANY
+            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.friction, many=many)
         except InputError as error:
             return str(error)
 

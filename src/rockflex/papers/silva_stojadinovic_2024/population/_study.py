@@ -129,7 +129,7 @@ class PopulationPlan(ChunkedPlan):
         """Return the response, and the peak of the second mode (of the first, if there is only one)."""
         mode = min(model.properties.n_modes, 2) - 1
         extra = modal_displacement(model, mode)
-        solution = Case(model, self.free_vibration, work_limit=self.work_limit, extra=extra).solve(motion)
+        solution = Case(model, self.free_vibration, work_limit=self.work_limit, extra=extra, many=True).solve(motion)
         return respond(model, motion.name, solution), float(solution.peaks[-1])
 
 
