@@ -53,7 +53,9 @@ def size_of(values):
 def test_both_ways_prepare_the_same_tables(name, floors):
     model = tied(name)
     bare, general = both(model, asked_of(model, floors=floors))
-    assert bare.phases.tolist() == general.phases.tolist()
+    facts = [name for name in general.phases.dtype.names if name != "fastest"]
+    assert bare.phases[facts].tolist() == general.phases[facts].tolist()
+    np.testing.assert_allclose(bare.phases["fastest"], general.phases["fastest"], rtol=1e-12)
     n = model.properties.n_modes
     for field in ("layout", "dt", "turning_row", "chords", "fences", "fenced"):
         assert getattr(bare, field) == getattr(general, field)
@@ -92,13 +94,12 @@ def test_both_ways_move_alike(name):
 
 
 @pytest.mark.parametrize("n", [1, 3])
-def test_peaks_do_not_depend_on_the_way(n, monkeypatch):
+def test_peaks_do_not_depend_on_the_way(n):
     motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
     model = Model(n).of(make_frame(n_stories=3, aspect_ratio=9.0).rocking())
     engine = Engine(model, asked_of(model), many=True)
     assert isinstance(engine._phases, BarePhases)
     found = engine.run(motion.acceleration, motion.dt)
-    monkeypatch.setattr("rockflex.solve.engine.is_bare", lambda _: False)
     other = Engine(model, asked_of(model))
     assert isinstance(other._phases, CompiledPhases)
     expected = other.run(motion.acceleration, motion.dt)

@@ -98,7 +98,6 @@ def test_runs_on_one_engine_do_not_meddle_with_each_other(case, monkeypatch):
     """As threads have it: while one run pauses, another one meets phases whose series are longer."""
     label, options, record, dt, wanted = CASES[case]
     options, wanted = dict(options), dict(wanted)
-    monkeypatch.setattr("rockflex.solve.engine.is_bare", lambda _: False)  # its phases are all met at once
     alone = engine(label, options).run(record, dt, **wanted)
     shared, rounds, needed = engine(label, options), count(), []
     carry = Engine._carry

@@ -55,7 +55,6 @@ def prepared(name, *, dense=False):
     n, changes = FRAMES[name]
     tied = Model(n).of(Frame(**given(changes)).rocking())
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rockflex.solve.engine.is_bare", lambda _: False)  # its kernel is compared with these tables
         if dense:
             patch.setattr(basis, "WORST_CONDITION", 0.0)
         engine = Engine(tied, asked_of(tied, floors=True))
@@ -216,7 +215,6 @@ def test_states_between_nodes(side, fraction, dense):
     start = np.concatenate((nodes[0, HEADER:], [nodes[0, 2], slope, side]))
     expected = expm(generator(twin, n, int(side != 0.0)) * DT * fraction) @ start
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rockflex.solve.engine.is_bare", lambda _: False)  # its kernel is compared with these tables
         if dense:
             patch.setattr(basis, "WORST_CONDITION", 0.0)
         found = ClosedForm(engine.model).intervals(nodes).at(fraction)

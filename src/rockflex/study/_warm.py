@@ -10,9 +10,11 @@ import numpy as np
 
 from rockflex._kernel import KERNELS, notice
 from rockflex._numba import folder_of
+from rockflex.models import Model
 from rockflex.motion import GroundMotion
 from rockflex.response import Response
 from rockflex.structure import LumpedStructure
+from rockflex.study._case import Case
 from rockflex.study._simulate import simulate
 
 
@@ -80,8 +82,8 @@ def _compiled() -> int:
     return sum(sum(kernel.stats.cache_misses.values()) for kernel in KERNELS if hasattr(kernel, "stats"))
 
 
-def _runs(model: str) -> Response:
-    structure = LumpedStructure(
+def _structure() -> LumpedStructure:
+    return LumpedStructure(
         [1e4, 1e4],
         [[4e6, -2e6], [-2e6, 2e6]],
         [3.0, 6.0],
@@ -89,7 +91,14 @@ def _runs(model: str) -> Response:
         half_width=0.7,
         damping_ratio=0.02,
     )
-    return simulate(structure, _motion(), model)
+
+
+def _runs(model: str) -> Response:
+    return simulate(_structure(), _motion(), model)
+
+
+def _many() -> None:
+    Case(Model(2).of(_structure().rocking()), many=True).run(_motion())
 
 
 def _motion() -> GroundMotion:
@@ -108,5 +117,6 @@ def _spectra() -> None:
 STEPS: dict[str, Callable[[], object]] = {
     "simplified models": lambda: _runs("MDOF-S"),
     "complete and yielding models": _complete,
+    "many structures": _many,
     "response spectra": _spectra,
 }
