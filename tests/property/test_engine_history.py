@@ -1,6 +1,7 @@
 """Peaks and histories of the same run."""
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -98,7 +99,7 @@ def test_nodes(structure, motion, model, start, free):
 @settings_
 @given(frames, stretches(), models, starts)
 def test_peaks_do_not_need_a_history(structure, motion, model, start):
-    """Where floors call for closer looks the motion may differ by a rounding, and with it the other peaks."""
+    """Other rows may change when a peak is searched, and with it the rounding of the peak."""
     assume(structure.damping_ratio >= 0.01)
     kept = simulate(structure, motion, model, initial=start)
     alone = simulate(structure, motion, model, output="peaks", initial=start)
@@ -110,4 +111,10 @@ def test_peaks_do_not_need_a_history(structure, motion, model, start):
     properties = structure.rocking()
     object.__setattr__(properties, "floors", None)
     bare = simulate(properties, motion, model, initial=start)
-    assert bare.peaks() == simulate(properties, motion, model, output="peaks", initial=start).peaks()
+    alone = simulate(properties, motion, model, output="peaks", initial=start)
+    for name, other in alone.peaks().items():
+        one, weight = bare.peaks()[name], properties.m_tot * 9.81
+        if not isinstance(other, float) or name.startswith("time_of"):
+            continue  # of two equal peaks either may be the first
+        tolerance = 1e-13 * (weight if name == "min_vertical_reaction" else abs(other)) + 1e-15
+        assert one == pytest.approx(other, rel=0.0, abs=100.0 * tolerance), name

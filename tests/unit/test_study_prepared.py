@@ -116,6 +116,8 @@ def test_threads_may_simulate_the_same_structure():
 @pytest.fixture
 def copied(monkeypatch):
     """Whether processes were used; they are from four structures on."""
+    if not may_fork():
+        pytest.skip("this process cannot be copied: it may have threads of earlier tests")
     used = []
 
     def watched(*arguments):
@@ -128,10 +130,6 @@ def copied(monkeypatch):
     return used
 
 
-needs_fork = pytest.mark.skipif(not may_fork(), reason="this process cannot be copied")
-
-
-@needs_fork
 def test_many_structures_give_the_same_table_in_processes(copied):
     frames = {f"{t:.3g} s": make_frame(n_stories=2, period=t) for t in np.linspace(0.3, 1.5, 20)}
     frames["low"] = make_frame(n_stories=1)  # has one mode only
@@ -144,7 +142,6 @@ def test_many_structures_give_the_same_table_in_processes(copied):
     assert alone["error"].notna().sum() == 2
 
 
-@needs_fork
 def test_work_limits_count_in_processes_too(copied):
     frames = [make_frame(n_stories=2, period=t) for t in np.linspace(0.3, 1.5, 20)]
     with pytest.raises(rf.InputError, match="work_limit is 1e-09 s"):
@@ -152,7 +149,6 @@ def test_work_limits_count_in_processes_too(copied):
     assert copied
 
 
-@needs_fork
 def test_histories_and_functions_stay_in_this_process(copied):
     frames = [make_frame(n_stories=2, period=t) for t in (0.4, 0.5, 0.6, 0.7)]
     rf.simulate_many(frames, PULSE, workers=2, output="history")
@@ -160,7 +156,6 @@ def test_histories_and_functions_stay_in_this_process(copied):
     assert not copied
 
 
-@needs_fork
 def test_copies_tell_their_errors():
     def fails(task):
         raise rf.InputError(f"task {task} is bad", field="task")
@@ -170,7 +165,6 @@ def test_copies_tell_their_errors():
     assert caught.value.field == "task"
 
 
-@needs_fork
 def test_copies_end_when_nobody_waits():
     def waits(task):
         started = time.monotonic()

@@ -3,23 +3,18 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import SupportsIndex, cast
 
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_STORIES, in_range, mode_count, positive, real_or_nan, whole_number
+from rockflex._checks import MOST_STORIES, in_range, positive, real_or_nan, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex._values import changed
-from rockflex.modal import FloorModes, ModalProperties, RockingProperties, modal_properties
+from rockflex.modal import ModalProperties, modal_properties
 from rockflex.structure._based import Assembled
 from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
-
-SMALL, LARGE = 1e-30, 1e30  # of masses, lengths and frequencies in SI units that certainly do not overflow
-ROUNDING = 1e-6  # of the inertia of a story: what that of a base must exceed
 
 
 @dataclass(frozen=True)
@@ -137,52 +132,6 @@ class Frame(Assembled):
         """Lumped masses: those of `lumped`."""
         return self.lumped
 
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
-
-        Raises
-        ------
-        InputError
-            If `n_modes` is not from 1 to the number that the structure has.
-        """
-        scaled = self._scaled
-        if scaled is None:
-            return self.assembled.rocking(n_modes)
-        return scaled.truncated(mode_count(n_modes, scaled.n_modes))
-
-    @cached_property
-    def _scaled(self) -> RockingProperties | None:
-        """The properties of the frame with unit masses and stories, scaled; None if the numbers are extreme."""
-        unit, unit_floors = _unit_rocking(self.n_stories, self.stiffness_ratio)
-        mass, length, width = self.story_mass, self.story_height, self.half_width
-        omega = unit.omega / unit.omega[0] * (2.0 * math.pi / self.period)
-        rate = float(omega[0] / unit.omega[0])
-        total = mass * self.n_stories + self.base_mass
-        numbers = (mass, length, width, rate, total)
-        # The checks of the assembled structure say what is wrong.
-        if not (min(numbers) > SMALL and max(numbers) < LARGE and total * width**2 > ROUNDING * mass * length**2):
-            return None
-        effective_mass, effective_height = unit.effective_mass * mass, unit.effective_height * length
-        # All modes are kept: rounding must not leave the sum less than they have.
-        of_modes = float(effective_mass @ effective_height**2)
-        inertia = max(mass * length**2 * unit.translational_inertia, of_modes)
-        heights = unit_floors.heights * length
-        return changed(
-            unit,
-            omega=omega,
-            effective_mass=effective_mass,
-            effective_height=effective_height,
-            zeta=np.full(unit.n_modes, self.damping_ratio),
-            i_theta=inertia + total * width**2,
-            l0r=mass * length * unit.l0r,
-            m_tot=total,
-            half_width=width,
-            translational_inertia=inertia,
-            floors=changed(unit_floors, heights=heights, force=unit_floors.force * (mass * rate**2)),
-            top_height=float(heights[-1]),
-            base_mass=self.base_mass,
-        )
-
 
 @lru_cache(maxsize=128)
 @computable("The modes of the frame with this stiffness_ratio", field="stiffness_ratio")
@@ -192,16 +141,6 @@ def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Array, ModalPro
     stiffness = condensed_stiffness(one, one, 12.0 * stiffness_ratio * one)
     stiffness.setflags(write=False)
     return stiffness, modal_properties(one, stiffness, np.cumsum(one))
-
-
-@lru_cache(maxsize=128)
-def _unit_rocking(n_stories: int, stiffness_ratio: float) -> tuple[RockingProperties, FloorModes]:
-    """Return the properties and the floors for unit masses and stories, on a base of unit mass and half-width."""
-    stiffness, _ = _unit_frame(n_stories, stiffness_ratio)
-    one = np.ones(n_stories)
-    unit = LumpedStructure(one, stiffness, np.cumsum(one), base_mass=1.0, half_width=1.0, damping_ratio=0.0)
-    properties = unit.rocking()
-    return properties, cast("FloorModes", properties.floors)
 
 
 def _checked_stiffness_ratio(value: float) -> float:

@@ -30,6 +30,13 @@ class Warmth:
         Time that it took, s.
     folder
         Folder under which the compiled kernels are; None if they cannot be kept, because no folder can be written.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> done = rf.warm()
+    >>> done.duration > 0.0
+    True
     """
 
     compiled: int
