@@ -6,9 +6,8 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.models import StateLayout
-from rockflex.solve.layout import Motion, motion_of
+from rockflex.solve.layout import FEWEST_TERMS, Motion, motion_of
 
-FEWEST = 4  # terms of a power series
 SPARE = 8  # desks kept for later runs
 
 
@@ -53,7 +52,7 @@ class Desks:
     """
 
     def __init__(self, layout: StateLayout, rows: int) -> None:
-        self._fresh = motion_of(np.zeros(layout.size), layout, rows, FEWEST)
+        self._fresh = motion_of(np.zeros(layout.size), layout, rows, FEWEST_TERMS)
         self._spare = list[Desk]()
 
     def taken(self, start: Array) -> Desk:

@@ -26,8 +26,8 @@ from rockflex.solve.exact.bare import Bare, enter_bare
 from rockflex.solve.exact.entries import Tables, tables_of
 from rockflex.solve.exact.tables import LONGEST_FALL, empty_system, levels_of, size_of
 from rockflex.solve.exact.uncoupled import Pairs, pairs_of
-from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWS, TURNED, System
-from rockflex.solve.phases import FEWEST_TERMS, MOST_LEVELS, CompiledPhases
+from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FEWEST_TERMS, FOLLOWS, TURNED, System
+from rockflex.solve.phases import MOST_LEVELS, CompiledPhases
 
 # The tables that the kernel fills; the others have no entries, or are the same for all structures.
 FILLED = tuple(name for name in Tables._fields if name not in ("dt", "modes"))

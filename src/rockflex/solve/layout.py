@@ -80,6 +80,7 @@ MOST_DEFERRED = 16  # blocks; any further one is searched at once
 # A literal 0 has its own type in numba, for which every callee would be compiled again.
 ZERO = cast("int", np.int64(0))
 GUARD = ZERO  # the row of the guard
+FEWEST_TERMS = 4  # of a power series
 
 
 class System(NamedTuple):
@@ -246,6 +247,12 @@ def is_shaken(span: Span) -> bool:
 def rows_in(system: System, phase: int) -> int:
     """Return the number of rows of a phase, with its fences."""
     return int(system.fences + system.phases[phase].fences)
+
+
+@kernel
+def may_end_phase(system: System, row: int) -> bool:
+    """Return whether a row ends its phase at a limit: the guard, the row of θ', and the fences."""
+    return row == GUARD or row == system.turning_row or row >= system.fences
 
 
 @kernel

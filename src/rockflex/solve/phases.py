@@ -21,10 +21,9 @@ from rockflex.models import (
 )
 from rockflex.solve.exact.basis import Basis, Drift, basis_of, drift_of, with_constant
 from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase, size_of
-from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FOLLOWING, FOLLOWS, TURNED, TURNING, System
+from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FEWEST_TERMS, FOLLOWING, FOLLOWS, TURNED, TURNING, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance
-FEWEST_TERMS = 4
 CAPACITY = 3  # initial number of phases: contact, and rocking on either side
 
 

@@ -14,36 +14,33 @@ from rockflex.solve.memory import recollect
 
 
 @kernel
-def defer(system: System, at: Progress, log: Log, motion: Motion) -> bool:
-    """Keep the present block for a later search for peaks; return False if there is no room."""
+def defer(system: System, at: Progress, log: Log, motion: Motion) -> None:
+    """Keep the present block for a later search for peaks, if there is room; otherwise it is searched now."""
     place = 0
     while place < MOST_DEFERRED and waits(place, log, motion):
         place += 1
     if place == MOST_DEFERRED:
-        return False
-    put_aside(place, at, motion)
+        return
+    put_aside(place, BEGUN, at, motion)
     each = motion.deferred[place]
     each.waits, each.slope = True, motion.block[INCLINES, 0]
-    for k in range(motion.w.shape[1]):
-        motion.coordinates[place, k] = motion.w[BEGUN, k]
     # The peaks so far are at least the values at the samples of the block.
     for f in range(log.peaks.size):
         rises = (f > 0 or system.phases[at.phase].free) and rising(f, at, log, motion) != 0
         motion.highest[place, f] = log.peaks[f] + motion.slack[f] if rises else -np.inf
     at.marks = 0
-    return True
 
 
 @kernel
-def put_aside(place: int, at: Progress, motion: Motion) -> None:
-    """Keep the present state and coordinates."""
+def put_aside(place: int, which: int, at: Progress, motion: Motion) -> None:
+    """Keep the present state, and the coordinates `motion.w[which]`."""
     each = motion.deferred[place]
     each.phase, each.offset, each.index, each.slope = at.phase, at.offset, at.index, at.slope
     each.count, each.stated = at.count, at.stated
     for i in range(motion.state.size):
         motion.states[place, i] = motion.state[i]
     for k in range(motion.w.shape[1]):
-        motion.coordinates[place, k] = motion.w[NOW, k]
+        motion.coordinates[place, k] = motion.w[which, k]
 
 
 @kernel
@@ -80,7 +77,7 @@ def search_deferred(system: System, course: Course, at: Progress, log: Log, moti
         piece = course.record if motion.deferred[place].offset == 0 else course.quiet
         if at.deferred < 0:
             if not present.waits:
-                put_aside(MOST_DEFERRED, at, motion)
+                put_aside(MOST_DEFERRED, NOW, at, motion)
                 present.waits = True
             resume(system, place, at, motion)
             look_ahead(system, piece, at.index + at.count, at, motion)

@@ -16,7 +16,6 @@ from rockflex.solve.history import keep
 from rockflex.solve.layout import (
     ASKED,
     ENDS,
-    GUARD,
     INCLINES,
     LOWER,
     NOW,
@@ -26,6 +25,7 @@ from rockflex.solve.layout import (
     Motion,
     Progress,
     System,
+    may_end_phase,
     rows_in,
 )
 
@@ -66,13 +66,13 @@ def watch(system: System, piece: Array, at: Progress, log: Log, motion: Motion) 
     """Return whether an event may occur in the block; if so, reduce `at.count` to the samples before it."""
     p, doubtful = at.phase, ZERO
     for f in range(rows_in(system, p)):
-        if f == GUARD or f == system.turning_row or f >= system.fences:
+        if may_end_phase(system, f):
             lower, upper = motion.values[LOWER, f], motion.values[UPPER, f]
             doubtful |= leaving(f, lower + motion.slack[f], upper - motion.slack[f], at, motion)
     if doubtful == 0:
         return NOTHING
     for f in range(rows_in(system, p)):
-        motion.flags[ASKED, f] = f == GUARD or f == system.turning_row or f >= system.fences
+        motion.flags[ASKED, f] = may_end_phase(system, f)
     finding, m = NOTHING, 0
     while doubtful != 0 and finding != EVENT:
         if doubtful & 1:

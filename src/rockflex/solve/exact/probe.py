@@ -23,6 +23,7 @@ from rockflex.solve.layout import (
     Log,
     Motion,
     System,
+    may_end_phase,
     rows_in,
     unit_of,
 )
@@ -113,7 +114,7 @@ def probe(system: System, phase: int, level: int, slope: float, log: Log, motion
             low, high = cubic_range(first, last, before * length, after * length)
             low, high = low - ripple, high + ripple
         event = False
-        if f == GUARD or f == system.turning_row or f >= system.fences:
+        if may_end_phase(system, f):
             event = hidden and (low < lower or high > upper)
             if not hidden:
                 event = last <= lower or last >= upper
