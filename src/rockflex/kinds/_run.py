@@ -288,10 +288,10 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     threads = core_count() if workers is None else whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_ready - 1) / max(SAMPLE - 1, 1)) for place in range(SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # compile, and fill the caches that the study fills once
-        list(plan.rows(unit))
+        plan.rows([unit])
     start, tried = perf_counter(), 0
     for unit in sample:
-        list(plan.rows(unit))
+        plan.rows([unit])
         tried += 1
         if perf_counter() - start > PATIENCE:
             break

@@ -1,6 +1,7 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
 from rockflex.response._base_path import base_path
+from rockflex.response._columns import STATUSES, columns_among, columns_of
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
@@ -20,6 +21,7 @@ __all__ = [
     "GLOBAL",
     "IMPACT_WINDOW",
     "PEAKS",
+    "STATUSES",
     "UNITS_OF_GROUND",
     "EnergyLedger",
     "FloorPeaks",
@@ -29,6 +31,8 @@ __all__ = [
     "Response",
     "asked_of",
     "base_path",
+    "columns_among",
+    "columns_of",
     "element_resistance",
     "extremes_of",
     "friction_coefficient",

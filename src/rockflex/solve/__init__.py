@@ -3,6 +3,7 @@
 from rockflex.solve._pace import Pace, Work, pace_of
 from rockflex.solve._preparing import preparing
 from rockflex.solve._solution import Solution
+from rockflex.solve._solutions import Solutions
 from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.engine import Engine
 from rockflex.solve.exact.closed_form import ClosedForm
@@ -14,6 +15,7 @@ __all__ = [
     "Pace",
     "RunStoppedError",
     "Solution",
+    "Solutions",
     "Task",
     "Work",
     "WorkLimitError",

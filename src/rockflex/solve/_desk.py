@@ -4,7 +4,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from rockflex._arrays import Array
 from rockflex.models import StateLayout
 from rockflex.solve.layout import FEWEST_TERMS, Motion, motion_of
 
@@ -12,24 +11,16 @@ SPARE = 8  # desks kept for later runs
 
 
 class Desk:
-    """The work arrays of one run.
+    """The work arrays of one run after another. Each run clears what it may read before it has written it.
 
     Parameters
     ----------
-    fresh
-        The arrays as a run finds them, which are never written to.
+    motion
+        The arrays, of any content.
     """
 
-    def __init__(self, fresh: Motion) -> None:
-        self._fresh = fresh
-        self._motion = Motion._make(array.copy() for array in fresh)
-
-    def cleared(self, start: Array) -> "Desk":
-        """Return the desk as at the start of a run from a state."""
-        for mine, fresh in zip(self._motion, self._fresh, strict=True):
-            mine[...] = fresh if mine.shape == fresh.shape else 0.0  # those of the series may have grown
-        self._motion.state[:] = start
-        return self
+    def __init__(self, motion: Motion) -> None:
+        self._motion = motion
 
     def motion(self, terms: int) -> Motion:
         """Return the motion, with room for power series of that many terms."""
@@ -52,16 +43,15 @@ class Desks:
     """
 
     def __init__(self, layout: StateLayout, rows: int) -> None:
-        self._fresh = motion_of(np.zeros(layout.size), layout, rows, FEWEST_TERMS)
+        self._layout, self._rows = layout, rows
         self._spare = list[Desk]()
 
-    def taken(self, start: Array) -> Desk:
-        """Return a desk for a run from a state."""
+    def taken(self) -> Desk:
+        """Return a desk for a run."""
         try:
-            desk = self._spare.pop()
+            return self._spare.pop()
         except IndexError:
-            desk = Desk(self._fresh)
-        return desk.cleared(start)
+            return Desk(motion_of(np.zeros(self._layout.size), self._layout, self._rows, FEWEST_TERMS))
 
     def returned(self, desk: Desk) -> None:
         """Take back the desk of a run that has ended."""

@@ -1,15 +1,17 @@
 """The progress of a run."""
 
-import numpy as np
+from typing import Any
 
-from rockflex.solve.layout import Progress
+import numpy as np
+from numpy.typing import NDArray
+
 from rockflex.solve.records import record_of
 from rockflex.solve.status import Status
 
 # The progress of a run: everything that a kernel needs to continue, bit for bit, after an interruption.
 _PROGRESS = record_of(
     [
-        ("stage", np.int64),  # of `solve.run.run`
+        ("stage", np.int64),  # of `solve.run.follow`
         ("phase", np.int64),
         ("offset", np.int64),  # samples before the present stretch of acceleration
         ("index", np.int64),  # sample within it
@@ -49,15 +51,15 @@ _PROGRESS = record_of(
 )
 
 
-def progress_at_start(phase: int, *, stated: bool) -> Progress:
-    """Return the progress of a run that starts in a phase."""
-    at = np.frombuffer(bytearray(_AT_START), dtype=_PROGRESS)[0]  # faster than a copy field by field
-    at["phase"], at["stated"] = phase, stated
-    return at
+def progress_at_start(phase: int) -> NDArray[Any]:
+    """Return two records of the progress of a run that starts in a phase: the second stays as it is."""
+    both = np.frombuffer(bytearray(_AT_START), dtype=_PROGRESS)  # faster than a copy field by field
+    both["phase"], both["stated"] = phase, True
+    return both
 
 
 def _at_start() -> bytes:
-    at = np.zeros(1, dtype=_PROGRESS)
+    at = np.zeros(2, dtype=_PROGRESS)
     at["last"] = at["lift"] = at["slide"] = np.nan
     at["lacking"], at["deferred"], at["status"], at["step"], at["branch"] = -1, -1, int(Status.PAUSED), np.inf, 1.0
     return at.tobytes()

@@ -40,3 +40,14 @@ DEFERRED = record_of(
         ("stated", np.bool_),  # whether the state is that at the start of the block
     ]
 )
+
+# How a run ended.
+END = record_of(
+    [
+        ("status", np.int64),
+        ("samples", np.int64),  # completed
+        ("left", np.float64),  # of the work that it may take, s
+        ("uplifts", np.int64),
+        ("impacts", np.int64),
+    ]
+)

@@ -8,7 +8,7 @@ advanced event by event. The kernel returns when its slice of work is used up, a
 import math
 
 from rockflex._arrays import Array
-from rockflex._kernel import inlined_kernel, kernel, python_kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex._vectors import BLOCK
 from rockflex.models import Impact, field_rates
 from rockflex.solve.adaptive.curves import values_of_rows
@@ -51,7 +51,7 @@ CALM = 1e-8  # 1/s: of the largest value so far, the rate of one that is at rest
 STRETCH = 4096  # largest number of samples between two checks of the work
 
 
-@python_kernel
+@inlined_kernel
 def run(
     system: System, steps: Integrator | None, impact: Impact, course: Course, at: Progress, log: Log, motion: Motion
 ) -> int:

@@ -1,12 +1,13 @@
 """One run: a model tied to a structure, with the options of its runs, under a motion at a scale."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from rockflex._errors import InputError
+from rockflex._errors import InputError, SolverError
 from rockflex.models import Quantities, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.response import Response, asked_of, extremes_of, respond
-from rockflex.solve import Engine, Solution, Task, preparing
+from rockflex.solve import Engine, Solution, Solutions, Task, preparing
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
 
@@ -81,16 +82,42 @@ class Case:
         SolverError
             If the run cannot be solved.
         """
-        return self.engine.run(
-            motion.acceleration * scale,
-            motion.dt,
+        return self.solve_all([(motion, scale)], motion.dt, shaken=is_shaken(motion)).one(0)
+
+    def solve_all(self, runs: Sequence[tuple[GroundMotion, float]], dt: float, *, shaken: bool) -> Solutions:
+        """Run motions with one time step, each at a scale, which are all `shaken` vertically or none of them.
+
+        Only a single run can have a history. Runs that cannot be solved are among the failures.
+
+        Raises
+        ------
+        InputError
+            If the initial state does not fit the model, or its numbers overflow.
+        """
+        return self.engine.run_all(
+            [motion.acceleration * scale for motion, scale in runs],
+            dt,
             free_vibration=self.free_vibration,
             state=None if self.initial is None else self.initial.state(self.model),
             history=self.history,
             work_limit=self.work_limit,
-            vertical=motion.vertical * scale if motion.vertical is not None and motion.vertical.any() else None,
+            verticals=[motion.vertical * scale for motion, scale in runs if motion.vertical is not None]
+            if shaken
+            else None,
         )
 
     def run(self, motion: GroundMotion, scale: float = 1.0) -> Response:
         """Run the motion at a scale and return the response; raises the errors of `solve`."""
         return respond(self.model, motion.name, self.solve(motion, scale), floors=self.floors)
+
+    def attempt(self, motion: GroundMotion, scale: float = 1.0) -> Response | InputError | SolverError:
+        """Run the motion at a scale and return the response, or the error of `solve`."""
+        try:
+            return self.run(motion, scale)
+        except (InputError, SolverError) as error:
+            return error
+
+
+def is_shaken(motion: GroundMotion) -> bool:
+    """Return whether the ground moves vertically in a motion."""
+    return motion.vertical is not None and bool(motion.vertical.any())

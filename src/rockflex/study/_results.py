@@ -8,8 +8,6 @@ from typing import Any
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import PEAKS, Response
 
-STATUSES = ("no_uplift", "rocking", "overturned")
-
 RESULTS: dict[str, type] = {  # every number and flag of a Response, by its name
     name: kind for name in PEAKS if (kind := Response.__annotations__[name]) in (float, int, bool)
 }

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._errors import InputError, SolverError
+from rockflex._errors import InputError
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import check_horizontal
+from rockflex.response import STATUSES, Response
 from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
@@ -22,11 +23,12 @@ from rockflex.study._arguments import (
 )
 from rockflex.study._case import MANY, Case
 from rockflex.study._initial import InitialState
+from rockflex.study._peaks import Peaks, Scaled, peaks_among, peaks_of
 from rockflex.study._prepared import FIXED
-from rockflex.study._results import RESULTS, STATUSES, results_of
+from rockflex.study._results import RESULTS
 from rockflex.study._runs import in_order, in_order_apart
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
-from rockflex.study._tables import ArrowTable, Row, tabulate, to_frame
+from rockflex.study._tables import ArrowTable, Sheet, to_frame
 from rockflex.study._yielding import hysteresis_of
 
 if TYPE_CHECKING:
@@ -145,25 +147,38 @@ def simulate_many(
         if task:
             yield task
 
-    def result_of(index: int, place: int, cases: list[Case | str | None], refused: list[WorkLimitError]) -> Row:
-        motion, (which, factor) = records[place // inner], divmod(place % inner, len(factors))
-        case = cases[which] = cases[which] or case_of(index, which)
-        if isinstance(case, str):
-            return {"error": case}
-        try:
-            response = case.run(motion, factors[factor])
-        except (SolverError, InputError) as error:
-            if isinstance(error, WorkLimitError):
-                refused.append(error)
-            return {"error": str(error)}
-        if responses.size:
-            responses[index * each + place] = response
-        return results_of(response) | {"status": STATUSES.index(response.status)}
+    def parts_of(places: range) -> dict[int, dict[int, Scaled]]:
+        """Return the motion and the scale of each of these runs of a structure, by its model and its place."""
+        found = dict[int, dict[int, Scaled]]()
+        for place in places:
+            which, factor = divmod(place % inner, len(factors))
+            found.setdefault(which, {})[place] = records[place // inner], factors[factor]
+        return found
+
+    def responses_of(index: int, case: Case, runs: dict[int, Scaled]) -> Peaks:
+        """Keep the responses with their histories, and return their peaks."""
+        found = [case.attempt(*run) for run in runs.values()]
+        for place, response in zip(runs, found, strict=True):
+            responses[index * each + place] = response if isinstance(response, Response) else None
+        return peaks_among(found)
 
     def work(task: list[Part]) -> tuple[ArrowTable, list[WorkLimitError]]:
-        refused = list[WorkLimitError]()
-        runs = ((index, place, cases) for index, first, last, cases in task for place in range(first, last))
-        return tabulate([result_of(*run, refused) for run in runs], columns), refused
+        refused, begun = list[WorkLimitError](), 0
+        sheet = Sheet(sum(last - first for _, first, last, _ in task), columns)
+        for index, first, last, cases in task:
+            for which, runs in parts_of(range(first, last)).items():
+                rows = [begun + place - first for place in runs]
+                case = cases[which] = cases[which] or case_of(index, which)
+                if isinstance(case, str):
+                    sheet.fail(rows, case)
+                    continue
+                peaks = responses_of(index, case, runs) if responses.size else peaks_of(case, list(runs.values()))
+                sheet.put(rows, peaks.columns)
+                for place, error in peaks.failures.items():
+                    sheet.fail(rows[place : place + 1], str(error))
+                refused += [error for error in peaks.failures.values() if isinstance(error, WorkLimitError)]
+            begun += last - first
+        return sheet.table(), refused
 
     columns = {"status": STATUSES, "error": str, **RESULTS}
     own = impact is not None and type(impact) not in FIXED  # it may keep what it is told

@@ -3,6 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -32,8 +35,64 @@ def _column(values: list[Any], kind: type | Sequence[str]) -> Any:
 
     if isinstance(kind, type):
         return pa.array(values, TYPES[kind], from_pandas=True)
-    # All chunks list all names, so that their tables have one schema and can be joined directly.
-    return pa.DictionaryArray.from_arrays(pa.array(values, pa.int32()), pa.array(kind, pa.string()))
+    return _named(pa.array(values, pa.int32()), kind)
+
+
+def _named(codes: Any, names: Sequence[str]) -> Any:
+    """Return a column of names; all chunks list all of them, so that their tables have one schema and can be joined."""
+    import pyarrow as pa
+
+    return pa.DictionaryArray.from_arrays(codes, pa.array(names, pa.string()))
+
+
+class Sheet:
+    """A table of results that is filled column by column.
+
+    Parameters
+    ----------
+    size
+        Number of rows.
+    columns
+        Columns of results; those that are never filled stay missing. `error` is a text for each row that has none.
+    """
+
+    def __init__(self, size: int, columns: Columns) -> None:
+        self._columns = columns
+        self._values = {
+            name: np.zeros(size, kind if isinstance(kind, type) else np.int32)
+            for name, kind in columns.items()
+            if kind is not str
+        }
+        self._missing = np.ones(size, dtype=np.bool_)
+        self._errors: list[str | None] = [None] * size
+
+    def put(self, places: Sequence[int], values: Mapping[str, NDArray[Any]]) -> None:
+        """Fill some rows, if there are values at all."""
+        if values:
+            for name, column in self._values.items():
+                column[places] = values[name]
+            self._missing[places] = False
+
+    def fail(self, places: Sequence[int], error: str) -> None:
+        """Give rows an error, and no results."""
+        for place in places:
+            self._errors[place] = error
+        self._missing[places] = True
+
+    def table(self) -> ArrowTable:
+        """Return the table; NaN are missing values."""
+        import pyarrow as pa
+
+        found = dict[str, Any]()
+        for name, kind in self._columns.items():
+            if kind is str:
+                found[name] = pa.array(self._errors, pa.string())
+                continue
+            column = self._values[name]
+            missing = self._missing | np.isnan(column) if kind is float else self._missing
+            array = pa.array(column, TYPES[kind] if isinstance(kind, type) else pa.int32(), mask=missing)
+            found[name] = array if isinstance(kind, type) else _named(array, kind)
+        return pa.table(found)
 
 
 def to_frame(*tables: ArrowTable) -> "pd.DataFrame":

@@ -1,6 +1,6 @@
 """Design of a base: how wide it must be, and which tendon holds it down (Section 4.1)."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
@@ -188,10 +188,9 @@ class DesignPlan(CloudPlan):
         facts = {name: self._tendons if name == "tendon" else float for name in self._facts[0]}
         return {"structure": self.bench.names, **facts, **self.bench.columns}
 
-    def rows(self, unit: int) -> Iterator[Row]:
-        """Simulate one run."""
-        for row in super().rows(unit):
-            yield row | self._facts[row["structure"]]
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Simulate one run a unit."""
+        return [row | self._facts[row["structure"]] for row in super().rows(units)]
 
 
 def run_design(

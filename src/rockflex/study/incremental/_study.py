@@ -1,6 +1,7 @@
 """Incremental dynamic analysis: every record scaled until it overturns the structure, and beyond."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 from pydantic import Field, model_validator
@@ -101,8 +102,11 @@ class IncrementalPlan(CrossPlan):
         ladder = {"overturned": bool, "first_overturning_scale": float, "last_survival_scale": float}
         return base | ladder | {"resurrections": int, "right_censored": bool, "error": error}
 
-    def rows(self, unit: int) -> list[Row]:
-        """Run one ladder."""
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Run one ladder a unit."""
+        return [row for unit in units for row in self._ladder(unit)]
+
+    def _ladder(self, unit: int) -> list[Row]:
         structure, record, model, _ = self.run_of(unit)
         state = LIMIT_STATES[self.limit]
 

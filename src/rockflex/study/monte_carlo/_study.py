@@ -1,6 +1,6 @@
 """The study of a random population of structures."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -194,8 +194,11 @@ class MonteCarloPlan(ChunkedPlan):
         order = np.argsort(draws(self.seed, number, "", len(self.motions)), kind="stable")
         return sorted(order[: self._per_structure].tolist())
 
-    def rows(self, unit: int) -> Iterator[Row]:
-        """Draw a structure, and simulate it."""
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Draw a structure a unit, and simulate it."""
+        return [row for unit in units for row in self._runs_of(unit)]
+
+    def _runs_of(self, unit: int) -> Iterator[Row]:
         row: Row = {"number": unit}
         try:
             row |= self.population.variables.draw(self.seed, unit)
@@ -208,8 +211,8 @@ class MonteCarloPlan(ChunkedPlan):
         row |= facts_of(properties)
         row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
         bench = self.bench.with_structure(properties, ground)
-        for run in self._runs(unit):
-            yield bench.run(*run) | row
+        for found in bench.run_all([*self._runs(unit)]):
+            yield found | row
 
     def _runs(self, number: int) -> Iterator[tuple[int, int, int, float]]:
         models = range(len(self.bench.labels))

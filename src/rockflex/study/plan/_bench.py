@@ -23,12 +23,15 @@ from rockflex.study._arguments import (
     work_limit_of,
 )
 from rockflex.study._case import MANY, Case
+from rockflex.study._peaks import peaks_of
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study._yielding import hysteresis_of
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
+
+Run = tuple[int, int, int, float]  # the places of a structure, a record and a model, and a scale
 
 
 @dataclass(frozen=True)
@@ -113,18 +116,34 @@ class Bench:
 
     def run(self, structure: int, record: int, model: int, scale: float) -> Row:
         """Simulate one run and return its row; if it cannot be solved, the row has a message and no results."""
-        row = self.head(structure, record, model, scale)
-        row |= scaled_measures(self.measures(structure, record), scale)
+        return self.run_all([(structure, record, model, scale)])[0]
+
+    def run_all(self, runs: Sequence[Run]) -> list[Row]:
+        """Simulate runs and return their rows, as `run` does; those of a structure with a model together."""
+        alike = dict[tuple[int, int], list[int]]()
+        for place, (structure, _, model, _) in enumerate(runs):
+            alike.setdefault((structure, model), []).append(place)
+        rows: list[Row] = [self.head(*run) for run in runs]
+        for (structure, model), places in alike.items():
+            some = [(runs[place][1], runs[place][3]) for place in places]
+            for place, (record, scale), found in zip(places, some, self._results(structure, model, some), strict=True):
+                rows[place] |= scaled_measures(self.measures(structure, record), scale) | found
+        return rows
+
+    def _results(self, structure: int, model: int, runs: Sequence[tuple[int, float]]) -> list[Row]:
+        """Return the results of a structure with a model under records, each at a scale."""
         case = self._case(structure, model)
         if isinstance(case, str):
-            return row | {"error": case}
-        try:
-            response = case.run(self.motions[record], scale)
-        except (SolverError, InputError) as error:
-            return row | {"error": str(error)}
-        row |= results_of(response)
-        row["nominal_limit"] = case.model.properties.nominal_overturning_rotation
-        return row | _friction(response) if self.assumptions.friction else row
+            return [{"error": case} for _ in runs]
+        scaled = [(self.motions[record], scale) for record, scale in runs]
+        limit = {"nominal_limit": case.model.properties.nominal_overturning_rotation}
+        if not self.assumptions.friction:
+            return [row if "error" in row else row | limit for row in peaks_of(case, scaled).rows()]
+        found = [case.attempt(*each) for each in scaled]
+        return [
+            results_of(each) | limit | _friction(each) if isinstance(each, Response) else {"error": str(each)}
+            for each in found
+        ]
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""

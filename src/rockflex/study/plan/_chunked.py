@@ -1,7 +1,7 @@
 """A study divided into chunks that can be computed anywhere."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar, SupportsIndex
 
 from rockflex._checks import whole_number
@@ -40,8 +40,8 @@ class ChunkedPlan(ABC):
         """Columns of every chunk's table."""
 
     @abstractmethod
-    def rows(self, unit: int) -> Iterable[Row]:
-        """Compute the rows of one unit."""
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Compute the rows of some units, in their order."""
 
     def check_work(self) -> None:
         """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none.
@@ -91,7 +91,7 @@ class ChunkedPlan(ABC):
             If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
         """
         units = self.units_of(whole_number("number", number, 0, self.n_chunks - 1))
-        return tabulate([row for unit in units for row in self.rows(unit)], self.columns)
+        return tabulate(self.rows(units), self.columns)
 
 
 def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.DataFrame":

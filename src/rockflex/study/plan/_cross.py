@@ -1,7 +1,7 @@
 """Plans of every structure under every record with every model, at a few levels of shaking."""
 
 from abc import abstractmethod
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 from rockflex.study._tables import Columns, Row
 from rockflex.study.plan._bench import Bench
@@ -30,9 +30,9 @@ class CrossPlan(ChunkedPlan):
         """Columns of every chunk's table."""
         return self.bench.columns
 
-    def rows(self, unit: int) -> Iterable[Row]:
-        """Simulate one run."""
-        yield self.bench.run(*self.run_of(unit))
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Simulate one run a unit."""
+        return self.bench.run_all([self.run_of(unit) for unit in units])
 
     def check_work(self) -> None:
         """Refuse a study if every run exceeds its work limit.

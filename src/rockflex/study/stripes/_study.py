@@ -1,7 +1,7 @@
 """Multiple stripes: every record scaled to each of a few intensities."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import Field
@@ -85,10 +85,10 @@ class StripePlan(CrossPlan):
         """Columns of every chunk's table."""
         return {"level": float, **super().columns}
 
-    def rows(self, unit: int) -> Iterator[Row]:
-        """Simulate one run."""
-        for row in super().rows(unit):
-            yield row | {"level": self.levels[unit % len(self.levels)]}
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Simulate one run a unit."""
+        levels = [self.levels[unit % len(self.levels)] for unit in units]
+        return [row | {"level": level} for row, level in zip(super().rows(units), levels, strict=True)]
 
 
 def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "pd.DataFrame":

@@ -10,7 +10,7 @@ from rockflex._checks import in_range, whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.study._results import STATUSES
+from rockflex.response import STATUSES
 
 if TYPE_CHECKING:
     import pandas as pd

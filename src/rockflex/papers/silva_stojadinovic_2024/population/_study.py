@@ -1,6 +1,7 @@
 """Random structures under random records, with one mode and with all modes (Sections 3.3 and 3.4)."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 from pydantic import Field
@@ -107,8 +108,11 @@ class PopulationPlan(ChunkedPlan):
         found |= result_columns(suffix="_mdof") | result_columns(suffix="_2dof")
         return found | kinds_of(COMBINED, float) | {"error": str}
 
-    def rows(self, unit: int) -> list[Row]:
-        """Draw one structure and simulate it with both models."""
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Draw a structure a unit, and simulate it with both models."""
+        return [self._row(unit) for unit in units]
+
+    def _row(self, unit: int) -> Row:
         drawn = draw_prototype(self.seed, unit, len(self.motions))
         motion = self.motions[drawn.record]
         properties = drawn.frame().rocking()
@@ -119,11 +123,11 @@ class PopulationPlan(ChunkedPlan):
             all_modes, second_peak = self._run(LinearModel("MDOF-S", properties), motion)
             one_mode, _ = self._run(LinearModel("2DOF-S", properties.truncated(1)), motion)
         except (SolverError, InputError) as error:
-            return [row | {"error": str(error)}]
+            return row | {"error": str(error)}
         row |= results_of(all_modes, "_mdof")
         row["max_second_displacement_mdof"] = second_peak
         row |= results_of(one_mode, "_2dof")
-        return [row | _combined(one_mode, second)]
+        return row | _combined(one_mode, second)
 
     def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
         """Return the response, and the peak of the second mode (of the first, if there is only one)."""

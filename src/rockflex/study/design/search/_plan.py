@@ -121,14 +121,18 @@ class SearchPlan(ChunkedPlan):
         found = dict(self._empty.columns) | {"structure": names}
         return {"structure": found.pop("structure"), "round": int, **dict.fromkeys(FACTS, float), **found}
 
-    def rows(self, unit: int) -> Iterator[Row]:
-        """Simulate all runs of a design; none if the round has no such design."""
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Simulate all runs of a design a unit; none if the round has no such design."""
+        return [row for unit in units for row in self._runs_of(unit)]
+
+    def _runs_of(self, unit: int) -> Iterator[Row]:
         place = unit - self._first_unit(self.round)
         if not 0 <= place < len(self.points):
             return
-        facts = self._facts_of(place)
-        for record, scale in product(range(len(self.motions)), self.scales):
-            yield self._bench.run(place, record, 0, scale) | {"structure": unit, "round": self.round} | facts
+        facts = {"structure": unit, "round": self.round} | self._facts_of(place)
+        runs = [(place, record, 0, scale) for record, scale in product(range(len(self.motions)), self.scales)]
+        for row in self._bench.run_all(runs):
+            yield row | facts
 
     def _facts_of(self, place: int) -> dict[str, Any]:
         p = self._bench.structures[place]
