@@ -29,9 +29,9 @@ def test_a_history_finds_room_for_all_its_events(monkeypatch):
     monkeypatch.setattr(module, "EVENTS", 16)
     rooms, carry = [], Engine._carry
 
-    def carried(self, system, steps, course, at, log, motion):
+    def carried(self, system, steps, course, at, log, *others):
         rooms.append(log.history.shape[0])
-        return carry(self, system, steps, course, at, log, motion)
+        return carry(self, system, steps, course, at, log, *others)
 
     monkeypatch.setattr(Engine, "_carry", carried)
     run = simulate(FRAME, quiet_motion(2.0, dt=0.1), "rigid-C", **options)

@@ -43,7 +43,7 @@ def over(step, begun=0.0):
 
 def room_of(motion, rows=1):
     """Room for steps from a motion, of which the last three entries count energies."""
-    return stages_of(motion, motion.size - EXTRA + 1, rows, ENDLESS, progress_at_start(0, stated=True))
+    return stages_of(motion, motion.size - EXTRA + 1, rows, ENDLESS, progress_at_start(0)[0])
 
 
 def started():

@@ -7,7 +7,7 @@ import pytest
 from rockflex import _numba
 from rockflex._kernel import Callback, Entry, sources_digest
 from rockflex.motion._spectrum_kernel import oscillator_peaks, unit_responses
-from rockflex.solve.run import run
+from rockflex.solve.batch import run_all
 
 TRIED = ("0.60", "0.61", "0.63", "0.68")
 VERSION = ".".join(numba.__version__.split(".")[:2])
@@ -22,10 +22,10 @@ def missing():
     """Private parts that the installed version lacks, or has elsewhere."""
     parts = {
         "an option _nrt, without which kernels count references and run slower": hasattr(
-            getattr(getattr(run, "targetdescr", None), "options", None), "_nrt"
+            getattr(getattr(run_all, "targetdescr", None), "options", None), "_nrt"
         ),
         "a source stamp, without which kernels compile anew in every process": hasattr(
-            getattr(getattr(run, "_cache", None), "_cache_file", None), "_source_stamp"
+            getattr(getattr(run_all, "_cache", None), "_cache_file", None), "_source_stamp"
         ),
         "a pipeline to change, without which kernels compile for four times as long and run slower": bool(
             _numba.PIPELINE and _numba.ENTRY
@@ -53,7 +53,7 @@ def test_versions_that_were_tried_have_every_part():
     assert missing() == []
 
 
-@pytest.mark.parametrize("kernel", [run, oscillator_peaks])
+@pytest.mark.parametrize("kernel", [run_all, oscillator_peaks])
 def test_the_cache_is_stamped_with_every_kernel_source(kernel):
     file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
     if not hasattr(file, "_source_stamp"):
@@ -81,7 +81,7 @@ def says_the_same(kernel):
 
 
 def options_of_numba():
-    return [each for each in type(run).targetdescr.options.__mro__ if "_nrt" in vars(each)]
+    return [each for each in type(run_all).targetdescr.options.__mro__ if "_nrt" in vars(each)]
 
 
 @FOR_ALL

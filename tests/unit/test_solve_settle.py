@@ -17,6 +17,7 @@ from rockflex import (
     simulate,
 )
 from rockflex.solve import Engine
+from rockflex.solve.batch import ENDED
 from rockflex.solve.status import Status
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
@@ -134,8 +135,8 @@ def test_undamped_modes_may_add_up_for_ever():
             0.5,
             ("The impacts of 2DOF-S accumulate without end in the sample before 0.14 s. ", "refine the record."),
         ),
-        (Status.ENDED, np.nan, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
-        (Status.OVERTURNED, np.inf, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
+        (Status.INFINITE, np.nan, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
+        (Status.INFINITE, np.inf, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
         (
             Status.STALLED,
             0.25,
@@ -155,11 +156,12 @@ def test_undamped_modes_may_add_up_for_ever():
     ],
 )
 def test_a_run_that_cannot_be_solved_says_where(monkeypatch, status, value, texts):
-    def carry(self, system, steps, course, at, log, motion):
-        motion.state[:] = value
+    def carry(self, system, steps, course, at, log, motion, batch):
+        batch.states[0] = value
         # Failures are told with the end of the sample in which they came.
-        at.offset, at.index = 4, 3 if status >= 0 else 2
-        return int(status)
+        batch.ends[0].samples, batch.ends[0].status = 7 if status == Status.INFINITE else 6, status
+        batch.place[:] = 1, 0
+        return ENDED
 
     monkeypatch.setattr(Engine, "_carry", carry)
     with pytest.raises(SolverError) as caught:

@@ -102,11 +102,11 @@ def test_runs_on_one_engine_do_not_meddle_with_each_other(case, monkeypatch):
     shared, rounds, needed = engine(label, options), count(), []
     carry = Engine._carry
 
-    def watched(self, system, steps, course, at, log, motion):
+    def watched(self, system, steps, course, at, log, motion, batch):
         # The phases that this run can come to, as far as its tables know, fit the room that it has.
         reached = {int(p) for p in np.unique(system.links[:, FOLLOWS:]) if p >= 0} or {0}
         needed.append(max(int(system.phases["terms"][p]) for p in reached) <= motion.series.shape[1])
-        return carry(self, system, steps, course, at, log, motion)
+        return carry(self, system, steps, course, at, log, motion, batch)
 
     monkeypatch.setattr(Engine, "_carry", watched)
 

@@ -197,7 +197,7 @@ def test_what_contact_can_still_bring_is_bounded(name):
             recollect(system, CONTACT, motion)
             peaks, tally = most * size * wide, np.zeros(4, np.int64)
             log = Log(peaks, np.zeros(wide.size), tally, np.zeros(5), np.zeros((0, 0)), wide.size - 1)
-            assert settled(system, progress_at_start(CONTACT, stated=True), log, motion) == expected
+            assert settled(system, progress_at_start(CONTACT)[0], log, motion) == expected
 
 
 @pytest.mark.parametrize("dense", [False, True])

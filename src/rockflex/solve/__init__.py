@@ -5,6 +5,7 @@ from rockflex.solve._preparing import preparing
 from rockflex.solve._solution import Solution
 from rockflex.solve._solutions import Solutions
 from rockflex.solve._task import Task, WorkLimitError
+from rockflex.solve.batch import Shaking
 from rockflex.solve.engine import Engine
 from rockflex.solve.exact.closed_form import ClosedForm
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, stopping_when
@@ -14,6 +15,7 @@ __all__ = [
     "Engine",
     "Pace",
     "RunStoppedError",
+    "Shaking",
     "Solution",
     "Solutions",
     "Task",

@@ -38,6 +38,8 @@ class Task:
         Seconds after the record; None until settled.
     history
         Whether every state is stored.
+    scale
+        Factor on the samples.
     """
 
     model: RockingModel
@@ -46,6 +48,7 @@ class Task:
     dt: float
     free_vibration: float | None = 0.0
     history: bool = False
+    scale: float = 1.0
 
     @property
     def size(self) -> tuple[float | None, ...] | None:
@@ -54,7 +57,7 @@ class Task:
 
     def work(self) -> Work:
         """Estimate the work of the run; the time to settle is taken as the longest period."""
-        speed = float(np.abs(np.cumsum(self.record)).mean()) * self.dt if self.pace.flow else 0.0
+        speed = float(np.abs(np.cumsum(self.record)).mean()) * abs(self.scale) * self.dt if self.pace.flow else 0.0
         samples = self.record.size + self._free / self.dt
         return self.pace.work(samples, self.dt, speed, history=self.history, fastest=self.fastest)
 

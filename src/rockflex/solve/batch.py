@@ -3,7 +3,9 @@
 What a call costs in Python is then shared by all of them. A single run is a batch of one.
 """
 
+import itertools
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,15 +41,26 @@ SLICE, EACH = 0, 1
 PRESENT, AT_START = 0, 1
 
 
-LEVEL = np.zeros(0)  # no vertical acceleration
+LEVEL = np.zeros(0)  # no acceleration
+
+
+class Shaking(NamedTuple):
+    """What shakes the ground in a run."""
+
+    acceleration: Array  # (n,): horizontal, m/s²
+    vertical: Array | None = None  # (n,): vertical, m/s²
+    scale: float = 1.0  # factor on both
 
 
 class Batch(NamedTuple):
     """R runs and their results; rows and state as in `rockflex.solve.layout`."""
 
-    samples: Array  # (n,): horizontal accelerations of the ground, one record after another
-    vertical: Array  # (n,): vertical accelerations; (0,) if there are none
-    firsts: NDArray[np.int64]  # (R + 1,): where each record begins; one without samples is left out
+    samples: Array  # horizontal accelerations of all records, one record after another
+    rises: Array  # vertical accelerations; (0,) if there are none
+    firsts: NDArray[np.int64]  # (R, 2): where the record of each run begins and ends in them; the same for none
+    scales: Array  # (R,)
+    record: Array  # (n,): room for the longest record, scaled
+    vertical: Array  # (n,); (0,) if there are none
     start: Array  # (S',): the state in which each run begins
     lowest: Array  # (F,): the peaks with which it begins
     progress: Any  # (2,): records of `rockflex.solve.progress`, of the present run and of one that begins
@@ -60,26 +73,44 @@ class Batch(NamedTuple):
 
 
 def batch_of(
-    records: list[Array], verticals: list[Array], progress: Any, start: Array, log: Log, limit: float = math.inf
+    runs: Sequence[Shaking | None], progress: Any, start: Array, log: Log, limit: float | None = None
 ) -> Batch:
-    """Return a batch that has not begun, with the log of its first run; `limit` is that of the work of a run in s."""
-    runs, rows = len(records), log.peaks.size
-    firsts = np.zeros(runs + 1, dtype=np.int64)
-    np.cumsum([record.size for record in records], out=firsts[1:])
+    """Return a batch that has not begun, with the log of its first run; no run is done where there is none.
+
+    `limit` is that of the work of a run in s. A record of several runs is kept once.
+    """
+    count, rows = len(runs), log.peaks.size
+    records = {_identity(each): each for each in runs if each is not None}
+    sizes = [each.acceleration.size for each in records.values()]
+    ends = dict(zip(records, itertools.accumulate(sizes), strict=True))
+    firsts = np.zeros((count, 2), dtype=np.int64)
+    for place, each in enumerate(runs):
+        if each is not None:
+            end = ends[_identity(each)]
+            firsts[place] = end - each.acceleration.size, end
+    rises = [each.vertical for each in records.values() if each.vertical is not None]
+    longest = max(sizes, default=0)
     return Batch(
-        samples=_joined(records),
-        vertical=_joined(verticals),
+        samples=_joined([each.acceleration for each in records.values()]),
+        rises=_joined(rises),
         firsts=firsts,
+        scales=np.array([0.0 if each is None else each.scale for each in runs]),
+        record=np.empty(longest),
+        vertical=np.empty(longest if rises else 0),
         start=start,
         lowest=log.peaks.copy(),
         progress=progress,
         place=np.zeros(2, dtype=np.int64),
-        work=np.array((0.0, limit)),
-        ends=np.zeros(runs, dtype=END),
-        peaks=np.zeros((runs, rows)),
-        times=np.zeros((runs, rows)),
-        states=np.zeros((runs, start.size)),
+        work=np.array((0.0, math.inf if limit is None else limit)),
+        ends=np.zeros(count, dtype=END),
+        peaks=np.zeros((count, rows)),
+        times=np.zeros((count, rows)),
+        states=np.zeros((count, start.size)),
     )
+
+
+def _identity(shaking: Shaking) -> tuple[int, int]:
+    return id(shaking.acceleration), id(shaking.vertical)
 
 
 def _joined(parts: list[Array]) -> Array:
@@ -104,8 +135,8 @@ def run_all(
     """
     while batch.place[RUN] < batch.ends.size:
         r = batch.place[RUN]
-        end, first, last = batch.ends[r], batch.firsts[r], batch.firsts[r + 1]
-        if first == last:
+        end, samples = batch.ends[r], batch.firsts[r, 1] - batch.firsts[r, 0]
+        if samples == 0:
             batch.place[RUN] += 1
             continue
         if batch.place[BEGUN] == 0:
@@ -114,8 +145,7 @@ def run_all(
             batch.place[BEGUN] = 1
         given = min(batch.work[SLICE], end.left)
         log.work[LEFT] = given
-        vertical = batch.vertical[first : last if batch.vertical.size > 0 else first]
-        record = batch.samples[first:last]
+        record, vertical = batch.record[:samples], batch.vertical[:samples]
         whole = Course(record, vertical, course.quiet, course.dt, course.free, course.settle)
         status = run(system, steps, impact, whole, at, log, motion)
         used = given - log.work[LEFT]
@@ -145,6 +175,16 @@ def run_all(
 def begin(steps: Integrator | None, log: Log, motion: Motion, batch: Batch) -> None:
     """Clear what a run may read before it has written it."""
     batch.progress[PRESENT] = batch.progress[AT_START]
+    first, last, scale = (
+        batch.firsts[batch.place[RUN], 0],
+        batch.firsts[batch.place[RUN], 1],
+        batch.scales[batch.place[RUN]],
+    )
+    for i in range(first, last):
+        batch.record[i - first] = batch.samples[i] * scale
+    if batch.vertical.size > 0:
+        for i in range(first, last):
+            batch.vertical[i - first] = batch.rises[i] * scale
     for f in range(log.peaks.size):
         log.peaks[f], log.times[f] = batch.lowest[f], 0.0
     for i in range(log.tally.size):

@@ -22,7 +22,7 @@ from rockflex.solve._solutions import Solutions, solutions_of
 from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.adaptive.layout import Integrator, stages_of
 from rockflex.solve.bare import BarePhases
-from rockflex.solve.batch import BEGUN, BROKEN, ENDED, LEVEL, PRESENT, RUN, SLICE, Batch, batch_of, run_all
+from rockflex.solve.batch import BEGUN, BROKEN, ENDED, LEVEL, PRESENT, RUN, SLICE, Batch, Shaking, batch_of, run_all
 from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import KEPT, Course, Log, Motion, Progress, System
@@ -99,11 +99,9 @@ class Engine:
         """The properties that determine the work of runs."""
         return pace_of(self.model, self._n_rows)
 
-    def task(
-        self, acceleration: Array, dt: float, free_vibration: float | None = 0.0, *, history: bool = False
-    ) -> Task:
-        """Return the task of a run with these arguments, which estimates its work."""
-        return Task(self.model, self.pace, acceleration, dt, free_vibration, history)
+    def task(self, run: Shaking, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
+        """Return the task of a run, which estimates its work."""
+        return Task(self.model, self.pace, run.acceleration, dt, free_vibration, history, run.scale)
 
     def run(
         self,
@@ -119,20 +117,19 @@ class Engine:
     ) -> Solution:
         """Run one record as `run_all` does, and return its solution or raise its error."""
         found = self.run_all(
-            [acceleration],
+            [Shaking(acceleration, vertical)],
             dt,
             free_vibration=free_vibration,
             state=state,
             history=history,
             work_limit=work_limit,
             slice_of_work=slice_of_work,
-            verticals=None if vertical is None else [vertical],
         )
         return found.one(0)
 
     def run_all(
         self,
-        accelerations: Sequence[Array],
+        runs: Sequence[Shaking],
         dt: float,
         *,
         free_vibration: float | None = 0.0,
@@ -140,14 +137,12 @@ class Engine:
         history: bool = False,
         work_limit: float | None = None,
         slice_of_work: float = SLICE_OF_WORK,
-        verticals: Sequence[Array] | None = None,
     ) -> Solutions:
         """Run records, each followed by `free_vibration` s (None: until settled), from a state [D.., D'.., θ, θ'].
 
-        `verticals` are the vertical accelerations of the ground, each as long as its record; None if there are none.
-        `work_limit` is the limit of the estimated and of the actual work of each run in s, see `Pace`; None means no
-        limit. After every `slice_of_work`, in s, the runs can be interrupted by Ctrl-C or `stopping_when`. Only a
-        single record can have a `history`, which keeps every state.
+        The ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the
+        actual work of each run in s, see `Pace`; None means no limit. After every `slice_of_work`, in s, the runs can
+        be interrupted by Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
 
         The failures of the result are the errors of single runs: a run that exceeds its work limit (`WorkLimitError`
         before it begins), a user-defined impact law that fails or a time step that is too long (`InputError`), impacts
@@ -160,19 +155,18 @@ class Engine:
         RunStoppedError
             If the runs were stopped from outside.
         """
-        tasks = [self.task(each, dt, free_vibration, history=history) for each in accelerations]
+        tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
         failures = self._refused(tasks, work_limit)
         log = self._log(tasks[0], history=history)
         if len(failures) == len(tasks):
-            nothing = batch_of([LEVEL] * len(tasks), [], progress_at_start(0), np.zeros(self.model.layout.size), log)
+            nothing = batch_of([None] * len(tasks), progress_at_start(0), np.zeros(self.model.layout.size), log)
             return self._solutions(nothing, dt, failures)
         key, start = self._at_rest if state is None else self.model.initial(state)
-        shaken = verticals is not None
+        shaken = runs[0].vertical is not None
         phases = self._phases.at(dt, self.pace.fastest, shaken=shaken)
         progress = progress_at_start(self._place(phases, key))
-        records = [LEVEL if place in failures else task.record for place, task in enumerate(tasks)]
-        rises = [LEVEL if place in failures else rise for place, rise in enumerate(verticals or ())]
-        batch = batch_of(records, rises, progress, start, log, math.inf if work_limit is None else work_limit)
+        accepted = [None if place in failures else run for place, run in enumerate(runs)]
+        batch = batch_of(accepted, progress, start, log, work_limit)
         course = self._course(dt, free_vibration)
         steps, desk = None, self._desks.taken()
         while batch.place[RUN] < len(tasks):
