@@ -1,7 +1,7 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
 from rockflex.response._base_path import base_path
-from rockflex.response._columns import STATUSES, columns_among, columns_of
+from rockflex.response._columns import NAMES, STATUSES, columns_among, columns_of
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
@@ -20,6 +20,7 @@ from rockflex.response._warnings import warnings_of
 __all__ = [
     "GLOBAL",
     "IMPACT_WINDOW",
+    "NAMES",
     "PEAKS",
     "STATUSES",
     "UNITS_OF_GROUND",
