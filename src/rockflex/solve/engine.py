@@ -157,15 +157,15 @@ class Engine:
         """
         tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
         failures = self._refused(tasks, work_limit)
-        log = self._log(tasks[0], history=history)
         if len(failures) == len(tasks):
-            nothing = batch_of([None] * len(tasks), progress_at_start(0), np.zeros(self.model.layout.size), log)
-            return self._solutions(nothing, dt, failures)
+            start, log = np.zeros(self.model.layout.size), self._log(tasks[0], history=False)
+            return self._solutions(batch_of([None] * len(tasks), progress_at_start(0), start, log), dt, failures)
         key, start = self._at_rest if state is None else self.model.initial(state)
         shaken = runs[0].vertical is not None
         phases = self._phases.at(dt, self.pace.fastest, shaken=shaken)
         progress = progress_at_start(self._place(phases, key))
         accepted = [None if place in failures else run for place, run in enumerate(runs)]
+        log = self._log(tasks[0], history=history)
         batch = batch_of(accepted, progress, start, log, work_limit)
         course = self._course(dt, free_vibration)
         steps, desk = None, self._desks.taken()
