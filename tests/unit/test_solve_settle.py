@@ -160,7 +160,7 @@ def test_a_run_that_cannot_be_solved_says_where(monkeypatch, status, value, text
         batch.states[0] = value
         # Failures are told with the end of the sample in which they came.
         batch.ends[0].samples, batch.ends[0].status = 7 if status == Status.INFINITE else 6, status
-        batch.place[:] = 1, 0
+        batch.place[:] = 1, 0, 1
         return ENDED
 
     monkeypatch.setattr(Engine, "_carry", carry)

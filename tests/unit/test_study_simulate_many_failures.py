@@ -9,6 +9,7 @@ import pytest
 from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, InputError, load_suite, simulate, simulate_many
 from rockflex.response import PEAKS
+from rockflex.solve.batch import FAILED
 from rockflex.solve.engine import Engine
 from rockflex.solve.status import Status
 
@@ -39,6 +40,7 @@ def test_runs_that_fail_become_rows(monkeypatch, workers, output):
         if course.dt == 0.01:  # of the second motion
             ends = others[-1].ends
             ends["status"], ends["samples"] = Status.CHATTER, 0
+            others[-1].place[FAILED] = len(ends)
         return status
 
     monkeypatch.setattr(Engine, "_carry", carry)

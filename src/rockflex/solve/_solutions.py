@@ -11,6 +11,8 @@ from rockflex.solve._solution import Solution
 from rockflex.solve.batch import Batch
 from rockflex.solve.status import Status
 
+OVERTURNED, SETTLED = int(Status.OVERTURNED), int(Status.SETTLED)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solutions:
@@ -18,92 +20,99 @@ class Solutions:
 
     Parameters
     ----------
-    overturned, settled, end_time, n_uplifts, n_impacts, lost_support, time_of_lost_support
-        Shape (R,).
-    peaks, peak_times
-        Shape (R, F).
-    extremes, extreme_times
-        Shape (R, E).
-    final_state
-        Shape (R, S').
-    states
-        Of a single run with a history.
+    batch
+        The runs, which have ended.
+    dt
+        Time step, s.
+    n_peaks
+        Number of rows whose peaks were asked for, the first ones.
+    signed
+        Of the rows from this one on only the largest value matters; the last one is the loss of support.
     failures
         Errors of the runs that could not be solved, by their index; their other results mean nothing.
+    states
+        Of a single run with a history.
     """
 
-    overturned: Bools
-    settled: Bools
-    end_time: Array
-    peaks: Array
-    peak_times: Array
-    extremes: Array
-    extreme_times: Array
-    lost_support: Array
-    time_of_lost_support: Array
-    n_uplifts: Integers
-    n_impacts: Integers
-    final_state: Array
-    states: Array | None
+    batch: Batch
+    dt: float
+    n_peaks: int
+    signed: int
     failures: Mapping[int, InputError | SolverError]
+    states: Array | None
 
     def __len__(self) -> int:
-        return len(self.end_time)
+        return len(self.batch.ends)
 
     @property
-    def solved(self) -> list[int]:
-        """Indices of the runs that did not fail."""
-        return [place for place in range(len(self)) if place not in self.failures]
+    def overturned(self) -> Bools:
+        """Whether each run ended at a rotation of π/2, shape (R,)."""
+        return np.asarray(self.batch.ends["status"] == OVERTURNED)
+
+    @property
+    def settled(self) -> Bools:
+        """Whether each run ended at rest, shape (R,)."""
+        return np.asarray(self.batch.ends["status"] == SETTLED)
+
+    @property
+    def end_time(self) -> Array:
+        """Time of the last state in s, shape (R,)."""
+        return np.where(self.overturned, self.batch.times[:, 0], self.batch.ends["samples"] * self.dt)
+
+    @property
+    def peaks(self) -> Array:
+        """Largest magnitude of each row, shape (R, F)."""
+        return self.batch.peaks[:, : self.n_peaks]
+
+    @property
+    def peak_times(self) -> Array:
+        """Its time in s, shape (R, F)."""
+        return self.batch.times[:, : self.n_peaks]
+
+    @property
+    def lost_support(self) -> Array:
+        """Largest decrease of the vertical reaction below its value at rest in N, shape (R,)."""
+        return self.batch.peaks[:, -1]
+
+    @property
+    def time_of_lost_support(self) -> Array:
+        """Its time in s, shape (R,)."""
+        return self.batch.times[:, -1]
+
+    @property
+    def n_uplifts(self) -> Integers:
+        """Number of uplifts, shape (R,)."""
+        return np.asarray(self.batch.ends["uplifts"])
+
+    @property
+    def n_impacts(self) -> Integers:
+        """Number of impacts, shape (R,)."""
+        return np.asarray(self.batch.ends["impacts"])
+
+    @property
+    def final_state(self) -> Array:
+        """The last states, shape (R, S')."""
+        return self.batch.states
 
     def one(self, index: int) -> Solution:
         """Return the result of one run; raises its error if it could not be solved."""
         if index in self.failures:
             raise self.failures[index]
+        status, samples, _, uplifts, impacts = self.batch.ends[index].tolist()
+        peaks, times = self.batch.peaks[index], self.batch.times[index]
+        overturned = status == OVERTURNED
         return Solution(
-            overturned=bool(self.overturned[index]),
-            settled=bool(self.settled[index]),
-            end_time=float(self.end_time[index]),
-            peaks=self.peaks[index],
-            peak_times=self.peak_times[index],
-            extremes=self.extremes[index],
-            extreme_times=self.extreme_times[index],
-            lost_support=float(self.lost_support[index]),
-            time_of_lost_support=float(self.time_of_lost_support[index]),
-            n_uplifts=int(self.n_uplifts[index]),
-            n_impacts=int(self.n_impacts[index]),
-            final_state=self.final_state[index],
+            overturned=overturned,
+            settled=status == SETTLED,
+            end_time=float(times[0]) if overturned else samples * self.dt,
+            peaks=peaks[: self.n_peaks],
+            peak_times=times[: self.n_peaks],
+            extremes=peaks[self.signed : -1],
+            extreme_times=times[self.signed : -1],
+            lost_support=float(peaks[-1]),
+            time_of_lost_support=float(times[-1]),
+            n_uplifts=uplifts,
+            n_impacts=impacts,
+            final_state=self.batch.states[index],
             states=self.states,
         )
-
-
-def solutions_of(
-    batch: Batch,
-    dt: float,
-    n_peaks: int,
-    failures: Mapping[int, InputError | SolverError],
-    states: Array | None,
-    signed: int,
-) -> Solutions:
-    """Return the results of a batch that has ended.
-
-    The first `n_peaks` rows are those whose peaks were asked for; of those from `signed` on only the largest value
-    matters, and the last one is the loss of support.
-    """
-    ends, peaks, times = batch.ends, batch.peaks, batch.times
-    overturned = ends["status"] == Status.OVERTURNED
-    return Solutions(
-        overturned=overturned,
-        settled=ends["status"] == Status.SETTLED,
-        end_time=np.where(overturned, times[:, 0], ends["samples"] * dt),
-        peaks=peaks[:, :n_peaks],
-        peak_times=times[:, :n_peaks],
-        extremes=peaks[:, signed:-1],
-        extreme_times=times[:, signed:-1],
-        lost_support=peaks[:, -1],
-        time_of_lost_support=times[:, -1],
-        n_uplifts=ends["uplifts"],
-        n_impacts=ends["impacts"],
-        final_state=batch.states,
-        states=states,
-        failures=failures,
-    )

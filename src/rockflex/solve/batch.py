@@ -3,7 +3,6 @@
 What a call costs in Python is then shared by all of them. A single run is a batch of one.
 """
 
-import itertools
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -36,7 +35,7 @@ from rockflex.solve.status import Status
 ENDED, INFINITE, BROKEN = int(Status.ENDED), int(Status.INFINITE), int(Status.BROKEN)
 
 # Indices in `Batch.place`, `Batch.work` and `Batch.progress`
-RUN, BEGUN = 0, 1
+RUN, BEGUN, FAILED = 0, 1, 2
 SLICE, EACH = 0, 1
 PRESENT, AT_START = 0, 1
 
@@ -64,7 +63,7 @@ class Batch(NamedTuple):
     start: Array  # (S',): the state in which each run begins
     lowest: Array  # (F,): the peaks with which it begins
     progress: Any  # (2,): records of `rockflex.solve.progress`, of the present run and of one that begins
-    place: NDArray[np.int64]  # (2,): the present run, and whether it has begun
+    place: NDArray[np.int64]  # (3,): the present run, whether it has begun, and how many could not be solved
     work: Array  # (2,): left in this slice of work, and the limit of each run
     ends: Any  # (R,): records of `END`
     peaks: Array  # (R, F)
@@ -80,37 +79,38 @@ def batch_of(
     `limit` is that of the work of a run in s. A record of several runs is kept once.
     """
     count, rows = len(runs), log.peaks.size
-    records = {_identity(each): each for each in runs if each is not None}
-    sizes = [each.acceleration.size for each in records.values()]
-    ends = dict(zip(records, itertools.accumulate(sizes), strict=True))
-    firsts = np.zeros((count, 2), dtype=np.int64)
+    records = dict[tuple[int, int], Shaking]()
+    ends = dict[tuple[int, int], int]()
+    firsts, scales = np.zeros((count, 2), dtype=np.int64), np.zeros(count)
+    total = longest = 0
     for place, each in enumerate(runs):
-        if each is not None:
-            end = ends[_identity(each)]
-            firsts[place] = end - each.acceleration.size, end
+        if each is None:
+            continue
+        size, identity = each.acceleration.size, (id(each.acceleration), id(each.vertical))
+        if identity not in records:
+            total += size
+            longest = max(longest, size)
+            records[identity], ends[identity] = each, total
+        firsts[place] = ends[identity] - size, ends[identity]
+        scales[place] = each.scale
     rises = [each.vertical for each in records.values() if each.vertical is not None]
-    longest = max(sizes, default=0)
     return Batch(
         samples=_joined([each.acceleration for each in records.values()]),
         rises=_joined(rises),
         firsts=firsts,
-        scales=np.array([0.0 if each is None else each.scale for each in runs]),
+        scales=scales,
         record=np.empty(longest),
         vertical=np.empty(longest if rises else 0),
         start=start,
         lowest=log.peaks.copy(),
         progress=progress,
-        place=np.zeros(2, dtype=np.int64),
+        place=np.zeros(3, dtype=np.int64),
         work=np.array((0.0, math.inf if limit is None else limit)),
         ends=np.zeros(count, dtype=END),
         peaks=np.zeros((count, rows)),
         times=np.zeros((count, rows)),
         states=np.zeros((count, start.size)),
     )
-
-
-def _identity(shaking: Shaking) -> tuple[int, int]:
-    return id(shaking.acceleration), id(shaking.vertical)
 
 
 def _joined(parts: list[Array]) -> Array:
@@ -156,6 +156,8 @@ def run_all(
         for i in range(motion.w.shape[1]):
             if status >= 0 and not math.isfinite(motion.state[i]):
                 status = INFINITE
+        if status < 0:
+            batch.place[FAILED] += 1
         end.status, end.samples = status, at.offset + at.index
         end.uplifts, end.impacts = log.tally[UPLIFTS], log.tally[IMPACTS]
         for f in range(log.peaks.size):

@@ -18,11 +18,24 @@ from rockflex.solve._flow import flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._preparing import phases_of, preparing
 from rockflex.solve._solution import Solution
-from rockflex.solve._solutions import Solutions, solutions_of
+from rockflex.solve._solutions import Solutions
 from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.adaptive.layout import Integrator, stages_of
 from rockflex.solve.bare import BarePhases
-from rockflex.solve.batch import BEGUN, BROKEN, ENDED, LEVEL, PRESENT, RUN, SLICE, Batch, Shaking, batch_of, run_all
+from rockflex.solve.batch import (
+    BEGUN,
+    BROKEN,
+    ENDED,
+    FAILED,
+    LEVEL,
+    PRESENT,
+    RUN,
+    SLICE,
+    Batch,
+    Shaking,
+    batch_of,
+    run_all,
+)
 from rockflex.solve.history import MARGIN
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.layout import KEPT, Course, Log, Motion, Progress, System
@@ -183,7 +196,8 @@ class Engine:
                     log = self._resumed(status, phases, tasks[batch.place[RUN]], work_limit, log, batch, motion)
             except (InputError, SolverError) as error:
                 failures[int(batch.place[RUN])] = error
-                batch.place[:] = batch.place[RUN] + 1, False
+                batch.place[RUN] += 1
+                batch.place[BEGUN] = False
             check_interruption()
         self._desks.returned(desk)
         return self._solutions(batch, dt, failures, log.history[: log.tally[KEPT]] if history else None)
@@ -284,13 +298,12 @@ class Engine:
     def _solutions(
         self, batch: Batch, dt: float, failures: dict[int, InputError | SolverError], states: Array | None = None
     ) -> Solutions:
-        ends = batch.ends
-        for place in np.nonzero(ends["status"] < 0)[0].tolist():
-            if place not in failures:
-                end = ends[place]
-                status, samples = Status(int(end.status)), int(end.samples)
-                failures[place] = failure_of(self.model, status, samples, dt, batch.states[place])
-        return solutions_of(batch, dt, self._n_peaks, failures, states, self._signed)
+        if batch.place[FAILED]:
+            for place, end in enumerate(batch.ends):
+                if end.status < 0 and place not in failures:
+                    status, samples = Status(int(end.status)), int(end.samples)
+                    failures[place] = failure_of(self.model, status, samples, dt, batch.states[place])
+        return Solutions(batch, dt, self._n_peaks, self._signed, failures, states)
 
 
 def _samples(time: float, dt: float) -> int:
