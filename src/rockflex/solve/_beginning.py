@@ -9,6 +9,11 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models import RockingModel
 from rockflex.solve._pace import Pace
+from rockflex.solve.layout import Course
+
+LEVEL = np.zeros(0)  # no acceleration
+QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
+MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
 
 
 @lru_cache(maxsize=64)
@@ -26,7 +31,18 @@ def prices_of(modes: int, rows: int, history: bool) -> Array:
     return np.array((0.0, *Pace(modes, rows, 0.0).prices(history=history)))
 
 
-def patience_with(model: RockingModel) -> float:
+def course_of(model: RockingModel, dt: float, free_vibration: float | None) -> Course:
+    """Return the course of runs, without their records."""
+    after = _patience(model) if free_vibration is None else free_vibration
+    return Course(LEVEL, LEVEL, QUIET, dt, samples_in(after, dt), free_vibration is None)
+
+
+def samples_in(time: float, dt: float) -> int:
+    """Return the number of samples in some seconds of free vibration."""
+    return math.ceil(min(time / dt, MOST_SAMPLES) - 1e-9)
+
+
+def _patience(model: RockingModel) -> float:
     """Return the longest free vibration until settled, s."""
     p = model.properties
     slowest = float(p.omega.min(initial=math.inf))

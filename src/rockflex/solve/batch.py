@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, python_kernel
 from rockflex.models import Impact
-from rockflex.solve._beginning import writable
+from rockflex.solve._beginning import LEVEL, writable
 from rockflex.solve.adaptive.layout import Integrator
 from rockflex.solve.events import LACKS_PHASE, PAUSED
 from rockflex.solve.layout import (
@@ -38,9 +38,6 @@ ENDED, INFINITE, BROKEN = int(Status.ENDED), int(Status.INFINITE), int(Status.BR
 RUN, BEGUN, FAILED = 0, 1, 2
 SLICE, EACH = 0, 1
 PRESENT, AT_START = 0, 1
-
-
-LEVEL = np.zeros(0)  # no acceleration
 
 
 class Shaking(NamedTuple):

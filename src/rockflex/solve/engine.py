@@ -1,6 +1,5 @@
 """A model prepared for runs, and the loop that executes them slice by slice."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -11,7 +10,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex._kernel import Entry
 from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
-from rockflex.solve._beginning import first_peaks, patience_with, prices_of
+from rockflex.solve._beginning import course_of, first_peaks, prices_of, samples_in
 from rockflex.solve._desk import desks_of
 from rockflex.solve._failures import failure_of, failure_of_law, failure_of_limit
 from rockflex.solve._flow import flow_of
@@ -27,7 +26,6 @@ from rockflex.solve.batch import (
     BROKEN,
     ENDED,
     FAILED,
-    LEVEL,
     PRESENT,
     RUN,
     SLICE,
@@ -43,8 +41,6 @@ from rockflex.solve.phases import CompiledPhases
 from rockflex.solve.progress import progress_at_start
 from rockflex.solve.status import Status
 
-QUIET = np.zeros(65)  # free vibration is run in stretches of 64 samples
-MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
 EVENTS = 512  # initial room in a history for states between samples
 SLICE_OF_WORK = 0.1  # s
 TOLERANCE = 1e-10  # relative, of a step
@@ -180,7 +176,7 @@ class Engine:
         accepted = [None if place in failures else run for place, run in enumerate(runs)]
         log = self._log(tasks[0], history=history)
         batch = batch_of(accepted, progress, start, log, work_limit)
-        course = self._course(dt, free_vibration)
+        course = course_of(self.model, dt, free_vibration)
         steps, desk = None, self._desks.taken()
         while batch.place[RUN] < len(tasks):
             try:
@@ -254,7 +250,7 @@ class Engine:
         rows, free = self._n_rows, task.free_vibration
         room_for = 0
         if history:
-            room_for = task.record.size + EVENTS + MARGIN + (0 if free is None else _samples(free, task.dt))
+            room_for = task.record.size + EVENTS + MARGIN + (0 if free is None else samples_in(free, task.dt))
         return Log(
             peaks=first_peaks(rows, self._signed, self._n_peaks if self.model.turning else rows).copy(),
             times=np.zeros(rows),
@@ -270,10 +266,6 @@ class Engine:
             return phases.place(key)
         with preparing(self.model):
             return phases.place(key)
-
-    def _course(self, dt: float, free_vibration: float | None) -> Course:
-        after = patience_with(self.model) if free_vibration is None else free_vibration
-        return Course(LEVEL, LEVEL, QUIET, dt, _samples(after, dt), free_vibration is None)
 
     def _integrator(self, motion: Motion, log: Log, at: Progress) -> Integrator | None:
         if self._flow is None:
@@ -304,8 +296,3 @@ class Engine:
                     status, samples = Status(int(end.status)), int(end.samples)
                     failures[place] = failure_of(self.model, status, samples, dt, batch.states[place])
         return Solutions(batch, dt, self._n_peaks, self._signed, failures, states)
-
-
-def _samples(time: float, dt: float) -> int:
-    """Return the number of samples in some seconds of free vibration."""
-    return math.ceil(min(time / dt, MOST_SAMPLES) - 1e-9)
