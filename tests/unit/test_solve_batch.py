@@ -7,7 +7,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex.models import parse_model
 from rockflex.response import NAMES, STATUSES, columns_of, respond
-from rockflex.solve import Shaking, WorkLimitError
+from rockflex.solve import Excitation, WorkLimitError
 from rockflex.solve._desk import Desks
 from rockflex.study import Case
 
@@ -19,10 +19,10 @@ SOIL = rf.Ground(springs=rf.winkler_bed(P.half_width, 2.0, 2e8).damped(0.1, P.m_
 UPWARD = 0.3 * np.roll(RECORD, 7)
 
 RUNS = [
-    Shaking(2.0 * RECORD[:400]),
-    Shaking(RECORD[100:250], None, -3.0),
-    Shaking(RECORD[:400], None, 0.01),
-    Shaking(RECORD[100:250], None, 3.5),
+    Excitation(2.0 * RECORD[:400]),
+    Excitation(RECORD[100:250], None, -3.0),
+    Excitation(RECORD[:400], None, 0.01),
+    Excitation(RECORD[100:250], None, 3.5),
 ]
 CASES = {
     "2DOF-S": {},
@@ -104,7 +104,7 @@ def test_columns_are_the_numbers_of_the_responses(name):
 
 def test_a_run_that_fails_leaves_the_others_alone():
     case, runs = case_of("MDOF-S")
-    longest = Shaking(np.tile(RECORD, 40))
+    longest = Excitation(np.tile(RECORD, 40))
     limit = case.engine.task(runs[0], 0.02).work().total * 3.0
     found = solved(case, [runs[0], longest, runs[1]], work_limit=limit)
     assert list(found.failures) == [1]
@@ -126,7 +126,7 @@ def test_a_law_that_fails_in_one_run_fails_that_run():
             return modal_velocity + properties.effective_height * rotation_velocity, 0.0
 
     case = Case(parse_model("MDOF-S").of(P, Fussy()))
-    found = solved(case, [RUNS[0], Shaking(RECORD[:400], None, 0.8), RUNS[1], RUNS[0]])
+    found = solved(case, [RUNS[0], Excitation(RECORD[:400], None, 0.8), RUNS[1], RUNS[0]])
     assert sorted(found.failures) == [0, 2, 3]
     for place in (0, 2, 3):
         text = r"The impact law .*Fussy.* failed: too fast: -?0\.\d+ rad/s"
@@ -140,7 +140,7 @@ def test_a_work_limit_is_that_of_each_run():
     """What a run takes more than estimated ends that run only, and not those after it."""
     law = rf.Restitution(0.9, 1e-6)
     case = Case(parse_model("rigid").of(P, law))
-    calm, wild = Shaking(0.5 * RECORD[:200]), Shaking(np.concatenate((3.0 * RECORD[:200], np.zeros(3000))))
+    calm, wild = Excitation(0.5 * RECORD[:200]), Excitation(np.concatenate((3.0 * RECORD[:200], np.zeros(3000))))
     limit = 1.05 * case.engine.task(wild, 0.02).work().total
     found = solved(case, [calm, wild, calm], work_limit=limit)
     assert 0 not in found.failures

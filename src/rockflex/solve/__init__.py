@@ -5,7 +5,7 @@ from rockflex.solve._preparing import preparing
 from rockflex.solve._solution import Solution
 from rockflex.solve._solutions import Solutions
 from rockflex.solve._task import Task, WorkLimitError
-from rockflex.solve.batch import Shaking
+from rockflex.solve.batch import Excitation
 from rockflex.solve.engine import Engine
 from rockflex.solve.exact.closed_form import ClosedForm
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, stopping_when
@@ -13,9 +13,9 @@ from rockflex.solve.interruption import RunStoppedError, asked_to_stop, stopping
 __all__ = [
     "ClosedForm",
     "Engine",
+    "Excitation",
     "Pace",
     "RunStoppedError",
-    "Shaking",
     "Solution",
     "Solutions",
     "Task",

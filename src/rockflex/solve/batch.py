@@ -40,7 +40,7 @@ SLICE, EACH = 0, 1
 PRESENT, AT_START = 0, 1
 
 
-class Shaking(NamedTuple):
+class Excitation(NamedTuple):
     """What shakes the ground in a run."""
 
     acceleration: Array  # (n,): horizontal, m/s²
@@ -69,14 +69,14 @@ class Batch(NamedTuple):
 
 
 def batch_of(
-    runs: Sequence[Shaking | None], progress: Any, start: Array, log: Log, limit: float | None = None
+    runs: Sequence[Excitation | None], progress: Any, start: Array, log: Log, limit: float | None = None
 ) -> Batch:
     """Return a batch that has not begun, with the log of its first run; no run is done where there is none.
 
     `limit` is that of the work of a run in s. A record of several runs is kept once.
     """
     count, rows = len(runs), log.peaks.size
-    records = dict[tuple[int, int], Shaking]()
+    records = dict[tuple[int, int], Excitation]()
     ends = dict[tuple[int, int], int]()
     firsts, scales = np.zeros((count, 2), dtype=np.int64), np.zeros(count)
     total = longest = 0

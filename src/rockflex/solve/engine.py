@@ -30,7 +30,7 @@ from rockflex.solve.batch import (
     RUN,
     SLICE,
     Batch,
-    Shaking,
+    Excitation,
     batch_of,
     run_all,
 )
@@ -108,7 +108,7 @@ class Engine:
         """The properties that determine the work of runs."""
         return pace_of(self.model, self._n_rows)
 
-    def task(self, run: Shaking, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
+    def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
         return Task(self.model, self.pace, run.acceleration, dt, free_vibration, history, run.scale)
 
@@ -126,7 +126,7 @@ class Engine:
     ) -> Solution:
         """Run one record as `run_all` does, and return its solution or raise its error."""
         found = self.run_all(
-            [Shaking(acceleration, vertical)],
+            [Excitation(acceleration, vertical)],
             dt,
             free_vibration=free_vibration,
             state=state,
@@ -138,7 +138,7 @@ class Engine:
 
     def run_all(
         self,
-        runs: Sequence[Shaking],
+        runs: Sequence[Excitation],
         dt: float,
         *,
         free_vibration: float | None = 0.0,

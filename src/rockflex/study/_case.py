@@ -7,7 +7,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex.models import Quantities, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.response import Response, asked_of, extremes_of, respond
-from rockflex.solve import Engine, Shaking, Solution, Solutions, Task, preparing
+from rockflex.solve import Engine, Excitation, Solution, Solutions, Task, preparing
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
 
@@ -71,7 +71,7 @@ class Case:
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
         """Return the task of a run, from which its work is estimated."""
         return self.engine.task(
-            Shaking(motion.acceleration, None, scale), motion.dt, self.free_vibration, history=self.history
+            Excitation(motion.acceleration, None, scale), motion.dt, self.free_vibration, history=self.history
         )
 
     def solve(self, motion: GroundMotion, scale: float = 1.0) -> Solution:
@@ -97,7 +97,7 @@ class Case:
             If the initial state does not fit the model, or its numbers overflow.
         """
         return self.engine.run_all(
-            [Shaking(motion.acceleration, motion.vertical if shaken else None, scale) for motion, scale in runs],
+            [Excitation(motion.acceleration, motion.vertical if shaken else None, scale) for motion, scale in runs],
             dt,
             free_vibration=self.free_vibration,
             state=None if self.initial is None else self.initial.state(self.model),
