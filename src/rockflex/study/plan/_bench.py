@@ -1,6 +1,7 @@
 """The structures, records and models of a study, prepared for its runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -10,7 +11,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import Suite, intensities
+from rockflex.motion import GroundMotion, Suite, intensities
 from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
@@ -31,6 +32,8 @@ from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study._yielding import hysteresis_of
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
+
+BRIEF = 3  # samples of a record that a rehearsal runs
 
 
 @dataclass(frozen=True)
@@ -134,6 +137,19 @@ class Bench:
         row |= results_of(response)
         row["nominal_limit"] = case.model.properties.nominal_overturning_rotation
         return row | _friction(response) if self.assumptions.friction else row
+
+    def rehearse(self) -> None:
+        """Run the beginning of a record with each model of the first structure, which compiles the kernels."""
+        self.measures(0, 0)
+        motion = self.motions[0]
+        brief = GroundMotion(motion.acceleration[:BRIEF], motion.dt)
+        for model in range(len(self.labels)):
+            case = self._case(0, model)
+            if isinstance(case, Case):
+                with suppress(SolverError, InputError):  # of which the run itself tells
+                    response = case.run(brief)
+                    if self.assumptions.friction:
+                        _friction(response)
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
