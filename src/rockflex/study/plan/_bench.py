@@ -1,6 +1,7 @@
 """The structures, records and models of a study, prepared for its runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -10,7 +11,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import Suite, intensities
+from rockflex.motion import GroundMotion, Suite, intensities
 from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
@@ -23,7 +24,9 @@ from rockflex.study._arguments import (
     work_limit_of,
 )
 from rockflex.study._case import MANY, Case
+from rockflex.study._ground_table import GroundTable
 from rockflex.study._peaks import peaks_of
+from rockflex.study._prepared import FIXED
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Columns, Row, kinds_of
@@ -32,6 +35,8 @@ from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
 
 Run = tuple[int, int, int, float]  # the places of a structure, a record and a model, and a scale
+
+BRIEF = 3  # samples of a record that a rehearsal runs
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,13 @@ class Bench:
         return other
 
     @property
+    def foreign(self) -> bool:
+        """Whether runs call a law or a function of the user, which may keep what it is told."""
+        impact, ground = self.assumptions.impact, self.assumptions.ground
+        own_law = impact is not None and type(impact) not in FIXED
+        return own_law or (callable(ground) and not isinstance(getattr(ground, "__self__", None), GroundTable))
+
+    @property
     def columns(self) -> Columns:
         """Columns of a run."""
         found: dict[str, type | Sequence[str]] = {"structure": self.names}
@@ -144,6 +156,19 @@ class Bench:
             results_of(each) | limit | _friction(each) if isinstance(each, Response) else {"error": str(each)}
             for each in found
         ]
+
+    def rehearse(self) -> None:
+        """Run the beginning of a record with each model of the first structure, which compiles the kernels."""
+        self.measures(0, 0)
+        motion = self.motions[0]
+        brief = GroundMotion(motion.acceleration[:BRIEF], motion.dt)
+        for model in range(len(self.labels)):
+            case = self._case(0, model)
+            if isinstance(case, Case):
+                with suppress(SolverError, InputError):  # of which the run itself tells
+                    response = case.run(brief)
+                    if self.assumptions.friction:
+                        _friction(response)
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
