@@ -1,10 +1,11 @@
-"""Arithmetic on all samples of a block at once, in vector registers.
+"""Arithmetic on all samples of a block, or on all rows, at once, in vector registers.
 
 The loops that numba compiles are not turned into vector instructions here: for all that the compiler knows, the arrays
 could overlap. The intrinsics state the operations on vectors themselves; on any processor they become the
 instructions that it has.
 """
 
+from functools import partial
 from typing import Any, cast
 
 from llvmlite import ir
@@ -15,14 +16,13 @@ from numba.extending import intrinsic
 from rockflex._arrays import Array
 
 BLOCK = 16  # samples in a block
-
-_VECTOR = ir.VectorType(ir.DoubleType(), BLOCK)
-_LANES = ir.VectorType(ir.IntType(32), BLOCK)
+WIDE = 8  # numbers in the vectors of `set_products`
+CHAINS = 4  # sums at a time, none of which waits for another
 
 
 def padded(size: int) -> int:
-    """Return a size rounded up to a multiple of `BLOCK`."""
-    return -(-size // BLOCK) * BLOCK
+    """Return a size rounded up to a multiple of `WIDE`."""
+    return -(-size // WIDE) * WIDE
 
 
 def _plain_row(
@@ -58,16 +58,26 @@ def _plain_outside(values: Array, lower: float, upper: float) -> int:
     return sum(1 << m for m in range(BLOCK) if values[m] < lower or values[m] > upper)
 
 
-def _plain_sums(sums: Array, table: Array, factors: Array) -> None:
-    """Add ``factors @ table`` to the sums; `table` has shape (BLOCK, n) with n a multiple of BLOCK."""
-    sums += factors @ table
+def _plain_sums(sums: Array, table: Array, factors: Array, first: int, count: int) -> None:
+    """Set the sums (n,) to ``factors @ table``, over `count` rows of `table` (m, n) from `first` on.
+
+    n is a multiple of `WIDE`. Numbers that have just been written one by one are slow to read as a vector.
+    """
+    sums[:] = 0.0
+    _plain_further_sums(sums, table, factors, first, count)
+
+
+def _plain_further_sums(sums: Array, table: Array, factors: Array, first: int, count: int) -> None:
+    """Add the same to the sums."""
+    sums += factors[first : first + count] @ table[first : first + count]
 
 
 class _Builder:
-    """Vector operations in the code of a kernel."""
+    """Operations on vectors of `lanes` numbers in the code of a kernel."""
 
-    def __init__(self, context: Any, builder: Any) -> None:
+    def __init__(self, context: Any, builder: Any, lanes: int) -> None:
         self.context, self.builder = context, builder
+        self.vector, self.lanes = ir.VectorType(ir.DoubleType(), lanes), ir.VectorType(ir.IntType(32), lanes)
 
     def data(self, kind: Any, value: Any) -> ir.Value:
         return self.context.make_array(kind)(self.context, self.builder, value).data
@@ -78,11 +88,15 @@ class _Builder:
 
     def same(self, value: ir.Value) -> ir.Value:
         """Return a vector with the same value in all lanes."""
-        one = self.builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
-        return self.builder.shuffle_vector(one, ir.Constant(_VECTOR, ir.Undefined), ir.Constant(_LANES, [0] * BLOCK))
+        nothing = ir.Constant(self.vector, ir.Undefined)
+        one = self.builder.insert_element(nothing, value, ir.Constant(ir.IntType(32), 0))
+        return self.builder.shuffle_vector(one, nothing, ir.Constant(self.lanes, [0] * self.lanes.count))
+
+    def zero(self) -> ir.Value:
+        return ir.Constant(self.vector, [0.0] * self.vector.count)
 
     def place(self, data: ir.Value, offset: ir.Value) -> ir.Value:
-        return self.builder.bitcast(self.builder.gep(data, [offset]), _VECTOR.as_pointer())
+        return self.builder.bitcast(self.builder.gep(data, [offset]), self.vector.as_pointer())
 
     def load(self, data: ir.Value, offset: ir.Value) -> ir.Value:
         return self.builder.load(self.place(data, offset), align=8)
@@ -104,44 +118,60 @@ def _index(value: int) -> ir.Constant:
 
 
 def _row(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    make = _Builder(context, builder)
+    make = _Builder(context, builder, BLOCK)
     kinds = dict(enumerate(signature.args))
     values, course, table, begun, kicked = (make.data(kinds[i], arguments[i]) for i in (0, 4, 5, 6, 8))
     constant, by_ground, by_slope, active = (arguments[i] for i in (1, 2, 3, 7))
     pairs = builder.lshr(make.size(kinds[5], arguments[5], 0), _index(1))
     total = make.plus(make.same(constant), by_ground, make.load(course, _index(0)))
     total = make.plus(total, by_slope, make.load(course, _index(BLOCK)))
+    totals = [total, make.zero()]  # neither waits for the other
     for j in range(BLOCK):
-        total = make.plus(total, make.number(course, _index(2 * BLOCK + j)), make.load(kicked, _index(BLOCK - j)))
-    sums = cgutils.alloca_once_value(builder, total)
+        jump, response = make.number(course, _index(2 * BLOCK + j)), make.load(kicked, _index(BLOCK - j))
+        totals[j % 2] = make.plus(totals[j % 2], jump, response)
+    sums = [cgutils.alloca_once_value(builder, each) for each in totals]
     with cgutils.for_range(builder, active) as loop:
-        found = builder.load(sums)
-        for k in (loop.index, builder.add(pairs, loop.index)):
-            found = make.plus(found, make.number(begun, k), make.load(table, builder.mul(k, _index(BLOCK))))
-        builder.store(found, sums)
-    make.store(builder.load(sums), values, _index(0))
+        for each, k in zip(sums, (loop.index, builder.add(pairs, loop.index)), strict=True):
+            place = builder.mul(k, _index(BLOCK))
+            builder.store(make.plus(builder.load(each), make.number(begun, k), make.load(table, place)), each)
+    make.store(builder.fadd(builder.load(sums[0]), builder.load(sums[1])), values, _index(0))
     return context.get_dummy_value()
 
 
 def _outside(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    make = _Builder(context, builder)
+    make = _Builder(context, builder, BLOCK)
     values = make.load(make.data(signature.args[0], arguments[0]), _index(0))
     below = builder.fcmp_ordered("<", values, make.same(arguments[1]))
     above = builder.fcmp_ordered(">", values, make.same(arguments[2]))
     return builder.zext(builder.bitcast(builder.or_(below, above), ir.IntType(BLOCK)), ir.IntType(64))
 
 
-def _sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    make = _Builder(context, builder)
-    sums, table, factors = (make.data(kind, each) for kind, each in zip(signature.args, arguments, strict=True))
-    width = make.size(signature.args[1], arguments[1], 1)
-    with cgutils.for_range(builder, builder.udiv(width, _index(BLOCK))) as loop:
-        place = builder.mul(loop.index, _index(BLOCK))
-        total = make.load(sums, place)
-        for j in range(BLOCK):
-            row = builder.add(place, builder.mul(width, _index(j)))
-            total = make.plus(total, make.number(factors, _index(j)), make.load(table, row))
-        make.store(total, sums, place)
+def _sums(context: Any, builder: Any, signature: Any, arguments: Any, *, further: bool = False) -> Any:
+    make = _Builder(context, builder, WIDE)
+    kinds = dict(enumerate(signature.args))
+    sums, table, factors = (make.data(kinds[i], arguments[i]) for i in range(3))
+    first, count = arguments[3], arguments[4]
+    width = make.size(kinds[1], arguments[1], 1)
+    chains = [cgutils.alloca_once(builder, make.vector) for _ in range(CHAINS)]
+
+    def add(chain: Any, place: ir.Value, j: ir.Value) -> None:
+        row = make.load(table, builder.add(place, builder.mul(width, j)))
+        builder.store(make.plus(builder.load(chain), make.number(factors, j), row), chain)
+
+    rounds = builder.udiv(count, _index(CHAINS))
+    together = builder.mul(rounds, _index(CHAINS))
+    with cgutils.for_range(builder, builder.udiv(width, _index(WIDE))) as loop:
+        place = builder.mul(loop.index, _index(WIDE))
+        for chain in chains:
+            builder.store(make.load(sums, place) if further and chain is chains[0] else make.zero(), chain)
+        with cgutils.for_range(builder, rounds) as inner:
+            start = builder.add(first, builder.mul(inner.index, _index(CHAINS)))
+            for i, chain in enumerate(chains):
+                add(chain, place, builder.add(start, _index(i)))
+        with cgutils.for_range(builder, builder.sub(count, together)) as rest:
+            add(chains[0], place, builder.add(builder.add(first, together), rest.index))
+        one, two, three, four = (builder.load(chain) for chain in chains)
+        make.store(builder.fadd(builder.fadd(one, two), builder.fadd(three, four)), sums, place)
     return context.get_dummy_value()
 
 
@@ -172,12 +202,26 @@ def _compiled_outside(_: Any, values: Any, lower: Any, upper: Any) -> Any:
     return (types.int64(values, lower, upper), _outside) if _contiguous(values) else None
 
 
+def _signature_of_sums(sums: Any, table: Any, factors: Any, *counts: Any) -> Any:
+    if not _contiguous(sums, table, factors):
+        return None
+    return types.none(sums, table, factors, *(types.int64 for _ in counts))
+
+
 @intrinsic
-def _compiled_sums(_: Any, sums: Any, table: Any, factors: Any) -> Any:
-    return (types.none(sums, table, factors), _sums) if _contiguous(sums, table, factors) else None
+def _compiled_sums(_: Any, sums: Any, table: Any, factors: Any, first: Any, count: Any) -> Any:
+    signature = _signature_of_sums(sums, table, factors, first, count)
+    return signature and (signature, _sums)
+
+
+@intrinsic
+def _compiled_further_sums(_: Any, sums: Any, table: Any, factors: Any, first: Any, count: Any) -> Any:
+    signature = _signature_of_sums(sums, table, factors, first, count)
+    return signature and (signature, partial(_sums, further=True))
 
 
 _interpreted = cast("Any", config).DISABLE_JIT
 row_over_block = _plain_row if _interpreted else cast("Any", _compiled_row)
 outside = _plain_outside if _interpreted else cast("Any", _compiled_outside)
-add_products = _plain_sums if _interpreted else cast("Any", _compiled_sums)
+set_products = _plain_sums if _interpreted else cast("Any", _compiled_sums)
+add_products = _plain_further_sums if _interpreted else cast("Any", _compiled_further_sums)

@@ -7,7 +7,7 @@ from scipy.linalg import expm
 
 import rockflex as rf
 from rockflex import _vectors
-from rockflex._vectors import BLOCK
+from rockflex._vectors import BLOCK, WIDE
 from rockflex.models import Model
 from rockflex.response import asked_of
 from rockflex.solve import Engine
@@ -44,8 +44,13 @@ def outside_in_kernel(values, lower, upper):
 
 
 @njit
-def products_in_kernel(sums, table, factors):
-    _vectors.add_products(sums, table, factors)
+def products_in_kernel(sums, table, factors, first, count):
+    _vectors.set_products(sums, table, factors, first, count)
+
+
+@njit
+def more_products_in_kernel(sums, table, factors, first, count):
+    _vectors.add_products(sums, table, factors, first, count)
 
 
 @pytest.mark.parametrize(("pairs", "active"), [(1, 0), (2, 1), (2, 2), (6, 5), (16, 16)])
@@ -66,13 +71,20 @@ def test_samples_outside_limits():
         assert outside_in_kernel(values, lower, upper) == _vectors._plain_outside(values, lower, upper)
 
 
-def test_sums_of_products():
+@pytest.mark.parametrize(("first", "count"), [(0, 0), (0, 3), (2, 4), (5, 11)])
+def test_sums_of_products(first, count):
     random = np.random.default_rng(1)
-    table, factors = random.normal(size=(BLOCK, 2 * BLOCK)), random.normal(size=BLOCK)
-    sums = random.normal(size=2 * BLOCK)
-    expected = sums + factors @ table
-    products_in_kernel(sums, table, factors)
-    assert sums == pytest.approx(expected, abs=1e-13)
+    table, factors = random.normal(size=(BLOCK, 3 * WIDE)), random.normal(size=BLOCK)
+    sums = random.normal(size=3 * WIDE)
+    expected = factors[first : first + count] @ table[first : first + count]
+    for more, compiled, plain in (
+        (sums.copy(), more_products_in_kernel, _vectors._plain_further_sums),
+        (0.0, products_in_kernel, _vectors._plain_sums),
+    ):
+        for way in (compiled, plain):
+            found = sums.copy()
+            way(found, table, factors, first, count)
+            assert found == pytest.approx(more + expected, abs=1e-13)
 
 
 def prepared(name, dense):
@@ -100,12 +112,16 @@ def step_of(system, p):
     return step
 
 
+def rows_of(system, p):
+    return system.rows[p, VALUES, :, : system.stray.shape[1]].T
+
+
 @pytest.mark.parametrize(("name", "dense"), CASES)
 @pytest.mark.parametrize("p", [0, 1])
 def test_tables_of_a_block_are_powers_of_a_step(name, dense, p):
     system = prepared(name, dense)
     step, kick = step_of(system, p), -system.forced[p, 1]
-    rows = system.rows[p, VALUES]
+    rows = rows_of(system, p)
     assert system.phases[p]["block"] == BLOCK
     assert not system.kicked[p, :, :BLOCK].any()
     power, size = np.eye(step.shape[0]), np.abs(rows).sum(axis=1)
@@ -130,13 +146,13 @@ def test_leeway_bounds_the_deviation_from_chords(name, dense, p):
     roots, vectors = np.linalg.eig(step_of(system, p))
     generator = (vectors @ np.diag(np.log(roots.astype(complex))) @ np.linalg.inv(vectors)).real / parts
     active = pairs if p == 1 else int(system.phases[p]["active"])
-    small, rows, random = expm(generator), system.rows[p, VALUES], np.random.default_rng(2)
+    small, rows, random = expm(generator), rows_of(system, p), np.random.default_rng(2)
     for _ in range(20):
         w = np.zeros(2 * pairs)
         w[:active], w[pairs : pairs + active] = random.normal(size=(2, active))
         jump = random.normal() * np.linalg.norm(w) / np.linalg.norm(system.forced[p, 1])
         norms = np.hypot(w[:pairs], w[pairs:])
-        slack = system.leeway[p] @ norms + system.stray[p] * abs(jump)
+        slack = norms @ system.leeway[p, :, : rows.shape[0]] + system.stray[p] * abs(jump)
         w = w - system.forced[p, 1] * jump
         path = [w]
         for _ in range(BLOCK * parts):

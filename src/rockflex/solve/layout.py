@@ -60,8 +60,11 @@ VALUES, SLOPES = 0, 1
 
 # Indices in `Motion.w`, `Motion.values` and `Motion.flags`
 NOW, ENDS, HELD, BEGUN = 0, 1, 2, 3
-LOWER, UPPER, FIRST, FINAL = 0, 1, 2, 3
+LOWER, UPPER, FIRST, FINAL, BEFORE, AFTER, SAGS, SWINGS, RIPPLES = 0, 1, 2, 3, 4, 5, 6, 7, 8
 DOUBT, ASKED = 0, 1
+
+# Indices in `Motion.beyond`
+TOTALS, PARTS = 0, 1
 
 # Indices in `Motion.block`: the acceleration at the end of each sample, its slope within it, and the jump of the slope
 # at its start
@@ -112,21 +115,21 @@ class System(NamedTuple):
     heavier_base: Array  # (P, b, b): of its stiffness
     heavier_limits: Array  # (P, 2, 2): of the limits of the guard, and of what the rotation adds to them
     heavier_rows: Array  # (P, F + E, C): of the rows
-    # For the motion
+    # For the motion; F' and S' are F + E and S = 2 N + 2 b rounded up to whole vectors, see `rockflex._vectors`
     plain_rows: Array  # (P, F + E, C): the rows over the state, a and 1
-    basis: Array  # (P, 2, S, S), S = 2 N + 2 b: from coordinates to states and back, both transposed
+    basis: Array  # (P, 2, S, S'): from coordinates to states and back, both transposed
     forced: Array  # (P, 3 + M, S): coefficients of a, a', 1 and the memories in the forced part
-    rows: Array  # (P, 2, F + E, S): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
+    rows: Array  # (P, 2, S, F'): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
     row_forcing: Array  # (P, F + E, 3 + M): coefficients of a, a', 1 and the memories in the rows
     blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
     propagator: Array  # (P, J + 1, S, S): exp(B h) if some phase is dense; otherwise (0, 0, 0, 0)
-    bounds: Array  # (P, 3, J + 1, F + E, K): sag, swing and ripple of each row over a step, times |w| of the pair
+    bounds: Array  # (P, 3, J + 1, K, F'): sag, swing and ripple of each row over a step, times |w| of the pair
     # For blocks of L = `BLOCK` samples
     ahead: Array  # (P, F + E, S, L): the rows at the end of each sample over w at the start of the block
     kicked: Array  # (P, F + E, 2 L): the rows 1 - L to L samples after a jump of the slope; zero before it
     leap: Array  # (P, 4, K): exp(B h) of each pair over the block
-    pushed: Array  # (P, L, S rounded up to a multiple of L): w at the end of the block over those jumps
-    leeway: Array  # (P, F + E, K): sag of each row over any sample of the block, times |w| of the pair at its start
+    pushed: Array  # (P, L, S'): w at the end of the block over those jumps
+    leeway: Array  # (P, K, F'): sag of each row over any sample of the block, times |w| of the pair at its start
     stray: Array  # (P, F + E): the same, times the magnitudes of the jumps
 
 
@@ -170,13 +173,15 @@ class Motion(NamedTuple):
     state: Array  # (S',)
     w: Array  # (4, S): now, after the step examined, the same during the search inside it, at the start of the block
     norms: Array  # (K,)
-    values: Array  # (4, F + E): lower and upper limits of the rows, and their values at both ends of the step
+    # (9, F + E rounded up to whole vectors): lower and upper limits of the rows, their values and their slopes at both
+    # ends of the step, and their sag, swing and ripple over it
+    values: Array
     flags: Bools  # (2, F + E): rows that may leave their limits inside the step, and rows to examine
     block: Array  # (3, L): the acceleration of the ground over a block of samples
-    begins: Array  # (F + E,): rows at the start of the block
+    begins: Array  # (F + E rounded up,): rows at the start of the block
     told: Array  # (F + E, L): rows at the end of each of its samples
-    beyond: Array  # (S rounded up to a multiple of L,): w at its end
-    slack: Array  # (F + E,): how far they may leave the chords between these values
+    slack: Array  # (F + E rounded up,): how far they may leave the chords between these values
+    beyond: Array  # (2, S rounded up): work arrays: sums of products, and their factors
     deferred: Any  # (Q,): records of `DEFERRED`; the last one keeps the present while these blocks are searched
     states: Array  # (Q, S'): their states
     coordinates: Array  # (Q, S): w at their starts
@@ -205,13 +210,13 @@ def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motio
         state=state,
         w=np.zeros((4, core)),
         norms=np.zeros(pairs),
-        values=np.zeros((4, rows)),
+        values=np.zeros((9, padded(rows))),
         flags=flags,
         block=np.zeros((3, BLOCK)),
-        begins=np.zeros(rows),
+        begins=np.zeros(padded(rows)),
         told=np.zeros((rows, BLOCK)),
-        beyond=np.zeros(padded(core)),
-        slack=np.zeros(rows),
+        slack=np.zeros(padded(rows)),
+        beyond=np.zeros((2, padded(core))),
         deferred=np.zeros(MOST_DEFERRED + 1, dtype=DEFERRED),
         states=np.zeros((MOST_DEFERRED + 1, state.size)),
         coordinates=np.zeros((MOST_DEFERRED + 1, core)),

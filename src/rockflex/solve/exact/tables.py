@@ -114,18 +114,18 @@ def empty_system(
         heavier_limits=np.zeros((moved, 2, 2)),
         heavier_rows=np.zeros((moved, rows, columns)),
         plain_rows=np.zeros((capacity, rows, columns)),
-        basis=np.zeros((capacity, 2, core, core)),
+        basis=np.zeros((capacity, 2, core, padded(core))),
         forced=np.zeros((capacity, 3 + memories, core)),
-        rows=np.zeros((capacity, 2, rows, core)),
+        rows=np.zeros((capacity, 2, core, padded(rows))),
         row_forcing=np.zeros((capacity, rows, 3 + memories)),
         blocks=np.zeros((*whole, 4, pairs)),
         propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
-        bounds=np.zeros((capacity, 3, levels + 1, rows, pairs)),
+        bounds=np.zeros((capacity, 3, levels + 1, pairs, padded(rows))),
         ahead=np.zeros((capacity, rows, core, BLOCK)),
         kicked=np.zeros((capacity, rows, 2 * BLOCK)),
         leap=np.zeros((capacity, 4, pairs)),
         pushed=np.zeros((capacity, BLOCK, padded(core))),
-        leeway=np.zeros((capacity, rows, pairs)),
+        leeway=np.zeros((capacity, pairs, padded(rows))),
         stray=np.zeros((capacity, rows)),
     )
 
@@ -197,9 +197,10 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
     forcing[:, 3:] += plain_rows[:, memory : memory + system.layout.remembered]
-    system.basis[p, OUT], system.basis[p, INTO] = basis.basis.T, basis.inverse.T
+    count = plain_rows.shape[0]
+    system.basis[p, OUT, :, :core], system.basis[p, INTO, :, :core] = basis.basis.T, basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T
-    system.rows[p, VALUES], system.rows[p, SLOPES] = rows, first
+    system.rows[p, VALUES, :, :count], system.rows[p, SLOPES, :, :count] = rows.T, first.T
     system.row_forcing[p] = forcing
     if twin >= 0 and np.array_equal(np.abs(moving), np.abs(system.plain_rows[twin, :, :core])):
         system.blocks[p], system.bounds[p] = system.blocks[twin], system.bounds[twin]
@@ -214,7 +215,8 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
         bounds = _dense_bounds(basis, rows, steps)
     else:
         bounds = _bounds(basis, rows, first, steps)
-    system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
+    for which, bound in zip((SAG, SWING, RIPPLE), bounds, strict=True):
+        system.bounds[p, which, own, :, :count] = bound.transpose(0, 2, 1)
     put_powers(system, p)
 
 
