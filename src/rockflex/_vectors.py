@@ -14,15 +14,10 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from rockflex._arrays import Array
+from rockflex._numba_vectors import WIDE, Builder, contiguous, index
 
 BLOCK = 16  # samples in a block
-WIDE = 8  # numbers in the vectors of `set_products`
 CHAINS = 4  # sums at a time, none of which waits for another
-
-
-def padded(size: int) -> int:
-    """Return a size rounded up to a multiple of `WIDE`."""
-    return -(-size // WIDE) * WIDE
 
 
 def _plain_row(
@@ -72,82 +67,37 @@ def _plain_further_sums(sums: Array, table: Array, factors: Array, first: int, c
     sums += factors[first : first + count] @ table[first : first + count]
 
 
-class _Builder:
-    """Operations on vectors of `lanes` numbers in the code of a kernel."""
-
-    def __init__(self, context: Any, builder: Any, lanes: int) -> None:
-        self.context, self.builder = context, builder
-        self.vector, self.lanes = ir.VectorType(ir.DoubleType(), lanes), ir.VectorType(ir.IntType(32), lanes)
-
-    def data(self, kind: Any, value: Any) -> ir.Value:
-        return self.context.make_array(kind)(self.context, self.builder, value).data
-
-    def size(self, kind: Any, value: Any, axis: int) -> ir.Value:
-        array = self.context.make_array(kind)(self.context, self.builder, value)
-        return self.builder.extract_value(array.shape, axis)
-
-    def same(self, value: ir.Value) -> ir.Value:
-        """Return a vector with the same value in all lanes."""
-        nothing = ir.Constant(self.vector, ir.Undefined)
-        one = self.builder.insert_element(nothing, value, ir.Constant(ir.IntType(32), 0))
-        return self.builder.shuffle_vector(one, nothing, ir.Constant(self.lanes, [0] * self.lanes.count))
-
-    def zero(self) -> ir.Value:
-        return ir.Constant(self.vector, [0.0] * self.vector.count)
-
-    def place(self, data: ir.Value, offset: ir.Value) -> ir.Value:
-        return self.builder.bitcast(self.builder.gep(data, [offset]), self.vector.as_pointer())
-
-    def load(self, data: ir.Value, offset: ir.Value) -> ir.Value:
-        return self.builder.load(self.place(data, offset), align=8)
-
-    def number(self, data: ir.Value, offset: ir.Value) -> ir.Value:
-        return self.builder.load(self.builder.gep(data, [offset]))
-
-    def store(self, value: ir.Value, data: ir.Value, offset: ir.Value) -> None:
-        self.builder.store(value, self.place(data, offset), align=8)
-
-    def plus(self, total: ir.Value, factor: ir.Value, vector: ir.Value) -> ir.Value:
-        """Return total + factor * vector, fused where the processor can."""
-        product = self.builder.fmul(self.same(factor), vector, flags=("contract",))
-        return self.builder.fadd(total, product, flags=("contract",))
-
-
-def _index(value: int) -> ir.Constant:
-    return ir.Constant(ir.IntType(64), value)
-
-
 def _row(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    make = _Builder(context, builder, BLOCK)
+    make = Builder(context, builder, BLOCK)
     kinds = dict(enumerate(signature.args))
     values, course, table, begun, kicked = (make.data(kinds[i], arguments[i]) for i in (0, 4, 5, 6, 8))
     constant, by_ground, by_slope, active = (arguments[i] for i in (1, 2, 3, 7))
-    pairs = builder.lshr(make.size(kinds[5], arguments[5], 0), _index(1))
-    total = make.plus(make.same(constant), by_ground, make.load(course, _index(0)))
-    total = make.plus(total, by_slope, make.load(course, _index(BLOCK)))
+    pairs = builder.lshr(make.size(kinds[5], arguments[5], 0), index(1))
+    total = make.plus(make.same(constant), by_ground, make.load(course, index(0)))
+    total = make.plus(total, by_slope, make.load(course, index(BLOCK)))
     totals = [total, make.zero()]  # neither waits for the other
     for j in range(BLOCK):
-        jump, response = make.number(course, _index(2 * BLOCK + j)), make.load(kicked, _index(BLOCK - j))
+        jump, response = make.number(course, index(2 * BLOCK + j)), make.load(kicked, index(BLOCK - j))
         totals[j % 2] = make.plus(totals[j % 2], jump, response)
     sums = [cgutils.alloca_once_value(builder, each) for each in totals]
     with cgutils.for_range(builder, active) as loop:
         for each, k in zip(sums, (loop.index, builder.add(pairs, loop.index)), strict=True):
-            place = builder.mul(k, _index(BLOCK))
+            place = builder.mul(k, index(BLOCK))
             builder.store(make.plus(builder.load(each), make.number(begun, k), make.load(table, place)), each)
-    make.store(builder.fadd(builder.load(sums[0]), builder.load(sums[1])), values, _index(0))
+    make.store(builder.fadd(builder.load(sums[0]), builder.load(sums[1])), values, index(0))
     return context.get_dummy_value()
 
 
 def _outside(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    make = _Builder(context, builder, BLOCK)
-    values = make.load(make.data(signature.args[0], arguments[0]), _index(0))
+    make = Builder(context, builder, BLOCK)
+    values = make.load(make.data(signature.args[0], arguments[0]), index(0))
     below = builder.fcmp_ordered("<", values, make.same(arguments[1]))
     above = builder.fcmp_ordered(">", values, make.same(arguments[2]))
     return builder.zext(builder.bitcast(builder.or_(below, above), ir.IntType(BLOCK)), ir.IntType(64))
 
 
 def _sums(context: Any, builder: Any, signature: Any, arguments: Any, *, further: bool = False) -> Any:
-    make = _Builder(context, builder, WIDE)
+    make = Builder(context, builder, WIDE)
     kinds = dict(enumerate(signature.args))
     sums, table, factors = (make.data(kinds[i], arguments[i]) for i in range(3))
     first, count = arguments[3], arguments[4]
@@ -158,26 +108,21 @@ def _sums(context: Any, builder: Any, signature: Any, arguments: Any, *, further
         row = make.load(table, builder.add(place, builder.mul(width, j)))
         builder.store(make.plus(builder.load(chain), make.number(factors, j), row), chain)
 
-    rounds = builder.udiv(count, _index(CHAINS))
-    together = builder.mul(rounds, _index(CHAINS))
-    with cgutils.for_range(builder, builder.udiv(width, _index(WIDE))) as loop:
-        place = builder.mul(loop.index, _index(WIDE))
+    rounds = builder.udiv(count, index(CHAINS))
+    together = builder.mul(rounds, index(CHAINS))
+    with cgutils.for_range(builder, builder.udiv(width, index(WIDE))) as loop:
+        place = builder.mul(loop.index, index(WIDE))
         for chain in chains:
             builder.store(make.load(sums, place) if further and chain is chains[0] else make.zero(), chain)
         with cgutils.for_range(builder, rounds) as inner:
-            start = builder.add(first, builder.mul(inner.index, _index(CHAINS)))
+            start = builder.add(first, builder.mul(inner.index, index(CHAINS)))
             for i, chain in enumerate(chains):
-                add(chain, place, builder.add(start, _index(i)))
+                add(chain, place, builder.add(start, index(i)))
         with cgutils.for_range(builder, builder.sub(count, together)) as rest:
             add(chains[0], place, builder.add(builder.add(first, together), rest.index))
         one, two, three, four = (builder.load(chain) for chain in chains)
         make.store(builder.fadd(builder.fadd(one, two), builder.fadd(three, four)), sums, place)
     return context.get_dummy_value()
-
-
-def _contiguous(*arguments: Any) -> bool:
-    """Return whether all arrays are contiguous; otherwise numba reports that it knows no such function."""
-    return all(each.layout == "C" for each in arguments if isinstance(each, types.Array))
 
 
 @intrinsic
@@ -194,16 +139,16 @@ def _compiled_row(
     kicked: Any,
 ) -> Any:
     given = (values, constant, by_ground, by_slope, course, table, begun, active, kicked)
-    return (types.none(*given), _row) if _contiguous(*given) else None
+    return (types.none(*given), _row) if contiguous(*given) else None
 
 
 @intrinsic
 def _compiled_outside(_: Any, values: Any, lower: Any, upper: Any) -> Any:
-    return (types.int64(values, lower, upper), _outside) if _contiguous(values) else None
+    return (types.int64(values, lower, upper), _outside) if contiguous(values) else None
 
 
 def _signature_of_sums(sums: Any, table: Any, factors: Any, *counts: Any) -> Any:
-    if not _contiguous(sums, table, factors):
+    if not contiguous(sums, table, factors):
         return None
     return types.none(sums, table, factors, *(types.int64 for _ in counts))
 

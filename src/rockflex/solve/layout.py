@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
-from rockflex._vectors import BLOCK, padded
+from rockflex._numba_vectors import padded
+from rockflex._vectors import BLOCK
 from rockflex.models import PULLS, SUMS, StateLayout
 from rockflex.solve.records import DEFERRED
 
@@ -31,10 +32,13 @@ LEFT, CARRY, LOOK, SERIES, STEP = 0, 1, 2, 3, 4
 UPLIFTS, IMPACTS, EVENTS, KEPT = 0, 1, 2, 3
 
 # Indices in `System.modes`, `border`, `base` and `push`
-OMEGA2, DRAG = 0, 1
+OMEGA2, DRAG, DRIVEN = 0, 1, 2
 COUPLING, LEVERAGE = 0, 1
 FLEXIBILITY, DAMPING, STIFFNESS = 0, 1, 2
 CONSTANT, DRIVE = 0, 1
+
+# Indices in `Motion.push`
+FORCES, TURNS = 0, 1
 
 # Indices in `System.links`, for two limits each: the event there, and the phase that follows; -1 for none, or for a
 # phase not yet compiled. Then the same branches with the base in contact, on its right pivot and on its left pivot.
@@ -70,8 +74,9 @@ TOTALS, PARTS = 0, 1
 # at its start
 GROUNDS, INCLINES, JUMPS = 0, 1, 2
 
-# Indices in `Motion.reach`: of a coordinate and of its rate, and how far either moves away from its start
-SIZE, RATE, MOVES, TURNS_BY = 0, 1, 2, 3
+# Indices in `Motion.reach`: of a coordinate and of its rate, and how far either moves away from its start. Then work
+# rows: restoring forces, values and rates, and the weights of both in a row.
+SIZE, RATE, MOVES, TURNS_BY, RESTORING, PLACES, SPEEDS, WEIGHTS = 0, 1, 2, 3, 4, 5, 6, 7
 
 # Indices in `System.bounds`: largest deviation over a step of a row from its chord, of its slope from the chord of the
 # slope, and of the row from the cubic through the values and slopes at both ends.
@@ -91,7 +96,7 @@ class System(NamedTuple):
 
     layout: StateLayout
     dt: float
-    modes: Array  # (2, N): ω² and 2ζω
+    modes: Array  # (3, K'), K = N + b rounded up to whole vectors: ω², 2ζω, and 1; 0 for the base
     phases: Any  # (P,): records of `PHASE`
     turning_row: int  # index of the row of θ', which guards elements that yield; -1 if no element can
     chords: bool  # whether an element is stretched by 2 r sin(|θ|/2), rather than r |θ|
@@ -106,7 +111,7 @@ class System(NamedTuple):
     marks: Array  # (P, M): memories with a value of their own in a phase; NaN for others
     turnings: Array  # (P, M, 2): memory = arm δ/r - offset, of an element whose yielding ends; NaN for others
     recall: Array  # (P, b, M): factors of the memories in the forces on the base
-    border: Array  # (P, b, 2, N): c and m* c of `rockflex.models.Arrow`
+    border: Array  # (P, 2, b, K'): c and m* c of `rockflex.models.Arrow`; the base has -1 as its own c
     base: Array  # (P, 3, b, b): flexibility, damping and stiffness of the base
     push: Array  # (P, 2, b): constant forces on the base, and the factor of the ground acceleration
     pulls: Array  # (P, 7, 1 + M): sums over the elements, and what the memories add: see `rockflex.models.pulls_of`
@@ -187,10 +192,10 @@ class Motion(NamedTuple):
     coordinates: Array  # (Q, S): w at their starts
     highest: Array  # (Q, F): bounds of the peaks in them
     clear: NDArray[np.int64]  # (F + E,): point of the grid up to which the search for peaks is done
-    series: Array  # (N + b, terms)
-    reach: Array  # (4, N + b): how far the series reach, see `series.measure`
+    series: Array  # (terms, N + b rounded up to whole vectors)
+    reach: Array  # (9, N + b rounded up): how far the series reach, see `series.measure`, and work rows
     polys: Array  # (F + E + 1, terms): polynomials of the rows, and one for work
-    push: Array  # (b,): forces on the base, coefficient by coefficient
+    push: Array  # (2, b): forces on the base and its accelerations, coefficient by coefficient
     # Of the present phase, with the memories as they are: see `memory.recollect`
     limits: Array  # (2,): of the guard
     owners: NDArray[np.int64]  # (2,): the change of an element at each limit; -1 if it is the base's own
@@ -222,10 +227,10 @@ def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motio
         coordinates=np.zeros((MOST_DEFERRED + 1, core)),
         highest=np.zeros((MOST_DEFERRED + 1, rows)),
         clear=np.zeros(rows, dtype=np.int64),
-        series=np.zeros((pairs, terms)),
-        reach=np.zeros((4, pairs)),
+        series=np.zeros((terms, padded(pairs))),
+        reach=np.zeros((9, padded(pairs))),
         polys=np.zeros((rows + 1, terms)),
-        push=np.zeros(freedoms),
+        push=np.zeros((2, freedoms)),
         limits=np.zeros(2),
         owners=np.full(2, -1, dtype=np.int64),
         load=np.zeros(freedoms),

@@ -13,7 +13,8 @@ from scipy.linalg import expm
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._vectors import BLOCK, padded
+from rockflex._numba_vectors import padded
+from rockflex._vectors import BLOCK
 from rockflex.models import SUMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis, Drift
 from rockflex.solve.exact.powers import put_powers
@@ -86,11 +87,15 @@ def empty_system(
     whole = (capacity, levels + 1)
     memories, changes, fences = layout.remembered, model.most_changes, model.most_fences
     moved = capacity if shaken else 0
+    modes, border = np.zeros((3, padded(pairs))), np.zeros((capacity, 2, b, padded(pairs)))
+    modes[:, :n] = p.omega**2, 2.0 * p.zeta * p.omega, np.ones(n)
+    for j in range(b):
+        border[:, COUPLING, j, n + j] = -1.0
     links = np.full((capacity, CHANGED + changes + fences), -1, dtype=np.int64)
     return System(
         layout=layout,
         dt=dt,
-        modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
+        modes=modes,
         phases=np.zeros(capacity, dtype=PHASE),
         turning_row=rows - fences - 2 if model.turning else -1,
         chords=model.complete,
@@ -105,7 +110,7 @@ def empty_system(
         marks=np.full((capacity, memories), np.nan),
         turnings=np.full((capacity, memories, 2), np.nan),
         recall=np.zeros((capacity, b, memories)),
-        border=np.zeros((capacity, b, 2, n)),
+        border=border,
         base=np.zeros((capacity, 3, b, b)),
         push=np.zeros((capacity, 2, b)),
         pulls=np.zeros((capacity, SUMS, 1 + memories)),
@@ -182,7 +187,8 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     dense = marches and basis.dense
     course = active, count, marches, levels, terms
     system.phases[p] = phase.side, phase.free, decays, phase.turns, *course, True, dense, 0, basis.fastest
-    system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
+    n = arrow.coupling.shape[1]
+    system.border[p, COUPLING, :, :n], system.border[p, LEVERAGE, :, :n] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
     system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
