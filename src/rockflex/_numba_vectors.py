@@ -68,8 +68,14 @@ class Builder:
         return self.builder.fadd(total, self.builder.fmul(one, other, flags=("contract",)), flags=("contract",))
 
     def magnitude(self, vector: ir.Value) -> ir.Value:
+        return self._apply("fabs", vector)
+
+    def root(self, vector: ir.Value) -> ir.Value:
+        return self._apply("sqrt", vector)
+
+    def _apply(self, name: str, vector: ir.Value) -> ir.Value:
         kind = ir.FunctionType(self.vector, [self.vector])
-        name = f"llvm.fabs.v{self.vector.count}f64"
+        name = f"llvm.{name}.v{self.vector.count}f64"
         return self.builder.call(cgutils.get_or_insert_function(self.builder.module, kind, name), [vector])
 
     def sum(self, vector: ir.Value) -> ir.Value:

@@ -5,9 +5,11 @@ could overlap. The intrinsics state the operations on vectors themselves; on any
 instructions that it has.
 """
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any, cast
 
+import numpy as np
 from llvmlite import ir
 from numba import config, types
 from numba.core import cgutils
@@ -17,6 +19,7 @@ from rockflex._arrays import Array
 from rockflex._numba_vectors import WIDE, Builder, contiguous, index
 
 BLOCK = 16  # samples in a block
+FEW = 4  # numbers in the vectors of loops that end anywhere
 CHAINS = 4  # sums at a time, none of which waits for another
 
 
@@ -35,15 +38,15 @@ def _plain_row(
 
     They are ``constant + by_ground * ground + by_slope * slope + begun @ table + kicked * jumps``, where `course`
     (3, BLOCK) contains the ground acceleration at the ends of the samples, its slope in them, and the jumps of the
-    slope at their starts. `table` has shape (2 K, BLOCK), of whose K pairs of coordinates the first are `active`;
-    `kicked` (2 BLOCK,) is zero in its first half.
+    slope at their starts, without the first one, which `begun` contains. `table` has shape (2 K, BLOCK), of whose K
+    pairs of coordinates the first are `active`; `kicked` (2 BLOCK,) is zero in its first half.
     """
     pairs = table.shape[0] // 2
     for m in range(BLOCK):
         value = constant + by_ground * course[0, m] + by_slope * course[1, m]
         for k in range(active):
             value += table[k, m] * begun[k] + table[pairs + k, m] * begun[pairs + k]
-        for j in range(m + 1):
+        for j in range(1, m + 1):
             value += kicked[BLOCK + m - j] * course[2, j]
         values[m] = value
 
@@ -67,6 +70,25 @@ def _plain_further_sums(sums: Array, table: Array, factors: Array, first: int, c
     sums += factors[first : first + count] @ table[first : first + count]
 
 
+def _plain_pairs(ends: Array, blocks: Array, now: Array, active: int) -> None:
+    """Advance the first `active` of K pairs of coordinates (2 K,), at least `FEW`, by their `blocks` (4, K)."""
+    pairs = blocks.shape[1]
+    x, y = now[:active], now[pairs : pairs + active]
+    ends[:active] = blocks[0, :active] * x + blocks[1, :active] * y
+    ends[pairs : pairs + active] = blocks[2, :active] * x + blocks[3, :active] * y
+
+
+def _plain_norms(norms: Array, w: Array, active: int) -> None:
+    """Set the norms (K,) of the first `active` pairs of coordinates (2 K,), at least `FEW`."""
+    x, y = w[:active], w[norms.size : norms.size + active]
+    norms[:active] = np.sqrt(x * x + y * y)
+
+
+def _plain_less(out: Array, one: Array, other: Array, factor: float) -> None:
+    """Set an array of at least `FEW` numbers to ``one - factor * other``; it is neither of the two."""
+    out[:] = one - factor * other
+
+
 def _row(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     make = Builder(context, builder, BLOCK)
     kinds = dict(enumerate(signature.args))
@@ -75,10 +97,7 @@ def _row(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     pairs = builder.lshr(make.size(kinds[5], arguments[5], 0), index(1))
     total = make.plus(make.same(constant), by_ground, make.load(course, index(0)))
     total = make.plus(total, by_slope, make.load(course, index(BLOCK)))
-    totals = [total, make.zero()]  # neither waits for the other
-    for j in range(BLOCK):
-        jump, response = make.number(course, index(2 * BLOCK + j)), make.load(kicked, index(BLOCK - j))
-        totals[j % 2] = make.plus(totals[j % 2], jump, response)
+    totals = [total, _answer_to_jumps(context, builder, course, kicked)]  # neither waits for the other
     sums = [cgutils.alloca_once_value(builder, each) for each in totals]
     with cgutils.for_range(builder, active) as loop:
         for each, k in zip(sums, (loop.index, builder.add(pairs, loop.index)), strict=True):
@@ -88,12 +107,75 @@ def _row(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     return context.get_dummy_value()
 
 
+def _answer_to_jumps(context: Any, builder: Any, course: ir.Value, kicked: ir.Value) -> ir.Value:
+    """Return the sum of the responses to jumps; those in the second half of the block leave the first as it is."""
+    half, whole = Builder(context, builder, BLOCK // 2), []
+    for start in (0, BLOCK // 2):
+        sums = [half.zero(), half.zero()]
+        for j in range(1, start + BLOCK // 2):
+            jump, response = half.number(course, index(2 * BLOCK + j)), half.load(kicked, index(BLOCK + start - j))
+            sums[j % 2] = half.plus(sums[j % 2], jump, response)
+        whole.append(builder.fadd(*sums))
+    lanes = ir.Constant(ir.VectorType(ir.IntType(32), BLOCK), list(range(BLOCK)))
+    return builder.shuffle_vector(*whole, lanes)
+
+
 def _outside(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     make = Builder(context, builder, BLOCK)
     values = make.load(make.data(signature.args[0], arguments[0]), index(0))
     below = builder.fcmp_ordered("<", values, make.same(arguments[1]))
     above = builder.fcmp_ordered(">", values, make.same(arguments[2]))
     return builder.zext(builder.bitcast(builder.or_(below, above), ir.IntType(BLOCK)), ir.IntType(64))
+
+
+def _each(make: Builder, size: ir.Value, step: Callable[[ir.Value], None]) -> None:
+    """Do a step at the starts of vectors that cover some numbers, at least one vector; the last two may overlap."""
+    builder, lanes = make.builder, index(make.vector.count)
+    last = builder.sub(size, lanes)
+    with cgutils.for_range(builder, builder.udiv(builder.add(size, index(make.vector.count - 1)), lanes)) as loop:
+        start = builder.mul(loop.index, lanes)
+        step(builder.select(builder.icmp_signed("<", start, last), start, last))
+
+
+def _pairs(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    make, kinds = Builder(context, builder, FEW), signature.args
+    ends, blocks, now = (make.data(kinds[i], arguments[i]) for i in range(3))
+    size = make.size(kinds[1], arguments[1], 1)
+
+    def step(start: ir.Value) -> None:
+        second = builder.add(size, start)
+        x, y = make.load(now, start), make.load(now, second)
+        one, two, three, four = (make.load(blocks, builder.add(builder.mul(size, index(i)), start)) for i in range(4))
+        make.store(make.plus_vector(builder.fmul(two, y), one, x), ends, start)
+        make.store(make.plus_vector(builder.fmul(four, y), three, x), ends, second)
+
+    _each(make, arguments[3], step)
+    return context.get_dummy_value()
+
+
+def _norms(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    make, kinds = Builder(context, builder, FEW), signature.args
+    norms, w = (make.data(kinds[i], arguments[i]) for i in range(2))
+    size = make.size(kinds[0], arguments[0], 0)
+
+    def step(start: ir.Value) -> None:
+        x, y = make.load(w, start), make.load(w, builder.add(size, start))
+        make.store(make.root(make.plus_vector(builder.fmul(y, y), x, x)), norms, start)
+
+    _each(make, arguments[2], step)
+    return context.get_dummy_value()
+
+
+def _less(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    make, kinds = Builder(context, builder, FEW), signature.args
+    out, one, other = (make.data(kinds[i], arguments[i]) for i in range(3))
+    factor = builder.fneg(arguments[3])
+
+    def step(start: ir.Value) -> None:
+        make.store(make.plus(make.load(one, start), factor, make.load(other, start)), out, start)
+
+    _each(make, make.size(kinds[0], arguments[0], 0), step)
+    return context.get_dummy_value()
 
 
 def _sums(context: Any, builder: Any, signature: Any, arguments: Any, *, further: bool = False) -> Any:
@@ -165,8 +247,26 @@ def _compiled_further_sums(_: Any, sums: Any, table: Any, factors: Any, first: A
     return signature and (signature, partial(_sums, further=True))
 
 
+@intrinsic
+def _compiled_pairs(_: Any, ends: Any, blocks: Any, now: Any, active: Any) -> Any:
+    return (types.none(ends, blocks, now, active), _pairs) if contiguous(ends, blocks, now) else None
+
+
+@intrinsic
+def _compiled_norms(_: Any, norms: Any, w: Any, active: Any) -> Any:
+    return (types.none(norms, w, active), _norms) if contiguous(norms, w) else None
+
+
+@intrinsic
+def _compiled_less(_: Any, out: Any, one: Any, other: Any, factor: Any) -> Any:
+    return (types.none(out, one, other, factor), _less) if contiguous(out, one, other) else None
+
+
 _interpreted = cast("Any", config).DISABLE_JIT
 row_over_block = _plain_row if _interpreted else cast("Any", _compiled_row)
 outside = _plain_outside if _interpreted else cast("Any", _compiled_outside)
 set_products = _plain_sums if _interpreted else cast("Any", _compiled_sums)
 add_products = _plain_further_sums if _interpreted else cast("Any", _compiled_further_sums)
+step_vectors = _plain_pairs if _interpreted else cast("Any", _compiled_pairs)
+norms_of_vectors = _plain_norms if _interpreted else cast("Any", _compiled_norms)
+set_less = _plain_less if _interpreted else cast("Any", _compiled_less)

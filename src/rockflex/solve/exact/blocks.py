@@ -6,7 +6,7 @@ advanced sample by sample only where they are needed.
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex._vectors import BLOCK, outside, row_over_block, set_products
+from rockflex._vectors import BLOCK, outside, row_over_block, set_less, set_products
 from rockflex.solve.exact.probe import set_norms, set_over_pairs, step, step_pairs
 from rockflex.solve.layout import (
     BEGUN,
@@ -27,23 +27,22 @@ from rockflex.solve.layout import (
 @inlined_kernel
 def look_ahead(system: System, piece: Array, last: int, at: Progress, motion: Motion) -> None:
     """Compute the rows at the ends of the samples of a block, and how far they may leave their chords."""
-    p, pairs = at.phase, motion.norms.size
+    p = at.phase
     active, first, rate = system.phases[p].active, at.index, 1.0 / system.dt
     at.count = min(system.phases[p].block, last - first)
     forced, begun = system.forced[p, 1], motion.w[BEGUN]
     grounds, inclines, jumps = motion.block[GROUNDS], motion.block[INCLINES], motion.block[JUMPS]
     before, turned = at.slope, 0.0
-    for m in range(at.count):
-        inclines[m] = (piece[first + m + 1] - piece[first + m]) * rate
-        grounds[m] = piece[first + m + 1]
-        jumps[m] = inclines[m] - before
-        before = inclines[m]
-        turned += abs(jumps[m])
+    ground = piece[first]
+    for m, after in enumerate(piece[first + 1 : first + 1 + at.count]):
+        incline = (after - ground) * rate
+        grounds[m], inclines[m], jumps[m] = after, incline, incline - before
+        turned += abs(incline - before)
+        ground, before = after, incline
     for m in range(at.count, BLOCK):
         grounds[m] = inclines[m] = jumps[m] = 0.0
-    now, jump = motion.w[NOW], jumps[0]
-    for k in range(2 * pairs):
-        begun[k] = now[k] - forced[k] * jump
+    jump = jumps[0]
+    set_less(begun, motion.w[NOW], forced, jump)
     turned -= abs(jump)
     jumps[0] = 0.0  # it is already in `begun`
     set_norms(begun, active, motion.norms)
@@ -94,9 +93,7 @@ def walk_on(system: System, at: Progress, motion: Motion) -> None:
     """Continue from the end of the present sample of the block, where `motion.w[ENDS]` is, into the next one."""
     at.walk += 1
     jump = motion.block[JUMPS, at.walk] if at.walk < BLOCK else 0.0
-    now, ends, forced = motion.w[NOW], motion.w[ENDS], system.forced[at.phase, 1]
-    for k in range(now.size):
-        now[k] = ends[k] - forced[k] * jump
+    set_less(motion.w[NOW], motion.w[ENDS], system.forced[at.phase, 1], jump)
 
 
 @kernel

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex._vectors import add_products, set_products
+from rockflex._vectors import FEW, add_products, norms_of_vectors, set_products, step_vectors
 from rockflex.solve.layout import (
     AFTER,
     ASKED,
@@ -57,6 +57,9 @@ def step(system: System, phase: int, level: int, motion: Motion) -> None:
 @kernel
 def step_pairs(blocks: Array, now: Array, ends: Array, pairs: int, active: int) -> None:
     """Advance the first `active` of some pairs of coordinates by their `blocks` (4, K)."""
+    if active >= FEW:
+        step_vectors(ends, blocks, now, active)
+        return
     one, two, three, four = blocks[0], blocks[1], blocks[2], blocks[3]
     firsts, seconds, out, out_too = now[:pairs], now[pairs:], ends[:pairs], ends[pairs:]
     for k in range(active):
@@ -68,6 +71,9 @@ def step_pairs(blocks: Array, now: Array, ends: Array, pairs: int, active: int) 
 @kernel
 def set_norms(w: Array, active: int, norms: Array) -> None:
     """Set the norms of the first `active` pairs of coordinates."""
+    if active >= FEW:
+        norms_of_vectors(norms, w, active)
+        return
     firsts, seconds = w[: norms.size], w[norms.size :]
     for k in range(active):
         x, y = firsts[k], seconds[k]
