@@ -6,7 +6,7 @@ advanced sample by sample only where they are needed.
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex._vectors import BLOCK, outside, row_over_block, set_less, set_products
+from rockflex._vectors import BLOCK, FEW, outside, row_over_block, set_less, set_products
 from rockflex.solve.exact.probe import set_norms, set_over_pairs, step, step_pairs
 from rockflex.solve.layout import (
     BEGUN,
@@ -42,7 +42,7 @@ def look_ahead(system: System, piece: Array, last: int, at: Progress, motion: Mo
     for m in range(at.count, BLOCK):
         grounds[m] = inclines[m] = jumps[m] = 0.0
     jump = jumps[0]
-    set_less(begun, motion.w[NOW], forced, jump)
+    kick(begun, motion.w[NOW], forced, jump)
     turned -= abs(jump)
     jumps[0] = 0.0  # it is already in `begun`
     set_norms(begun, active, motion.norms)
@@ -65,6 +65,16 @@ def look_ahead(system: System, piece: Array, last: int, at: Progress, motion: Mo
             active,
             system.kicked[p, f],
         )
+
+
+@kernel
+def kick(out: Array, w: Array, forced: Array, jump: float) -> None:
+    """Set coordinates to those after a jump of the slope."""
+    if out.size >= FEW:
+        set_less(out, w, forced, jump)
+        return
+    for k in range(out.size):
+        out[k] = w[k] - forced[k] * jump
 
 
 @kernel
@@ -93,7 +103,7 @@ def walk_on(system: System, at: Progress, motion: Motion) -> None:
     """Continue from the end of the present sample of the block, where `motion.w[ENDS]` is, into the next one."""
     at.walk += 1
     jump = motion.block[JUMPS, at.walk] if at.walk < BLOCK else 0.0
-    set_less(motion.w[NOW], motion.w[ENDS], system.forced[at.phase, 1], jump)
+    kick(motion.w[NOW], motion.w[ENDS], system.forced[at.phase, 1], jump)
 
 
 @kernel
