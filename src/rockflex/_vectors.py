@@ -56,22 +56,24 @@ def _plain_outside(values: Array, lower: float, upper: float) -> int:
     return sum(1 << m for m in range(BLOCK) if values[m] < lower or values[m] > upper)
 
 
-def _plain_sums(sums: Array, table: Array, factors: Array, first: int, count: int) -> None:
-    """Set the sums (n,) to ``factors @ table``, over `count` rows of `table` (m, n) from `first` on.
+def _plain_sums(sums: Array, table: Array, factors: Array, count: int, parts: int) -> None:
+    """Set the sums (n,) to ``factors @ table``, over the first `count` rows of each of the `parts` of `table` (m, n).
 
     n is a multiple of `WIDE`. Numbers that have just been written one by one are slow to read as a vector.
     """
     sums[:] = 0.0
-    _plain_further_sums(sums, table, factors, first, count)
+    _plain_further_sums(sums, table, factors, count, parts)
 
 
-def _plain_further_sums(sums: Array, table: Array, factors: Array, first: int, count: int) -> None:
+def _plain_further_sums(sums: Array, table: Array, factors: Array, count: int, parts: int) -> None:
     """Add the same to the sums."""
-    sums += factors[first : first + count] @ table[first : first + count]
+    size = table.shape[0] // parts
+    for first in range(0, parts * size, size):
+        sums += factors[first : first + count] @ table[first : first + count]
 
 
 def _plain_pairs(ends: Array, blocks: Array, now: Array, active: int) -> None:
-    """Advance the first `active` of K pairs of coordinates (2 K,), at least `FEW`, by their `blocks` (4, K)."""
+    """Advance the first `active` of K pairs of coordinates (2 K,), from `now` to `ends`, by their `blocks` (4, K)."""
     pairs = blocks.shape[1]
     x, y = now[:active], now[pairs : pairs + active]
     ends[:active] = blocks[0, :active] * x + blocks[1, :active] * y
@@ -79,13 +81,13 @@ def _plain_pairs(ends: Array, blocks: Array, now: Array, active: int) -> None:
 
 
 def _plain_norms(norms: Array, w: Array, active: int) -> None:
-    """Set the norms (K,) of the first `active` pairs of coordinates (2 K,), at least `FEW`."""
+    """Set the norms (K,) of the first `active` pairs of coordinates (2 K,)."""
     x, y = w[:active], w[norms.size : norms.size + active]
     norms[:active] = np.sqrt(x * x + y * y)
 
 
 def _plain_less(out: Array, one: Array, other: Array, factor: float) -> None:
-    """Set an array of at least `FEW` numbers to ``one - factor * other``; it is neither of the two."""
+    """Set an array to ``one - factor * other``; it is neither of the two."""
     out[:] = one - factor * other
 
 
@@ -128,13 +130,20 @@ def _outside(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     return builder.zext(builder.bitcast(builder.or_(below, above), ir.IntType(BLOCK)), ir.IntType(64))
 
 
-def _each(make: Builder, size: ir.Value, step: Callable[[ir.Value], None]) -> None:
-    """Do a step at the starts of vectors that cover some numbers, at least one vector; the last two may overlap."""
-    builder, lanes = make.builder, index(make.vector.count)
-    last = builder.sub(size, lanes)
-    with cgutils.for_range(builder, builder.udiv(builder.add(size, index(make.vector.count - 1)), lanes)) as loop:
-        start = builder.mul(loop.index, lanes)
-        step(builder.select(builder.icmp_signed("<", start, last), start, last))
+def _each(context: Any, builder: Any, size: ir.Value, step: Callable[[Builder, ir.Value], None]) -> None:
+    """Do a step at the starts of vectors that cover some numbers; the last two may overlap. Few are done one by one."""
+    lanes = index(FEW)
+    with builder.if_else(builder.icmp_signed("<", size, lanes)) as (few, many):
+        with few, cgutils.for_range(builder, size) as loop:
+            step(Builder(context, builder, 1), loop.index)
+        with many:
+            last = builder.sub(size, lanes)
+            with cgutils.for_range(builder, builder.udiv(builder.add(size, index(FEW - 1)), lanes)) as loop:
+                start = builder.mul(loop.index, lanes)
+                step(
+                    Builder(context, builder, FEW),
+                    builder.select(builder.icmp_signed("<", start, last), start, last),
+                )
 
 
 def _pairs(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -142,14 +151,14 @@ def _pairs(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     ends, blocks, now = (make.data(kinds[i], arguments[i]) for i in range(3))
     size = make.size(kinds[1], arguments[1], 1)
 
-    def step(start: ir.Value) -> None:
+    def step(make: Builder, start: ir.Value) -> None:
         second = builder.add(size, start)
         x, y = make.load(now, start), make.load(now, second)
         one, two, three, four = (make.load(blocks, builder.add(builder.mul(size, index(i)), start)) for i in range(4))
         make.store(make.plus_vector(builder.fmul(two, y), one, x), ends, start)
         make.store(make.plus_vector(builder.fmul(four, y), three, x), ends, second)
 
-    _each(make, arguments[3], step)
+    _each(context, builder, arguments[3], step)
     return context.get_dummy_value()
 
 
@@ -158,11 +167,11 @@ def _norms(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     norms, w = (make.data(kinds[i], arguments[i]) for i in range(2))
     size = make.size(kinds[0], arguments[0], 0)
 
-    def step(start: ir.Value) -> None:
+    def step(make: Builder, start: ir.Value) -> None:
         x, y = make.load(w, start), make.load(w, builder.add(size, start))
         make.store(make.root(make.plus_vector(builder.fmul(y, y), x, x)), norms, start)
 
-    _each(make, arguments[2], step)
+    _each(context, builder, arguments[2], step)
     return context.get_dummy_value()
 
 
@@ -171,10 +180,10 @@ def _less(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     out, one, other = (make.data(kinds[i], arguments[i]) for i in range(3))
     factor = builder.fneg(arguments[3])
 
-    def step(start: ir.Value) -> None:
+    def step(make: Builder, start: ir.Value) -> None:
         make.store(make.plus(make.load(one, start), factor, make.load(other, start)), out, start)
 
-    _each(make, make.size(kinds[0], arguments[0], 0), step)
+    _each(context, builder, make.size(kinds[0], arguments[0], 0), step)
     return context.get_dummy_value()
 
 
@@ -182,8 +191,8 @@ def _sums(context: Any, builder: Any, signature: Any, arguments: Any, *, further
     make = Builder(context, builder, WIDE)
     kinds = dict(enumerate(signature.args))
     sums, table, factors = (make.data(kinds[i], arguments[i]) for i in range(3))
-    first, count = arguments[3], arguments[4]
-    width = make.size(kinds[1], arguments[1], 1)
+    count, parts = arguments[3], arguments[4]
+    size, width = builder.udiv(make.size(kinds[1], arguments[1], 0), parts), make.size(kinds[1], arguments[1], 1)
     chains = [cgutils.alloca_once(builder, make.vector) for _ in range(CHAINS)]
 
     def add(chain: Any, place: ir.Value, j: ir.Value) -> None:
@@ -196,12 +205,14 @@ def _sums(context: Any, builder: Any, signature: Any, arguments: Any, *, further
         place = builder.mul(loop.index, index(WIDE))
         for chain in chains:
             builder.store(make.load(sums, place) if further and chain is chains[0] else make.zero(), chain)
-        with cgutils.for_range(builder, rounds) as inner:
-            start = builder.add(first, builder.mul(inner.index, index(CHAINS)))
-            for i, chain in enumerate(chains):
-                add(chain, place, builder.add(start, index(i)))
-        with cgutils.for_range(builder, builder.sub(count, together)) as rest:
-            add(chains[0], place, builder.add(builder.add(first, together), rest.index))
+        with cgutils.for_range(builder, parts) as part:
+            first = builder.mul(part.index, size)
+            with cgutils.for_range(builder, rounds) as inner:
+                start = builder.add(first, builder.mul(inner.index, index(CHAINS)))
+                for i, chain in enumerate(chains):
+                    add(chain, place, builder.add(start, index(i)))
+            with cgutils.for_range(builder, builder.sub(count, together)) as rest:
+                add(chains[0], place, builder.add(builder.add(first, together), rest.index))
         one, two, three, four = (builder.load(chain) for chain in chains)
         make.store(builder.fadd(builder.fadd(one, two), builder.fadd(three, four)), sums, place)
     return context.get_dummy_value()
@@ -236,14 +247,14 @@ def _signature_of_sums(sums: Any, table: Any, factors: Any, *counts: Any) -> Any
 
 
 @intrinsic
-def _compiled_sums(_: Any, sums: Any, table: Any, factors: Any, first: Any, count: Any) -> Any:
-    signature = _signature_of_sums(sums, table, factors, first, count)
+def _compiled_sums(_: Any, sums: Any, table: Any, factors: Any, count: Any, parts: Any) -> Any:
+    signature = _signature_of_sums(sums, table, factors, count, parts)
     return signature and (signature, _sums)
 
 
 @intrinsic
-def _compiled_further_sums(_: Any, sums: Any, table: Any, factors: Any, first: Any, count: Any) -> Any:
-    signature = _signature_of_sums(sums, table, factors, first, count)
+def _compiled_further_sums(_: Any, sums: Any, table: Any, factors: Any, count: Any, parts: Any) -> Any:
+    signature = _signature_of_sums(sums, table, factors, count, parts)
     return signature and (signature, partial(_sums, further=True))
 
 
@@ -267,6 +278,6 @@ row_over_block = _plain_row if _interpreted else cast("Any", _compiled_row)
 outside = _plain_outside if _interpreted else cast("Any", _compiled_outside)
 set_products = _plain_sums if _interpreted else cast("Any", _compiled_sums)
 add_products = _plain_further_sums if _interpreted else cast("Any", _compiled_further_sums)
-step_vectors = _plain_pairs if _interpreted else cast("Any", _compiled_pairs)
-norms_of_vectors = _plain_norms if _interpreted else cast("Any", _compiled_norms)
+step_pairs = _plain_pairs if _interpreted else cast("Any", _compiled_pairs)
+set_norms = _plain_norms if _interpreted else cast("Any", _compiled_norms)
 set_less = _plain_less if _interpreted else cast("Any", _compiled_less)

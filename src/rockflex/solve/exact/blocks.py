@@ -6,8 +6,8 @@ advanced sample by sample only where they are needed.
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex._vectors import BLOCK, FEW, outside, row_over_block, set_less, set_products
-from rockflex.solve.exact.probe import set_norms, set_over_pairs, step, step_pairs
+from rockflex._vectors import BLOCK, outside, row_over_block, set_less, set_norms, set_products, step_pairs
+from rockflex.solve.exact.probe import set_over_pairs, step
 from rockflex.solve.layout import (
     BEGUN,
     ENDS,
@@ -42,14 +42,14 @@ def look_ahead(system: System, piece: Array, last: int, at: Progress, motion: Mo
     for m in range(at.count, BLOCK):
         grounds[m] = inclines[m] = jumps[m] = 0.0
     jump = jumps[0]
-    kick(begun, motion.w[NOW], forced, jump)
+    set_less(begun, motion.w[NOW], forced, jump)
     turned -= abs(jump)
     jumps[0] = 0.0  # it is already in `begun`
-    set_norms(begun, active, motion.norms)
+    set_norms(motion.norms, begun, active)
     at.walk = -1
     forcing, ground, slope = system.row_forcing[p], piece[first], inclines[0]
     slack, begins = motion.slack, motion.begins
-    set_products(slack, system.leeway[p], motion.norms, 0, active)
+    set_products(slack, system.leeway[p], motion.norms, active, 1)
     set_over_pairs(begins, system.rows[p, VALUES], begun, active)
     for f in range(rows_in(system, p)):
         slack[f] += system.stray[p, f] * turned
@@ -65,16 +65,6 @@ def look_ahead(system: System, piece: Array, last: int, at: Progress, motion: Mo
             active,
             system.kicked[p, f],
         )
-
-
-@kernel
-def kick(out: Array, w: Array, forced: Array, jump: float) -> None:
-    """Set coordinates to those after a jump of the slope."""
-    if out.size >= FEW:
-        set_less(out, w, forced, jump)
-        return
-    for k in range(out.size):
-        out[k] = w[k] - forced[k] * jump
 
 
 @kernel
@@ -103,10 +93,10 @@ def walk_on(system: System, at: Progress, motion: Motion) -> None:
     """Continue from the end of the present sample of the block, where `motion.w[ENDS]` is, into the next one."""
     at.walk += 1
     jump = motion.block[JUMPS, at.walk] if at.walk < BLOCK else 0.0
-    kick(motion.w[NOW], motion.w[ENDS], system.forced[at.phase, 1], jump)
+    set_less(motion.w[NOW], motion.w[ENDS], system.forced[at.phase, 1], jump)
 
 
-@kernel
+@inlined_kernel
 def pass_block(system: System, at: Progress, stops: bool, motion: Motion) -> None:
     """Move `motion.w[NOW]` to the end of the block; if it `stops` at an event, to the start of the sample of it."""
     p, pairs, count = at.phase, motion.norms.size, at.count
@@ -120,8 +110,8 @@ def pass_block(system: System, at: Progress, stops: bool, motion: Motion) -> Non
         at.slope = motion.block[INCLINES, count - 1]
     else:
         begun, beyond, now = motion.w[BEGUN], motion.beyond[TOTALS], motion.w[NOW]
-        set_products(beyond, system.pushed[p], motion.block[JUMPS], 0, BLOCK)
-        step_pairs(system.leap[p], begun, now, pairs, pairs)
+        set_products(beyond, system.pushed[p], motion.block[JUMPS], BLOCK, 1)
+        step_pairs(now, system.leap[p], begun, pairs)
         for k in range(2 * pairs):
             now[k] += beyond[k]
         at.slope = motion.block[INCLINES, count - 1]

@@ -13,7 +13,7 @@ def to_state(system: System, at: Progress, ground: float, motion: Motion) -> Non
     state, parts = motion.beyond[TOTALS], motion.beyond[PARTS]
     for k in range(w.size):
         parts[k] = w[k] + (by_ground[k] * ground + by_slope[k] * slope) + still[k]
-    set_products(state, system.basis[p, OUT], parts, 0, w.size)
+    set_products(state, system.basis[p, OUT], parts, w.size, 1)
     for i in range(w.size):
         motion.state[i] = state[i]
 
@@ -23,6 +23,6 @@ def to_coordinates(system: System, at: Progress, ground: float, motion: Motion) 
     """Compute the coordinates of the present phase from the state."""
     p, slope, w, still = at.phase, at.slope, motion.w[NOW], motion.still
     by_ground, by_slope, found = system.forced[p, 0], system.forced[p, 1], motion.beyond[TOTALS]
-    set_products(found, system.basis[p, INTO], motion.state, 0, w.size)
+    set_products(found, system.basis[p, INTO], motion.state, w.size, 1)
     for k in range(w.size):
         w[k] = found[k] - (by_ground[k] * ground + by_slope[k] * slope) - still[k]

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex._vectors import FEW, add_products, norms_of_vectors, set_products, step_vectors
+from rockflex._vectors import set_norms, set_products, step_pairs
 from rockflex.solve.layout import (
     AFTER,
     ASKED,
@@ -49,42 +49,15 @@ def step(system: System, phase: int, level: int, motion: Motion) -> None:
             for k in range(2 * pairs):
                 ends[i] += system.propagator[phase, level, i, k] * now[k]
         return
-    step_pairs(system.blocks[phase, level], now, ends, pairs, system.phases[phase].active)
+    step_pairs(ends, system.blocks[phase, level], now, system.phases[phase].active)
     for k in range(system.phases[phase].active, pairs):
         ends[k], ends[pairs + k] = now[k], now[pairs + k]
-
-
-@kernel
-def step_pairs(blocks: Array, now: Array, ends: Array, pairs: int, active: int) -> None:
-    """Advance the first `active` of some pairs of coordinates by their `blocks` (4, K)."""
-    if active >= FEW:
-        step_vectors(ends, blocks, now, active)
-        return
-    one, two, three, four = blocks[0], blocks[1], blocks[2], blocks[3]
-    firsts, seconds, out, out_too = now[:pairs], now[pairs:], ends[:pairs], ends[pairs:]
-    for k in range(active):
-        x, y = firsts[k], seconds[k]
-        out[k] = one[k] * x + two[k] * y
-        out_too[k] = three[k] * x + four[k] * y
-
-
-@kernel
-def set_norms(w: Array, active: int, norms: Array) -> None:
-    """Set the norms of the first `active` pairs of coordinates."""
-    if active >= FEW:
-        norms_of_vectors(norms, w, active)
-        return
-    firsts, seconds = w[: norms.size], w[norms.size :]
-    for k in range(active):
-        x, y = firsts[k], seconds[k]
-        norms[k] = math.sqrt(x * x + y * y)
 
 
 @inlined_kernel
 def set_over_pairs(sums: Array, table: Array, w: Array, active: int) -> None:
     """Set sums, one for each row, to the products of a table with the first `active` pairs of coordinates."""
-    set_products(sums, table, w, 0, active)
-    add_products(sums, table, w, table.shape[0] // 2, active)
+    set_products(sums, table, w, active, 2)
 
 
 @kernel
@@ -92,7 +65,7 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
     """Advance `motion.w` over a step, and compute the rows at both ends and the norms of the pairs."""
     count, forcing, rows = system.phases[phase].active, system.row_forcing[phase], system.rows[phase, VALUES]
     first, final = motion.values[FIRST], motion.values[FINAL]
-    set_norms(motion.w[NOW], count, motion.norms)
+    set_norms(motion.norms, motion.w[NOW], count)
     step(system, phase, level, motion)
     set_over_pairs(first, rows, motion.w[NOW], count)
     set_over_pairs(final, rows, motion.w[ENDS], count)
@@ -102,7 +75,7 @@ def examine(system: System, phase: int, level: int, here: float, there: float, s
         final[f] += common + forcing[f, 0] * there
 
 
-@kernel
+@inlined_kernel
 def probe(system: System, phase: int, level: int, slope: float, log: Log, motion: Motion) -> int:
     """Return what can occur in the examined step: nothing, a peak, or an event; `DOUBT` marks the rows in question.
 
@@ -112,7 +85,7 @@ def probe(system: System, phase: int, level: int, slope: float, log: Log, motion
     """
     bounds, count = system.bounds[phase], system.phases[phase].active
     sags = motion.values[SAGS]
-    set_products(sags, bounds[SAG, level], motion.norms, 0, count)
+    set_products(sags, bounds[SAG, level], motion.norms, count, 1)
     finding, sloped = NOTHING, False
     for f in range(rows_in(system, phase)):
         motion.flags[DOUBT, f] = False
@@ -155,8 +128,8 @@ def look_at_slopes(system: System, phase: int, level: int, slope: float, motion:
     count, bounds, rows = system.phases[phase].active, system.bounds[phase], system.rows[phase, SLOPES]
     before, after = motion.values[BEFORE], motion.values[AFTER]
     swings, ripples = motion.values[SWINGS], motion.values[RIPPLES]
-    set_products(swings, bounds[SWING, level], motion.norms, 0, count)
-    set_products(ripples, bounds[RIPPLE, level], motion.norms, 0, count)
+    set_products(swings, bounds[SWING, level], motion.norms, count, 1)
+    set_products(ripples, bounds[RIPPLE, level], motion.norms, count, 1)
     set_over_pairs(before, rows, motion.w[NOW], count)
     set_over_pairs(after, rows, motion.w[ENDS], count)
     for f in range(rows_in(system, phase)):

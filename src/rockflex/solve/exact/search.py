@@ -46,7 +46,7 @@ def rising(row: int, at: Progress, log: Log, motion: Motion) -> int:
     return leaving(row, -np.inf if row >= log.signed else -limit, limit, at, motion)
 
 
-@inlined_kernel
+@kernel
 def search_next(system: System, piece: Array, at: Progress, log: Log, motion: Motion) -> bool:
     """Search for peaks in the first marked sample; return False if the search is interrupted."""
     m = 0

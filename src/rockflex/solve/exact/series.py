@@ -89,7 +89,7 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, 
             if k == 0 and j == slipping and not math.isnan(slide):
                 turn = square * slide
             turns[j] = -turn * pair
-        add_products(series[k + 2], coupling, turns, 0, freedoms)
+        add_products(series[k + 2], coupling, turns, freedoms, 1)
 
 
 @kernel

@@ -17,6 +17,7 @@ from rockflex._numba_vectors import padded
 from rockflex._vectors import BLOCK
 from rockflex.models import SUMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis, Drift
+from rockflex.solve.exact.entries import modes_of
 from rockflex.solve.exact.powers import put_powers
 from rockflex.solve.exact.series import NEGLIGIBLE
 from rockflex.solve.layout import (
@@ -87,15 +88,13 @@ def empty_system(
     whole = (capacity, levels + 1)
     memories, changes, fences = layout.remembered, model.most_changes, model.most_fences
     moved = capacity if shaken else 0
-    modes, border = np.zeros((3, padded(pairs))), np.zeros((capacity, 2, b, padded(pairs)))
-    modes[:, :n] = p.omega**2, 2.0 * p.zeta * p.omega, np.ones(n)
-    for j in range(b):
-        border[:, COUPLING, j, n + j] = -1.0
+    border = np.zeros((capacity, 2, b, padded(pairs)))
+    border[:, COUPLING, range(b), range(n, pairs)] = -1.0
     links = np.full((capacity, CHANGED + changes + fences), -1, dtype=np.int64)
     return System(
         layout=layout,
         dt=dt,
-        modes=modes,
+        modes=modes_of(p.omega, p.zeta, pairs),
         phases=np.zeros(capacity, dtype=PHASE),
         turning_row=rows - fences - 2 if model.turning else -1,
         chords=model.complete,
@@ -138,18 +137,6 @@ def empty_system(
 def size_of(system: System) -> int:
     """Return the memory of all tables in bytes."""
     return sum(table.nbytes for table in system if isinstance(table, np.ndarray))
-
-
-def grown(system: System, larger: System) -> System:
-    """Return `larger` with the content of `system`."""
-    for old, new in zip(system[2:], larger[2:], strict=True):
-        if isinstance(old, int) or isinstance(new, int):
-            continue
-        if old.size and new.shape != old.shape:
-            new[tuple(slice(length) for length in old.shape)] = old
-        elif old.size:
-            new[...] = old
-    return larger
 
 
 def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None, plain_rows: Array, twin: int) -> None:
