@@ -43,7 +43,9 @@ FOUNDATION = {
     "_numba",
     "_numba_lowering",
     "_numba_pipeline",
+    "_numba_vectors",
     "_schema",
+    "_series_vectors",
     "_shown",
     "_values",
     "_vectors",
@@ -57,7 +59,7 @@ HOME = {
     "matplotlib": {"plot", "papers"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "numba": {"_numba", "_numba_lowering", "_numba_pipeline", "_vectors"},
+    "numba": {"_numba", "_numba_lowering", "_numba_pipeline", "_numba_vectors", "_series_vectors", "_vectors"},
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
@@ -204,6 +206,8 @@ def test_the_walk_sees_the_package() -> None:
         "rockflex._numba",
         "rockflex._numba_lowering",
         "rockflex._numba_pipeline",
+        "rockflex._numba_vectors",
+        "rockflex._series_vectors",
         "rockflex._vectors",
     }
     assert any(each.when == DEFERRED for each in FOUND)

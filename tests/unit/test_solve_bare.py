@@ -63,7 +63,7 @@ def test_both_ways_prepare_the_same_tables(name, floors):
         one, other = getattr(bare, field), getattr(general, field)
         scale = np.abs(other).max(axis=tuple(range(1, other.ndim - 1)), keepdims=True) if other.ndim > 2 else 1.0
         np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-13 * size_of(scale), err_msg=field)
-    assert bare.basis.shape[-1] == 2 * n + 2
+    assert bare.basis.shape[2] == 2 * n + 2
 
 
 def matrix_of(blocks):
@@ -78,18 +78,18 @@ def test_both_ways_move_alike(name):
     for p in range(3):
         ways = []
         for system in (bare, general):
-            out, into = system.basis[p, 0].T, system.basis[p, 1].T
+            out, into = (each[:, : each.shape[0]].T for each in system.basis[p])
             level = system.phases[p].levels
             moved = out @ matrix_of(system.blocks[p, level]) @ into
             forced = system.forced[p] @ out.T
-            slopes = system.rows[p, 1] @ into
-            ways.append((out @ into, moved, forced, system.rows[p, 0] @ into, slopes, system.row_forcing[p]))
+            values, slopes = (each.T @ into for each in system.rows[p])
+            ways.append((out @ into, moved, forced, values, slopes, system.row_forcing[p]))
         scale = np.sqrt(np.abs(np.diag(general.basis[p, 0] @ general.basis[p, 0].T)).max())
         for one, other in zip(*ways, strict=True):
             np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-11 * max(size_of(other), scale * 1e-3))
         level = bare.phases[p].levels
         for kind in range(3):
-            one, other = (np.sort(each.bounds[p, kind, level], axis=1) for each in (bare, general))
+            one, other = (np.sort(each.bounds[p, kind, level], axis=0) for each in (bare, general))
             np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-9 * size_of(other))
 
 

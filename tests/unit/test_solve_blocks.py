@@ -7,7 +7,7 @@ from scipy.linalg import expm
 
 import rockflex as rf
 from rockflex import _vectors
-from rockflex._vectors import BLOCK
+from rockflex._vectors import BLOCK, WIDE
 from rockflex.models import Model
 from rockflex.response import asked_of
 from rockflex.solve import Engine
@@ -44,14 +44,35 @@ def outside_in_kernel(values, lower, upper):
 
 
 @njit
-def products_in_kernel(sums, table, factors):
-    _vectors.add_products(sums, table, factors)
+def pairs_in_kernel(ends, blocks, now, active):
+    _vectors.step_pairs(ends, blocks, now, active)
+
+
+@njit
+def norms_in_kernel(norms, w, active):
+    _vectors.set_norms(norms, w, active)
+
+
+@njit
+def less_in_kernel(out, one, other, factor):
+    _vectors.set_less(out, one, other, factor)
+
+
+@njit
+def products_in_kernel(sums, table, factors, count, parts):
+    _vectors.set_products(sums, table, factors, count, parts)
+
+
+@njit
+def more_products_in_kernel(sums, table, factors, count, parts):
+    _vectors.add_products(sums, table, factors, count, parts)
 
 
 @pytest.mark.parametrize(("pairs", "active"), [(1, 0), (2, 1), (2, 2), (6, 5), (16, 16)])
 def test_a_row_over_a_block(pairs, active):
     random = np.random.default_rng(pairs + active)
     course, table = random.normal(size=(3, BLOCK)), random.normal(size=(2 * pairs, BLOCK))
+    course[2, 0] = 0.0
     begun, kicked = random.normal(size=2 * pairs), np.concatenate((np.zeros(BLOCK), random.normal(size=BLOCK)))
     values, plain = np.zeros(BLOCK), np.zeros(BLOCK)
     row_in_kernel(values, 0.3, 0.4, -0.5, course, table, begun, active, kicked)
@@ -66,13 +87,46 @@ def test_samples_outside_limits():
         assert outside_in_kernel(values, lower, upper) == _vectors._plain_outside(values, lower, upper)
 
 
-def test_sums_of_products():
+@pytest.mark.parametrize(("count", "parts"), [(0, 1), (3, 1), (4, 2), (7, 2), (16, 1)])
+def test_sums_of_products(count, parts):
     random = np.random.default_rng(1)
-    table, factors = random.normal(size=(BLOCK, 2 * BLOCK)), random.normal(size=BLOCK)
-    sums = random.normal(size=2 * BLOCK)
-    expected = sums + factors @ table
-    products_in_kernel(sums, table, factors)
-    assert sums == pytest.approx(expected, abs=1e-13)
+    table, factors = random.normal(size=(BLOCK, 3 * WIDE)), random.normal(size=BLOCK)
+    sums = random.normal(size=3 * WIDE)
+    used = np.arange(BLOCK) % (BLOCK // parts) < count
+    expected = factors[used] @ table[used]
+    for more, compiled, plain in (
+        (sums.copy(), more_products_in_kernel, _vectors._plain_further_sums),
+        (0.0, products_in_kernel, _vectors._plain_sums),
+    ):
+        for way in (compiled, plain):
+            found = sums.copy()
+            way(found, table, factors, count, parts)
+            assert found == pytest.approx(more + expected, abs=1e-13)
+
+
+@pytest.mark.parametrize(("pairs", "active"), [(1, 1), (2, 1), (3, 3), (5, 4), (6, 6), (16, 15)])
+def test_pairs_step_and_keep_what_is_held(pairs, active):
+    random = np.random.default_rng(pairs)
+    blocks, now = random.normal(size=(4, pairs)), random.normal(size=2 * pairs)
+    # A longer array behind them shows whether anything is written beyond their end.
+    for way in (pairs_in_kernel, _vectors._plain_pairs):
+        ends = np.full(2 * pairs + 8, 7.0)
+        way(ends[: 2 * pairs], blocks, now, active)
+        for k in range(pairs):
+            x, y = now[k], now[pairs + k]
+            expected = blocks[0, k] * x + blocks[1, k] * y, blocks[2, k] * x + blocks[3, k] * y
+            assert (ends[k], ends[pairs + k]) == (pytest.approx(expected, abs=1e-14) if k < active else (7.0, 7.0))
+        assert (ends[2 * pairs :] == 7.0).all()
+    for way in (norms_in_kernel, _vectors._plain_norms):
+        norms = np.full(pairs + 8, 7.0)
+        way(norms[:pairs], now, active)
+        assert norms[:active] == pytest.approx(np.hypot(now[:pairs], now[pairs:])[:active], rel=1e-15)
+        assert (norms[active:] == 7.0).all()
+    for way in (less_in_kernel, _vectors._plain_less):
+        less = np.full(2 * pairs + 8, 7.0)
+        way(less[: 2 * pairs], now, now[::-1].copy(), 0.3)
+        assert less[: 2 * pairs] == pytest.approx(now - 0.3 * now[::-1], abs=1e-15)
+        assert (less[2 * pairs :] == 7.0).all()
 
 
 def prepared(name, dense):
@@ -100,12 +154,16 @@ def step_of(system, p):
     return step
 
 
+def rows_of(system, p):
+    return system.rows[p, VALUES, :, : system.stray.shape[1]].T
+
+
 @pytest.mark.parametrize(("name", "dense"), CASES)
 @pytest.mark.parametrize("p", [0, 1])
 def test_tables_of_a_block_are_powers_of_a_step(name, dense, p):
     system = prepared(name, dense)
     step, kick = step_of(system, p), -system.forced[p, 1]
-    rows = system.rows[p, VALUES]
+    rows = rows_of(system, p)
     assert system.phases[p]["block"] == BLOCK
     assert not system.kicked[p, :, :BLOCK].any()
     power, size = np.eye(step.shape[0]), np.abs(rows).sum(axis=1)
@@ -130,13 +188,13 @@ def test_leeway_bounds_the_deviation_from_chords(name, dense, p):
     roots, vectors = np.linalg.eig(step_of(system, p))
     generator = (vectors @ np.diag(np.log(roots.astype(complex))) @ np.linalg.inv(vectors)).real / parts
     active = pairs if p == 1 else int(system.phases[p]["active"])
-    small, rows, random = expm(generator), system.rows[p, VALUES], np.random.default_rng(2)
+    small, rows, random = expm(generator), rows_of(system, p), np.random.default_rng(2)
     for _ in range(20):
         w = np.zeros(2 * pairs)
         w[:active], w[pairs : pairs + active] = random.normal(size=(2, active))
         jump = random.normal() * np.linalg.norm(w) / np.linalg.norm(system.forced[p, 1])
         norms = np.hypot(w[:pairs], w[pairs:])
-        slack = system.leeway[p] @ norms + system.stray[p] * abs(jump)
+        slack = norms @ system.leeway[p, :, : rows.shape[0]] + system.stray[p] * abs(jump)
         w = w - system.forced[p, 1] * jump
         path = [w]
         for _ in range(BLOCK * parts):

@@ -108,14 +108,14 @@ def test_a_lift_that_is_known_replaces_the_equation_of_motion():
         return motion.series
 
     free = series(1.0, np.nan)
-    told = series(1.0, 2.0 * free[n, 2] / step**2)
+    told = series(1.0, 2.0 * free[2, n] / step**2)
     np.testing.assert_allclose(told, free, rtol=1e-12)
     none = series(1.0, 0.0)
-    assert not none[n, :3].any()  # the rotation starts with the cube of time, without any rounding
-    assert none[n, 3] != 0.0
+    assert not none[:3, n].any()  # the rotation starts with the cube of time, without any rounding
+    assert none[3, n] != 0.0
     # D'' then is that of contact.
     contact = series(0.0, np.nan)
-    np.testing.assert_allclose(none[:n, :3], contact[:n, :3], rtol=1e-14)
+    np.testing.assert_allclose(none[:3, :n], contact[:3, :n], rtol=1e-14)
 
 
 coefficients = st.lists(st.floats(-10, 10).map(lambda x: round(x, 3)), min_size=2, max_size=14)

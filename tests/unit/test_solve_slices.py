@@ -105,7 +105,7 @@ def test_runs_on_one_engine_do_not_meddle_with_each_other(case, monkeypatch):
     def watched(self, system, steps, course, at, log, motion, batch):
         # The phases that this run can come to, as far as its tables know, fit the room that it has.
         reached = {int(p) for p in np.unique(system.links[:, FOLLOWS:]) if p >= 0} or {0}
-        needed.append(max(int(system.phases["terms"][p]) for p in reached) <= motion.series.shape[1])
+        needed.append(max(int(system.phases["terms"][p]) for p in reached) <= motion.series.shape[0])
         return carry(self, system, steps, course, at, log, motion, batch)
 
     monkeypatch.setattr(Engine, "_carry", watched)

@@ -73,6 +73,12 @@ def draws(size, count=12):
     return np.random.default_rng(size).standard_normal((count, size))
 
 
+def bases(system, phase):
+    """Return the basis and its inverse, both transposed."""
+    size = system.basis.shape[2]
+    return system.basis[phase, OUT, :, :size], system.basis[phase, INTO, :, :size]
+
+
 def blocks_as_matrix(blocks):
     k = blocks.shape[1]
     return np.block([[np.diag(blocks[0]), np.diag(blocks[1])], [np.diag(blocks[2]), np.diag(blocks[3])]]), k
@@ -88,7 +94,8 @@ def test_a_step_is_the_exponential(name, phase):
     for level in range(system.phases["levels"][phase] + 1):
         step = DT / 2**level
         blocks, _ = blocks_as_matrix(system.blocks[phase, level])
-        mine = system.basis[phase, OUT].T @ blocks @ system.basis[phase, INTO].T
+        out, into = bases(system, phase)
+        mine = out.T @ blocks @ into.T
         expected = expm(matrix * step)[: 2 * n + 2, : 2 * n + 2]
         if phase == CONTACT:
             expected[-2:] = 0.0
@@ -122,7 +129,7 @@ def test_forced_motion_under_a_linear_acceleration(name, phase):
     n = engine.model.properties.n_modes
     matrix = generator(twin, n, phase)[: 2 * n + 2]
     moved, drive = matrix[:, : 2 * n + 2], matrix[:, 2 * n + 2 :]
-    out, into = system.basis[phase, OUT], system.basis[phase, INTO]
+    out, into = bases(system, phase)
     fastest, side = engine._phases._bases[phase].fastest, SIDES[phase]
     by_a, by_slope, by_side = system.forced[phase] @ out
     for steady, rate, push in (
@@ -143,7 +150,8 @@ def test_how_far_rows_leave_their_interpolants(name, phase, dense):
     engine, system, _ = prepared(name, dense=dense)
     chosen = engine._phases._bases[phase]
     assert chosen.dense == system.phases["dense"][phase] == (dense and phase != CONTACT)
-    sag, swing, ripple = (system.bounds[phase, place] for place in (SAG, SWING, RIPPLE))
+    count = system.stray.shape[1]
+    sag, swing, ripple = (system.bounds[phase, place, :, :, :count] for place in (SAG, SWING, RIPPLE))
     half = chosen.matrix.shape[0] // 2
     inside = np.linspace(0.0, 1.0, 65)
     chord = (1.0 - inside, inside)
@@ -156,7 +164,7 @@ def test_how_far_rows_leave_their_interpolants(name, phase, dense):
         path = np.stack([propagate(chosen, states, np.full(len(states), step * u)) for u in inside])
         if phase == CONTACT:
             path[..., [half - 1, 2 * half - 1]] = 0.0
-        values, slopes = path @ system.rows[phase, VALUES].T, path @ system.rows[phase, SLOPES].T
+        values, slopes = (path @ system.rows[phase, which, :, :count] for which in (VALUES, SLOPES))
         norms = np.hypot(states[:, :half], states[:, half:])
 
         def joined(weights, ends):
@@ -167,7 +175,7 @@ def test_how_far_rows_leave_their_interpolants(name, phase, dense):
             (slopes - joined(chord, slopes), swing, slopes),
             (values - joined(cubic, values) - step * joined(bulge, slopes), ripple, values),
         ):
-            worst, allowed = np.abs(difference).max(axis=0), norms @ bound[level].T
+            worst, allowed = np.abs(difference).max(axis=0), norms @ bound[level]
             assert np.all(worst <= allowed * (1.0 + 1e-9) + 1e-12 * np.abs(size).max(axis=(0, 1)))
             tightest = min(tightest, (allowed / np.maximum(worst, 1e-300)).min())
     assert tightest < 50.0
@@ -179,7 +187,7 @@ def test_what_contact_can_still_bring_is_bounded(name):
     states = draws(system.basis.shape[2])
     half = states.shape[1] // 2
     states[:, [half - 1, -1]] = 0.0
-    rows = system.rows[CONTACT, VALUES]
+    rows = system.rows[CONTACT, VALUES, :, : system.stray.shape[1]].T
     bound = np.hypot(states[:, :half], states[:, half:]) @ np.hypot(rows[:, :half], rows[:, half:]).T
     for time in np.linspace(0.0, 5.0, 300):
         moved = propagate(engine._phases._bases[CONTACT], states, np.full(len(states), time))

@@ -26,7 +26,7 @@ class Desk:
         """Return the motion, with room for power series of that many terms."""
         rows, had = self._motion.polys.shape
         if terms > had:
-            series = np.zeros((self._motion.series.shape[0], terms))
+            series = np.zeros((terms, self._motion.series.shape[1]))
             self._motion = self._motion._replace(series=series, polys=np.zeros((rows, terms)))
         return self._motion
 

@@ -23,7 +23,7 @@ from rockflex.models import (
     StateLayout,
 )
 from rockflex.solve.exact.bare import Bare, enter_bare
-from rockflex.solve.exact.entries import Tables, tables_of
+from rockflex.solve.exact.entries import Tables, modes_of, tables_of
 from rockflex.solve.exact.tables import LONGEST_FALL, empty_system, levels_of, size_of
 from rockflex.solve.exact.uncoupled import Pairs, pairs_of
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FEWEST_TERMS, FOLLOWS, TURNED, System
@@ -152,7 +152,7 @@ class BarePhases:
         p = self._model.properties
         rows = 2 + len(self._quantities)
         levels = min(levels_of(fastest, dt), MOST_LEVELS)
-        system = _copied(self._empty(rows, levels), dt, np.array((p.omega**2, 2.0 * p.zeta * p.omega)))
+        system = _copied(self._empty(rows, levels), dt, modes_of(p.omega, p.zeta, p.n_modes + 1))
         right, left = p.pivot(RIGHT), p.pivot(LEFT)
         spare = _spare.setdefault(p.n_modes, [])
         try:

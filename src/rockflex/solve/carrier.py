@@ -200,14 +200,14 @@ def turning_rate(
     """Return θ'' at θ = 0 in a phase in which the motion may continue."""
     if steps is None:
         n, rate = system.layout.modes, 0.0
-        for j in range(motion.push.size):
+        for j in range(motion.push.shape[1]):
             force = load_in(system, phase, j, motion.state) + system.push[phase, DRIVE, j] * ground
             force -= system.base[phase, DAMPING, j, 0] * motion.state[system.layout.spin]
             if rise != 0.0:
                 force += system.heavier_push[phase, j] * rise
             for i in range(n):
                 restoring = system.modes[DRAG, i] * motion.state[n + i] + system.modes[OMEGA2, i] * motion.state[i]
-                force += system.border[phase, j, LEVERAGE, i] * restoring
+                force += system.border[phase, LEVERAGE, j, i] * restoring
             rate += force * system.base[phase, FLEXIBILITY, 0, j]
         return rate
     forget(steps.room)

@@ -191,11 +191,11 @@ def sizes_at(system: System, phase: int, row: int, span: Span, motion: Motion) -
     size, slope = abs(rows[phase, row, moving] * span.ground) + abs(rows[phase, row, moving + 1]), 0.0
     for i in range(moving):
         size += abs(rows[phase, row, i] * motion.state[i])
-    for i in range(motion.series.shape[0]):
+    for i in range(motion.w.shape[1] // 2):
         place, speed = (i, n + i) if i < n else (2 * i, 2 * i + 1)
         change = 0.0
         if system.phases[phase].linear:
-            change = 2.0 * abs(motion.series[i, 2]) / (span.length * span.length) * system.dt
+            change = 2.0 * abs(motion.series[2, i]) / (span.length * span.length) * system.dt
         size += abs(rows[phase, row, speed]) * change
         slope += abs(rows[phase, row, place]) * (abs(motion.state[speed]) + change)
     return size, slope

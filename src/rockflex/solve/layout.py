@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import kernel
-from rockflex._vectors import BLOCK, padded
+from rockflex._numba_vectors import padded
+from rockflex._vectors import BLOCK
 from rockflex.models import PULLS, SUMS, StateLayout
 from rockflex.solve.records import DEFERRED
 
@@ -31,10 +32,13 @@ LEFT, CARRY, LOOK, SERIES, STEP = 0, 1, 2, 3, 4
 UPLIFTS, IMPACTS, EVENTS, KEPT = 0, 1, 2, 3
 
 # Indices in `System.modes`, `border`, `base` and `push`
-OMEGA2, DRAG = 0, 1
+OMEGA2, DRAG, DRIVEN = 0, 1, 2
 COUPLING, LEVERAGE = 0, 1
 FLEXIBILITY, DAMPING, STIFFNESS = 0, 1, 2
 CONSTANT, DRIVE = 0, 1
+
+# Indices in `Motion.push`
+FORCES, TURNS = 0, 1
 
 # Indices in `System.links`, for two limits each: the event there, and the phase that follows; -1 for none, or for a
 # phase not yet compiled. Then the same branches with the base in contact, on its right pivot and on its left pivot.
@@ -60,15 +64,19 @@ VALUES, SLOPES = 0, 1
 
 # Indices in `Motion.w`, `Motion.values` and `Motion.flags`
 NOW, ENDS, HELD, BEGUN = 0, 1, 2, 3
-LOWER, UPPER, FIRST, FINAL = 0, 1, 2, 3
+LOWER, UPPER, FIRST, FINAL, BEFORE, AFTER, SAGS, SWINGS, RIPPLES = 0, 1, 2, 3, 4, 5, 6, 7, 8
 DOUBT, ASKED = 0, 1
+
+# Indices in `Motion.beyond`
+TOTALS, PARTS = 0, 1
 
 # Indices in `Motion.block`: the acceleration at the end of each sample, its slope within it, and the jump of the slope
 # at its start
 GROUNDS, INCLINES, JUMPS = 0, 1, 2
 
-# Indices in `Motion.reach`: of a coordinate and of its rate, and how far either moves away from its start
-SIZE, RATE, MOVES, TURNS_BY = 0, 1, 2, 3
+# Indices in `Motion.reach`: of a coordinate and of its rate, and how far either moves away from its start. Then work
+# rows: restoring forces, values and rates, and the weights of both in a row.
+SIZE, RATE, MOVES, TURNS_BY, RESTORING, PLACES, SPEEDS, WEIGHTS = 0, 1, 2, 3, 4, 5, 6, 7
 
 # Indices in `System.bounds`: largest deviation over a step of a row from its chord, of its slope from the chord of the
 # slope, and of the row from the cubic through the values and slopes at both ends.
@@ -88,7 +96,7 @@ class System(NamedTuple):
 
     layout: StateLayout
     dt: float
-    modes: Array  # (2, N): ω² and 2ζω
+    modes: Array  # (3, K'), K = N + b rounded up to whole vectors: ω², 2ζω, and 1; 0 for the base
     phases: Any  # (P,): records of `PHASE`
     turning_row: int  # index of the row of θ', which guards elements that yield; -1 if no element can
     chords: bool  # whether an element is stretched by 2 r sin(|θ|/2), rather than r |θ|
@@ -103,7 +111,7 @@ class System(NamedTuple):
     marks: Array  # (P, M): memories with a value of their own in a phase; NaN for others
     turnings: Array  # (P, M, 2): memory = arm δ/r - offset, of an element whose yielding ends; NaN for others
     recall: Array  # (P, b, M): factors of the memories in the forces on the base
-    border: Array  # (P, b, 2, N): c and m* c of `rockflex.models.Arrow`
+    border: Array  # (P, 2, b, K'): c and m* c of `rockflex.models.Arrow`; the base has -1 as its own c
     base: Array  # (P, 3, b, b): flexibility, damping and stiffness of the base
     push: Array  # (P, 2, b): constant forces on the base, and the factor of the ground acceleration
     pulls: Array  # (P, 7, 1 + M): sums over the elements, and what the memories add: see `rockflex.models.pulls_of`
@@ -112,21 +120,21 @@ class System(NamedTuple):
     heavier_base: Array  # (P, b, b): of its stiffness
     heavier_limits: Array  # (P, 2, 2): of the limits of the guard, and of what the rotation adds to them
     heavier_rows: Array  # (P, F + E, C): of the rows
-    # For the motion
+    # For the motion; F' and S' are F + E and S = 2 N + 2 b rounded up to whole vectors, see `rockflex._vectors`
     plain_rows: Array  # (P, F + E, C): the rows over the state, a and 1
-    basis: Array  # (P, 2, S, S), S = 2 N + 2 b: from coordinates to states and back, both transposed
+    basis: Array  # (P, 2, S, S'): from coordinates to states and back, both transposed
     forced: Array  # (P, 3 + M, S): coefficients of a, a', 1 and the memories in the forced part
-    rows: Array  # (P, 2, F + E, S): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
+    rows: Array  # (P, 2, S, F'): the rows over w, and their derivatives, to which `row_forcing[.., 0]` a' adds
     row_forcing: Array  # (P, F + E, 3 + M): coefficients of a, a', 1 and the memories in the rows
     blocks: Array  # (P, J + 1, 4, K): exp(B h) of each pair, row by row
     propagator: Array  # (P, J + 1, S, S): exp(B h) if some phase is dense; otherwise (0, 0, 0, 0)
-    bounds: Array  # (P, 3, J + 1, F + E, K): sag, swing and ripple of each row over a step, times |w| of the pair
+    bounds: Array  # (P, 3, J + 1, K, F'): sag, swing and ripple of each row over a step, times |w| of the pair
     # For blocks of L = `BLOCK` samples
     ahead: Array  # (P, F + E, S, L): the rows at the end of each sample over w at the start of the block
     kicked: Array  # (P, F + E, 2 L): the rows 1 - L to L samples after a jump of the slope; zero before it
     leap: Array  # (P, 4, K): exp(B h) of each pair over the block
-    pushed: Array  # (P, L, S rounded up to a multiple of L): w at the end of the block over those jumps
-    leeway: Array  # (P, F + E, K): sag of each row over any sample of the block, times |w| of the pair at its start
+    pushed: Array  # (P, L, S'): w at the end of the block over those jumps
+    leeway: Array  # (P, K, F'): sag of each row over any sample of the block, times |w| of the pair at its start
     stray: Array  # (P, F + E): the same, times the magnitudes of the jumps
 
 
@@ -170,22 +178,24 @@ class Motion(NamedTuple):
     state: Array  # (S',)
     w: Array  # (4, S): now, after the step examined, the same during the search inside it, at the start of the block
     norms: Array  # (K,)
-    values: Array  # (4, F + E): lower and upper limits of the rows, and their values at both ends of the step
+    # (9, F + E rounded up to whole vectors): lower and upper limits of the rows, their values and their slopes at both
+    # ends of the step, and their sag, swing and ripple over it
+    values: Array
     flags: Bools  # (2, F + E): rows that may leave their limits inside the step, and rows to examine
     block: Array  # (3, L): the acceleration of the ground over a block of samples
-    begins: Array  # (F + E,): rows at the start of the block
+    begins: Array  # (F + E rounded up,): rows at the start of the block
     told: Array  # (F + E, L): rows at the end of each of its samples
-    beyond: Array  # (S rounded up to a multiple of L,): w at its end
-    slack: Array  # (F + E,): how far they may leave the chords between these values
+    slack: Array  # (F + E rounded up,): how far they may leave the chords between these values
+    beyond: Array  # (2, S rounded up): work arrays: sums of products, and their factors
     deferred: Any  # (Q,): records of `DEFERRED`; the last one keeps the present while these blocks are searched
     states: Array  # (Q, S'): their states
     coordinates: Array  # (Q, S): w at their starts
     highest: Array  # (Q, F): bounds of the peaks in them
     clear: NDArray[np.int64]  # (F + E,): point of the grid up to which the search for peaks is done
-    series: Array  # (N + b, terms)
-    reach: Array  # (4, N + b): how far the series reach, see `series.measure`
+    series: Array  # (terms, N + b rounded up to whole vectors)
+    reach: Array  # (9, N + b rounded up): how far the series reach, see `series.measure`, and work rows
     polys: Array  # (F + E + 1, terms): polynomials of the rows, and one for work
-    push: Array  # (b,): forces on the base, coefficient by coefficient
+    push: Array  # (2, b): forces on the base and its accelerations, coefficient by coefficient
     # Of the present phase, with the memories as they are: see `memory.recollect`
     limits: Array  # (2,): of the guard
     owners: NDArray[np.int64]  # (2,): the change of an element at each limit; -1 if it is the base's own
@@ -205,22 +215,22 @@ def motion_of(state: Array, layout: StateLayout, rows: int, terms: int) -> Motio
         state=state,
         w=np.zeros((4, core)),
         norms=np.zeros(pairs),
-        values=np.zeros((4, rows)),
+        values=np.zeros((9, padded(rows))),
         flags=flags,
         block=np.zeros((3, BLOCK)),
-        begins=np.zeros(rows),
+        begins=np.zeros(padded(rows)),
         told=np.zeros((rows, BLOCK)),
-        beyond=np.zeros(padded(core)),
-        slack=np.zeros(rows),
+        slack=np.zeros(padded(rows)),
+        beyond=np.zeros((2, padded(core))),
         deferred=np.zeros(MOST_DEFERRED + 1, dtype=DEFERRED),
         states=np.zeros((MOST_DEFERRED + 1, state.size)),
         coordinates=np.zeros((MOST_DEFERRED + 1, core)),
         highest=np.zeros((MOST_DEFERRED + 1, rows)),
         clear=np.zeros(rows, dtype=np.int64),
-        series=np.zeros((pairs, terms)),
-        reach=np.zeros((4, pairs)),
+        series=np.zeros((terms, padded(pairs))),
+        reach=np.zeros((9, padded(pairs))),
         polys=np.zeros((rows + 1, terms)),
-        push=np.zeros(freedoms),
+        push=np.zeros((2, freedoms)),
         limits=np.zeros(2),
         owners=np.full(2, -1, dtype=np.int64),
         load=np.zeros(freedoms),

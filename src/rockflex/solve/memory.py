@@ -64,7 +64,7 @@ def recollect(system: System, phase: int, motion: Motion) -> None:
 @kernel
 def set_limits(system: System, phase: int, motion: Motion) -> None:
     """Set the limits beyond which the guard, the row of θ' or a fence means an event; other rows have none."""
-    for f in range(motion.values.shape[1]):
+    for f in range(motion.offset.size):
         motion.values[LOWER, f] = 0.0 if f >= system.fences else -np.inf
         motion.values[UPPER, f] = np.inf
     motion.values[LOWER, GUARD] = motion.limits[LOW]

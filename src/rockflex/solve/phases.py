@@ -20,7 +20,8 @@ from rockflex.models import (
     under_more_gravity,
 )
 from rockflex.solve.exact.basis import Basis, Drift, basis_of, drift_of, with_constant
-from rockflex.solve.exact.tables import check_step, empty_system, grown, levels_of, put_heavier, put_phase, size_of
+from rockflex.solve.exact.entries import grown
+from rockflex.solve.exact.tables import check_step, empty_system, levels_of, put_heavier, put_phase, size_of
 from rockflex.solve.layout import BESIDE, CHANGED, EVENT, FEWEST_TERMS, FOLLOWING, FOLLOWS, TURNED, TURNING, System
 
 MOST_LEVELS = 8  # largest number of levels allocated in advance

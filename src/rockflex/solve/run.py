@@ -176,10 +176,10 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     for f in range(log.peaks.size):
         rest, stray = motion.offset[f], 0.0
         for k in range(moving):
-            size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
+            size = math.hypot(system.rows[p, VALUES, k, f], system.rows[p, VALUES, pairs + k, f])
             stray += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
         for k in range(moving, pairs if held else moving):
-            rest += system.rows[p, VALUES, f, k] * motion.w[NOW, k]
+            rest += system.rows[p, VALUES, k, f] * motion.w[NOW, k]
         if f == GUARD:
             place = abs(rest)
             if rest - stray < motion.limits[LOW] or rest + stray > motion.limits[HIGH]:
@@ -194,7 +194,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     for f in range(log.peaks.size, rows_in(system, p)):
         stray = 0.0
         for k in range(moving):
-            size = math.hypot(system.rows[p, VALUES, f, k], system.rows[p, VALUES, f, pairs + k])
+            size = math.hypot(system.rows[p, VALUES, k, f], system.rows[p, VALUES, pairs + k, f])
             stray += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
         if motion.offset[f] < stray:
             return False

@@ -70,7 +70,7 @@ def enter_contact(system: Tables, bare: Bare, pairs: Pairs) -> bool:
     half, basis, steady = n + 1, system.basis[CLOSED], bare.steady
     for i in range(n):
         mass, height = bare.modes[0, i], bare.modes[1, i]
-        system.border[CLOSED, 0, COUPLING, i], system.border[CLOSED, 0, LEVERAGE, i] = height, mass * height
+        system.border[CLOSED, COUPLING, 0, i], system.border[CLOSED, LEVERAGE, 0, i] = height, mass * height
     enter_rows(system, bare, CLOSED, 0.0)
     system.limits[CLOSED, LOW, 0] = -bare.mass * bare.gravity * bare.pivots[0, 1]
     system.limits[CLOSED, HIGH, 0] = bare.mass * bare.gravity * bare.pivots[1, 1]
@@ -110,7 +110,7 @@ def enter_rocking(system: Tables, bare: Bare, pairs: Pairs, p: int) -> bool:
     free, lever = inertia, 0.0
     for i in range(n):
         mass, height = bare.modes[0, i], bare.modes[1, i]
-        system.border[p, 0, COUPLING, i], system.border[p, 0, LEVERAGE, i] = height, mass * height
+        system.border[p, COUPLING, 0, i], system.border[p, LEVERAGE, 0, i] = height, mass * height
         free -= mass * height * height
         lever += mass * height
     flexibility, weight = 1.0 / free, bare.mass * bare.gravity * arm

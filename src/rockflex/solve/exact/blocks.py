@@ -4,12 +4,10 @@ The start of the block is in `motion.w[BEGUN]`, with the jump of the acceleratio
 advanced sample by sample only where they are needed.
 """
 
-import math
-
 from rockflex._arrays import Array
-from rockflex._kernel import kernel
-from rockflex._vectors import BLOCK, add_products, outside, row_over_block
-from rockflex.solve.exact.probe import step
+from rockflex._kernel import inlined_kernel, kernel
+from rockflex._vectors import BLOCK, outside, row_over_block, set_less, set_norms, set_products, step_pairs
+from rockflex.solve.exact.probe import set_over_pairs, step
 from rockflex.solve.layout import (
     BEGUN,
     ENDS,
@@ -17,6 +15,7 @@ from rockflex.solve.layout import (
     INCLINES,
     JUMPS,
     NOW,
+    TOTALS,
     VALUES,
     Motion,
     Progress,
@@ -25,44 +24,41 @@ from rockflex.solve.layout import (
 )
 
 
-@kernel
+@inlined_kernel
 def look_ahead(system: System, piece: Array, last: int, at: Progress, motion: Motion) -> None:
     """Compute the rows at the ends of the samples of a block, and how far they may leave their chords."""
-    p, pairs = at.phase, motion.norms.size
+    p = at.phase
     active, first, rate = system.phases[p].active, at.index, 1.0 / system.dt
     at.count = min(system.phases[p].block, last - first)
     forced, begun = system.forced[p, 1], motion.w[BEGUN]
     grounds, inclines, jumps = motion.block[GROUNDS], motion.block[INCLINES], motion.block[JUMPS]
     before, turned = at.slope, 0.0
-    for m in range(at.count):
-        inclines[m] = (piece[first + m + 1] - piece[first + m]) * rate
-        grounds[m] = piece[first + m + 1]
-        jumps[m] = inclines[m] - before
-        before = inclines[m]
-        turned += abs(jumps[m])
+    ground = piece[first]
+    for m, after in enumerate(piece[first + 1 : first + 1 + at.count]):
+        incline = (after - ground) * rate
+        grounds[m], inclines[m], jumps[m] = after, incline, incline - before
+        turned += abs(incline - before)
+        ground, before = after, incline
     for m in range(at.count, BLOCK):
         grounds[m] = inclines[m] = jumps[m] = 0.0
-    for k in range(2 * pairs):
-        begun[k] = motion.w[NOW, k] - forced[k] * jumps[0]
-    turned -= abs(jumps[0])
+    jump = jumps[0]
+    set_less(begun, motion.w[NOW], forced, jump)
+    turned -= abs(jump)
     jumps[0] = 0.0  # it is already in `begun`
-    for k in range(active):
-        motion.norms[k] = math.sqrt(begun[k] * begun[k] + begun[pairs + k] * begun[pairs + k])
+    set_norms(motion.norms, begun, active)
     at.walk = -1
+    forcing, ground, slope = system.row_forcing[p], piece[first], inclines[0]
+    slack, begins = motion.slack, motion.begins
+    set_products(slack, system.leeway[p], motion.norms, active, 1)
+    set_over_pairs(begins, system.rows[p, VALUES], begun, active)
     for f in range(rows_in(system, p)):
-        rows, offset = system.rows[p, VALUES, f], motion.offset[f]
-        by_ground, by_slope = system.row_forcing[p, f, 0], system.row_forcing[p, f, 1]
-        slack = system.stray[p, f] * turned
-        start = offset + by_ground * piece[first] + by_slope * inclines[0]
-        for k in range(active):
-            slack += system.leeway[p, f, k] * motion.norms[k]
-            start += rows[k] * begun[k] + rows[pairs + k] * begun[pairs + k]
-        motion.slack[f], motion.begins[f] = slack, start
+        slack[f] += system.stray[p, f] * turned
+        begins[f] += motion.offset[f] + forcing[f, 0] * ground + forcing[f, 1] * slope
         row_over_block(
             motion.told[f],
-            offset,
-            by_ground,
-            by_slope,
+            motion.offset[f],
+            forcing[f, 0],
+            forcing[f, 1],
             motion.block,
             system.ahead[p, f],
             begun,
@@ -97,11 +93,10 @@ def walk_on(system: System, at: Progress, motion: Motion) -> None:
     """Continue from the end of the present sample of the block, where `motion.w[ENDS]` is, into the next one."""
     at.walk += 1
     jump = motion.block[JUMPS, at.walk] if at.walk < BLOCK else 0.0
-    for k in range(motion.w.shape[1]):
-        motion.w[NOW, k] = motion.w[ENDS, k] - system.forced[at.phase, 1, k] * jump
+    set_less(motion.w[NOW], motion.w[ENDS], system.forced[at.phase, 1], jump)
 
 
-@kernel
+@inlined_kernel
 def pass_block(system: System, at: Progress, stops: bool, motion: Motion) -> None:
     """Move `motion.w[NOW]` to the end of the block; if it `stops` at an event, to the start of the sample of it."""
     p, pairs, count = at.phase, motion.norms.size, at.count
@@ -114,11 +109,9 @@ def pass_block(system: System, at: Progress, stops: bool, motion: Motion) -> Non
         walk_on(system, at, motion)
         at.slope = motion.block[INCLINES, count - 1]
     else:
-        begun, beyond, leap = motion.w[BEGUN], motion.beyond, system.leap[p]
-        for k in range(pairs):
-            beyond[k] = leap[0, k] * begun[k] + leap[1, k] * begun[pairs + k]
-            beyond[pairs + k] = leap[2, k] * begun[k] + leap[3, k] * begun[pairs + k]
-        add_products(beyond, system.pushed[p], motion.block[JUMPS])
+        begun, beyond, now = motion.w[BEGUN], motion.beyond[TOTALS], motion.w[NOW]
+        set_products(beyond, system.pushed[p], motion.block[JUMPS], BLOCK, 1)
+        step_pairs(now, system.leap[p], begun, pairs)
         for k in range(2 * pairs):
-            motion.w[NOW, k] = beyond[k]
+            now[k] += beyond[k]
         at.slope = motion.block[INCLINES, count - 1]

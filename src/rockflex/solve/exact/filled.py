@@ -54,11 +54,11 @@ def fill_rows(system: Tables, p: int, blocks: Array) -> None:
             total = 0.0
             for i in range(size):
                 total += plain[r, i] * basis[k, i]
-            rows[VALUES, r, k] = total
+            rows[VALUES, k, r] = total
         for k in range(half):
-            one, two = rows[VALUES, r, k], rows[VALUES, r, half + k]
-            rows[SLOPES, r, k] = one * blocks[k, 0] + two * blocks[k, 2]
-            rows[SLOPES, r, half + k] = one * blocks[k, 1] + two * blocks[k, 3]
+            one, two = rows[VALUES, k, r], rows[VALUES, half + k, r]
+            rows[SLOPES, k, r] = one * blocks[k, 0] + two * blocks[k, 2]
+            rows[SLOPES, half + k, r] = one * blocks[k, 1] + two * blocks[k, 3]
 
 
 @kernel
@@ -106,18 +106,18 @@ def bound_rows(system: Tables, p: int, level: int, blocks: Array, roots: Array, 
     for k in range(half):
         a, b, c, d = blocks[k, 0], blocks[k, 1], blocks[k, 2], blocks[k, 3]
         growth = math.exp(max(roots[k, 0], 0.0) * h)
-        for r in range(rows.shape[1]):
-            value = norm(rows[VALUES, r, k], rows[VALUES, r, half + k])
-            x, y = rows[SLOPES, r, k], rows[SLOPES, r, half + k]
+        for r in range(system.stray.shape[1]):
+            value = norm(rows[VALUES, k, r], rows[VALUES, half + k, r])
+            x, y = rows[SLOPES, k, r], rows[SLOPES, half + k, r]
             slope = norm(x, y)
             x, y = x * a + y * c, x * b + y * d
             second = norm(x, y)
             x, y = x * a + y * c, x * b + y * d
             third = norm(x, y)
             x, y = x * a + y * c, x * b + y * d
-            system.bounds[p, SAG, level, r, k] = min(second * h * h / 8.0, 2.0 * value) * growth
-            system.bounds[p, SWING, level, r, k] = min(third * h * h / 8.0, 2.0 * slope) * growth
-            system.bounds[p, RIPPLE, level, r, k] = norm(x, y) * (h * h) * (h * h) / 384.0 * growth
+            system.bounds[p, SAG, level, k, r] = min(second * h * h / 8.0, 2.0 * value) * growth
+            system.bounds[p, SWING, level, k, r] = min(third * h * h / 8.0, 2.0 * slope) * growth
+            system.bounds[p, RIPPLE, level, k, r] = norm(x, y) * (h * h) * (h * h) / 384.0 * growth
 
 
 @kernel

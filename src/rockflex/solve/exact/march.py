@@ -6,7 +6,7 @@ in the samples next to the largest values. They do not change the motion, which 
 """
 
 from rockflex._arrays import Array
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.solve.exact.blocks import leaving, look_ahead, pass_block, walk_on, walk_to
 from rockflex.solve.exact.coordinates import to_state
 from rockflex.solve.exact.deferred import defer
@@ -30,7 +30,7 @@ from rockflex.solve.layout import (
 )
 
 
-@kernel
+@inlined_kernel
 def march(system: System, piece: Array, most: int, at: Progress, log: Log, motion: Motion) -> None:
     """Advance `motion.w` over at most `most` samples of a piece; stop before one in which an event may occur.
 
@@ -61,7 +61,7 @@ def march(system: System, piece: Array, most: int, at: Progress, log: Log, motio
             keep_now(system, piece, at.index, at, log, motion)
 
 
-@kernel
+@inlined_kernel
 def watch(system: System, piece: Array, at: Progress, log: Log, motion: Motion) -> int:
     """Return whether an event may occur in the block; if so, reduce `at.count` to the samples before it."""
     p, doubtful = at.phase, ZERO

@@ -44,8 +44,8 @@ def enter_powers(tables: Tables, p: int) -> None:
     enter_leap(tables, p, length)
     for k in range(tables.blocks.shape[3]):
         growth = growth_of(tables, p, k) ** (length - 1)
-        for f in range(tables.rows.shape[2]):
-            tables.leeway[p, f, k] = tables.bounds[p, SAG, WHOLE, f, k] * growth
+        for f in range(tables.stray.shape[1]):
+            tables.leeway[p, k, f] = tables.bounds[p, SAG, WHOLE, k, f] * growth
     enter_stray(tables, p)
 
 
@@ -63,14 +63,14 @@ def growth_of(tables: Tables, p: int, k: int) -> float:
 def enter_rows_ahead(tables: Tables, p: int, length: int) -> None:
     """Enter the rows at later samples over the present coordinates, and over a present jump of the slope."""
     pairs = tables.blocks.shape[3]
-    for f in range(tables.rows.shape[2]):
-        ahead, kicked, row = tables.ahead[p, f], tables.kicked[p, f], tables.rows[p, VALUES, f]
+    for f in range(tables.stray.shape[1]):
+        ahead, kicked, rows = tables.ahead[p, f], tables.kicked[p, f], tables.rows[p, VALUES]
         for m in range(length):
             kicked[BLOCK + m] = 0.0
         for k in range(pairs):
             a, b = tables.blocks[p, WHOLE, 0, k], tables.blocks[p, WHOLE, 1, k]
             c, d = tables.blocks[p, WHOLE, 2, k], tables.blocks[p, WHOLE, 3, k]
-            x, y = row[k], row[pairs + k]
+            x, y = rows[k, f], rows[pairs + k, f]
             forced, forced_rate = tables.forced[p, 1, k], tables.forced[p, 1, pairs + k]
             for m in range(length):
                 x, y = x * a + y * c, x * b + y * d
@@ -100,27 +100,28 @@ def enter_leap(tables: Tables, p: int, length: int) -> None:
 def enter_stray(tables: Tables, p: int) -> None:
     """Enter what jumps of the slope within a block add to the deviation of the rows from their chords."""
     pairs = tables.blocks.shape[3]
-    for f in range(tables.rows.shape[2]):
+    for f in range(tables.stray.shape[1]):
         stray = 0.0
         for k in range(pairs):
             x, y = tables.forced[p, 1, k], tables.forced[p, 1, pairs + k]
-            stray += tables.leeway[p, f, k] * math.sqrt(x * x + y * y)
+            stray += tables.leeway[p, k, f] * math.sqrt(x * x + y * y)
         tables.stray[p, f] = stray
 
 
 def put_coupled_powers(system: System, p: int) -> None:
     """Enter the same tables of a phase that cannot be uncoupled: w at the end of a block is computed step by step."""
-    step, rows, slopes = system.propagator[p, WHOLE], system.rows[p, VALUES], system.forced[p, 1]
-    pairs, sag, power = step.shape[0] // 2, system.bounds[p, SAG, WHOLE], np.eye(step.shape[0])
+    step, slopes, count = system.propagator[p, WHOLE], system.forced[p, 1], system.stray.shape[1]
+    rows, leeway = system.rows[p, VALUES, :, :count].T, system.leeway[p, :, :count]
+    pairs, sag, power = step.shape[0] // 2, system.bounds[p, SAG, WHOLE, :, :count], np.eye(step.shape[0])
     system.phases[p]["block"] = BLOCK
     for m in range(BLOCK):
         # The norms of the pairs are bounded by those of the blocks of the power.
         norms = np.sqrt((power.reshape(2, pairs, 2, pairs) ** 2).sum(axis=(0, 2)))
-        system.leeway[p] = np.maximum(system.leeway[p], sag @ norms)
+        leeway[...] = np.maximum(leeway, norms.T @ sag)
         power = step @ power
         system.ahead[p, :, :, m] = rows @ power
         system.kicked[p, :, BLOCK + m] = -system.ahead[p, :, :, m] @ slopes
-    system.stray[p] = system.leeway[p] @ np.hypot(slopes[:pairs], slopes[pairs:])
+    system.stray[p] = np.hypot(slopes[:pairs], slopes[pairs:]) @ leeway
 
 
 _uncoupled = Entry(put_uncoupled_powers)  # its argument types never differ

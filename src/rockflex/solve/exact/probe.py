@@ -4,9 +4,13 @@ import math
 
 import numpy as np
 
-from rockflex._kernel import kernel
+from rockflex._arrays import Array
+from rockflex._kernel import inlined_kernel, kernel
+from rockflex._vectors import set_norms, set_products, step_pairs
 from rockflex.solve.layout import (
+    AFTER,
     ASKED,
+    BEFORE,
     DOUBT,
     ENDS,
     FINAL,
@@ -15,9 +19,12 @@ from rockflex.solve.layout import (
     LOWER,
     NOW,
     RIPPLE,
+    RIPPLES,
     SAG,
+    SAGS,
     SLOPES,
     SWING,
+    SWINGS,
     UPPER,
     VALUES,
     Log,
@@ -35,46 +42,40 @@ NOTHING, PEAK, EVENT = 0, 1, 2  # what may occur in a step
 def step(system: System, phase: int, level: int, motion: Motion) -> None:
     """Advance `motion.w` over a step, from now to its end."""
     pairs = motion.norms.size
-    now, ends, blocks = motion.w[NOW], motion.w[ENDS], system.blocks[phase, level]
+    now, ends = motion.w[NOW], motion.w[ENDS]
     if system.phases[phase].dense:
         for i in range(2 * pairs):
             ends[i] = 0.0
             for k in range(2 * pairs):
                 ends[i] += system.propagator[phase, level, i, k] * now[k]
         return
-    for k in range(system.phases[phase].active):
-        x, y = now[k], now[pairs + k]
-        ends[k] = blocks[0, k] * x + blocks[1, k] * y
-        ends[pairs + k] = blocks[2, k] * x + blocks[3, k] * y
+    step_pairs(ends, system.blocks[phase, level], now, system.phases[phase].active)
     for k in range(system.phases[phase].active, pairs):
         ends[k], ends[pairs + k] = now[k], now[pairs + k]
 
 
+@inlined_kernel
+def set_over_pairs(sums: Array, table: Array, w: Array, active: int) -> None:
+    """Set sums, one for each row, to the products of a table with the first `active` pairs of coordinates."""
+    set_products(sums, table, w, active, 2)
+
+
 @kernel
 def examine(system: System, phase: int, level: int, here: float, there: float, slope: float, motion: Motion) -> None:
-    """Advance `motion.w` over a step, and compute the requested rows at both ends and the norms of the pairs."""
-    pairs = motion.norms.size
-    count = system.phases[phase].active
-    for k in range(count):
-        x, y = motion.w[NOW, k], motion.w[NOW, pairs + k]
-        motion.norms[k] = math.sqrt(x * x + y * y)
+    """Advance `motion.w` over a step, and compute the rows at both ends and the norms of the pairs."""
+    count, forcing, rows = system.phases[phase].active, system.row_forcing[phase], system.rows[phase, VALUES]
+    first, final = motion.values[FIRST], motion.values[FINAL]
+    set_norms(motion.norms, motion.w[NOW], count)
     step(system, phase, level, motion)
+    set_over_pairs(first, rows, motion.w[NOW], count)
+    set_over_pairs(final, rows, motion.w[ENDS], count)
     for f in range(rows_in(system, phase)):
-        if not motion.flags[ASKED, f]:
-            continue
-        common = system.row_forcing[phase, f, 1] * slope + motion.offset[f]
-        before = common + system.row_forcing[phase, f, 0] * here
-        after = common + system.row_forcing[phase, f, 0] * there
-        for k in range(count):
-            before += system.rows[phase, VALUES, f, k] * motion.w[NOW, k]
-            before += system.rows[phase, VALUES, f, pairs + k] * motion.w[NOW, pairs + k]
-            after += system.rows[phase, VALUES, f, k] * motion.w[ENDS, k]
-            after += system.rows[phase, VALUES, f, pairs + k] * motion.w[ENDS, pairs + k]
-        motion.values[FIRST, f] = before
-        motion.values[FINAL, f] = after
+        common = forcing[f, 1] * slope + motion.offset[f]
+        first[f] += common + forcing[f, 0] * here
+        final[f] += common + forcing[f, 0] * there
 
 
-@kernel
+@inlined_kernel
 def probe(system: System, phase: int, level: int, slope: float, log: Log, motion: Motion) -> int:
     """Return what can occur in the examined step: nothing, a peak, or an event; `DOUBT` marks the rows in question.
 
@@ -82,16 +83,15 @@ def probe(system: System, phase: int, level: int, slope: float, log: Log, motion
     `swing` of a chord that does not change sign, the row has its extremes at the ends, where `raise_peaks` finds them.
     Otherwise the row is settled if the cubic through both ends, widened by `ripple`, is within the limits.
     """
-    pairs = motion.norms.size
-    count = system.phases[phase].active
-    finding = NOTHING
+    bounds, count = system.bounds[phase], system.phases[phase].active
+    sags = motion.values[SAGS]
+    set_products(sags, bounds[SAG, level], motion.norms, count, 1)
+    finding, sloped = NOTHING, False
     for f in range(rows_in(system, phase)):
         motion.flags[DOUBT, f] = False
         if not motion.flags[ASKED, f]:
             continue
-        sag = 0.0
-        for k in range(count):
-            sag += system.bounds[phase, SAG, level, f, k] * motion.norms[k]
+        sag = sags[f]
         first, last = motion.values[FIRST, f], motion.values[FINAL, f]
         lower, upper = motion.values[LOWER, f], motion.values[UPPER, f]
         highest = log.peaks[f] if f < log.peaks.size and (f != GUARD or system.phases[phase].free) else np.inf
@@ -99,15 +99,11 @@ def probe(system: System, phase: int, level: int, slope: float, log: Log, motion
         low, high = min(first, last), max(first, last)
         if low - sag >= max(lower, lowest) and high + sag <= min(upper, highest):
             continue
-        swing = ripple = 0.0
-        before = after = system.row_forcing[phase, f, 0] * slope
-        for k in range(count):
-            swing += system.bounds[phase, SWING, level, f, k] * motion.norms[k]
-            ripple += system.bounds[phase, RIPPLE, level, f, k] * motion.norms[k]
-            before += system.rows[phase, SLOPES, f, k] * motion.w[NOW, k]
-            before += system.rows[phase, SLOPES, f, pairs + k] * motion.w[NOW, pairs + k]
-            after += system.rows[phase, SLOPES, f, k] * motion.w[ENDS, k]
-            after += system.rows[phase, SLOPES, f, pairs + k] * motion.w[ENDS, pairs + k]
+        if not sloped:
+            look_at_slopes(system, phase, level, slope, motion)
+            sloped = True
+        swing, ripple = motion.values[SWINGS, f], motion.values[RIPPLES, f]
+        before, after = motion.values[BEFORE, f], motion.values[AFTER, f]
         hidden = min(before, after) <= swing and max(before, after) >= -swing
         if hidden:
             length = unit_of(system, level)
@@ -124,6 +120,21 @@ def probe(system: System, phase: int, level: int, slope: float, log: Log, motion
         if motion.flags[DOUBT, f]:
             finding = max(finding, EVENT if event else PEAK)
     return finding
+
+
+@kernel
+def look_at_slopes(system: System, phase: int, level: int, slope: float, motion: Motion) -> None:
+    """Compute the slopes of the rows at both ends of the examined step, and their swing and ripple."""
+    count, bounds, rows = system.phases[phase].active, system.bounds[phase], system.rows[phase, SLOPES]
+    before, after = motion.values[BEFORE], motion.values[AFTER]
+    swings, ripples = motion.values[SWINGS], motion.values[RIPPLES]
+    set_products(swings, bounds[SWING, level], motion.norms, count, 1)
+    set_products(ripples, bounds[RIPPLE, level], motion.norms, count, 1)
+    set_over_pairs(before, rows, motion.w[NOW], count)
+    set_over_pairs(after, rows, motion.w[ENDS], count)
+    for f in range(rows_in(system, phase)):
+        before[f] += system.row_forcing[phase, f, 0] * slope
+        after[f] += system.row_forcing[phase, f, 0] * slope
 
 
 @kernel

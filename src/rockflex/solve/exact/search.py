@@ -3,7 +3,7 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.solve.exact.blocks import leaving, walk_on, walk_to
 from rockflex.solve.exact.probe import NOTHING, examine, probe
 from rockflex.solve.exact.survey import survey
@@ -11,7 +11,7 @@ from rockflex.solve.layout import ASKED, GUARD, INCLINES, ZERO, Log, Motion, Pro
 from rockflex.solve.peaks import raise_row, size_of
 
 
-@kernel
+@inlined_kernel
 def look_into(system: System, piece: Array, m: int, at: Progress, log: Log, motion: Motion) -> int:
     """Return what may occur in sample `m` of the block, according to the rows that are asked for."""
     slope = motion.block[INCLINES, m]

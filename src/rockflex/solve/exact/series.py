@@ -9,19 +9,23 @@ import math
 
 from rockflex._arrays import Array
 from rockflex._kernel import kernel
+from rockflex._series_vectors import dot, set_oscillators, set_polynomial, set_reach, set_values
+from rockflex._vectors import add_products
 from rockflex.solve.layout import (
     COUPLING,
     DAMPING,
-    DRAG,
     DRIVE,
     FLEXIBILITY,
+    FORCES,
     LEVERAGE,
     MOVES,
-    OMEGA2,
-    RATE,
+    PLACES,
+    RESTORING,
     SIZE,
+    SPEEDS,
     STIFFNESS,
-    TURNS_BY,
+    TURNS,
+    WEIGHTS,
     Motion,
     Span,
     System,
@@ -29,32 +33,33 @@ from rockflex.solve.layout import (
     slip_in,
 )
 from rockflex.solve.peaks import row_at
-from rockflex.solve.polynomials import evaluate
 
 NEGLIGIBLE = 1e-17  # of the first term of a series
 
 
 @kernel
 def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, slide: float) -> None:
-    """Compute the Taylor coefficients of D and q in `motion.series` (N + b, order + 1), with time in units of the span.
+    """Compute the Taylor coefficients of D and q in `motion.series` (order + 1, N + b), with time in units of the span.
 
     `lift` is θ'' at the instant of uplift if it is known more accurately than from the equation of motion (zero for a
     condition that is satisfied continuously); NaN otherwise. `slide` is the same for the acceleration of a slip.
     """
     shaken = is_shaken(span)
     slipping = slip_in(system)
-    n, freedoms, step, series = system.layout.modes, motion.push.size, span.length, motion.series
+    n, freedoms, step, series = system.layout.modes, motion.push.shape[1], span.length, motion.series
     moves = system.phases[phase].free or freedoms > 1  # otherwise the base is at rest
+    forces, turns, restoring = motion.push[FORCES], motion.push[TURNS], motion.reach[RESTORING]
+    leverage, coupling = system.border[phase, LEVERAGE], system.border[phase, COUPLING]
     for i in range(n):
-        series[i, 0] = motion.state[i]
-        series[i, 1] = motion.state[n + i] * step
+        series[0, i] = motion.state[i]
+        series[1, i] = motion.state[n + i] * step
     for j in range(freedoms):
-        series[n + j, 0] = motion.state[2 * n + 2 * j]
-        series[n + j, 1] = motion.state[2 * n + 2 * j + 1] * step
+        series[0, n + j] = motion.state[2 * n + 2 * j]
+        series[1, n + j] = motion.state[2 * n + 2 * j + 1] * step
     square, terms = step * step, terms_over(system, phase, step)
-    for k in range(terms, series.shape[1]):
-        for i in range(series.shape[0]):
-            series[i, k] = 0.0
+    for k in range(terms, series.shape[0]):
+        for i in range(series.shape[1]):
+            series[k, i] = 0.0
     for k in range(terms - 2):
         drive = 0.0
         if k == 0:
@@ -62,43 +67,29 @@ def expand(system: System, phase: int, motion: Motion, span: Span, lift: float, 
         elif k == 1:
             drive = square * step * span.slope
         pair = 1.0 / ((k + 2.0) * (k + 1.0))
-        # The sum for the first degree of freedom is kept in a register, the others in memory.
-        pushed = 0.0
-        for j in range(1, freedoms):
-            motion.push[j] = 0.0
-        for i in range(n):
-            restoring = system.modes[DRAG, i] * step * (k + 1.0) * series[i, k + 1]
-            restoring += system.modes[OMEGA2, i] * square * series[i, k]
-            series[i, k + 2] = -(restoring + drive) * pair
-            pushed += system.border[phase, 0, LEVERAGE, i] * restoring
-            for j in range(1, freedoms):
-                motion.push[j] += system.border[phase, j, LEVERAGE, i] * restoring
-        for j in range(freedoms):
-            series[n + j, k + 2] = 0.0
+        set_oscillators(restoring, series, k, system.modes, square, step * (k + 1.0), drive, pair)
         if not moves:
             continue
-        motion.push[0] = pushed
         for j in range(freedoms):
             force = system.push[phase, DRIVE, j] * drive
             for m in range(freedoms):
-                force -= system.base[phase, STIFFNESS, j, m] * square * series[n + m, k]
-                force -= system.base[phase, DAMPING, j, m] * step * (k + 1.0) * series[n + m, k + 1]
+                force -= system.base[phase, STIFFNESS, j, m] * square * series[k, n + m]
+                force -= system.base[phase, DAMPING, j, m] * step * (k + 1.0) * series[k + 1, n + m]
             if k == 0:
                 force += motion.load[j] * square
             if shaken:
                 force += heavier(system, phase, j, k, span, series)
-            motion.push[j] += force
+            forces[j] = dot(leverage[j], restoring) + force
         for j in range(freedoms):
             turn = 0.0
             for m in range(freedoms):
-                turn += system.base[phase, FLEXIBILITY, j, m] * motion.push[m]
+                turn += system.base[phase, FLEXIBILITY, j, m] * forces[m]
             if k == 0 and j == 0 and not math.isnan(lift):
                 turn = square * lift
             if k == 0 and j == slipping and not math.isnan(slide):
                 turn = square * slide
-            series[n + j, k + 2] = turn * pair
-            for i in range(n):
-                series[i, k + 2] -= system.border[phase, j, COUPLING, i] * turn * pair
+            turns[j] = -turn * pair
+        add_products(series[k + 2], coupling, turns, freedoms, 1)
 
 
 @kernel
@@ -124,9 +115,9 @@ def heavier(system: System, phase: int, freedom: int, k: int, span: Span, series
     for m in range(system.heavier_push.shape[1]):
         stiffness = system.heavier_base[phase, freedom, m]
         if stiffness != 0.0:
-            moved = span.rise * series[n + m, k]
+            moved = span.rise * series[k, n + m]
             if k > 0:
-                moved += span.rise_slope * step * series[n + m, k - 1]
+                moved += span.rise_slope * step * series[k - 1, n + m]
             force -= stiffness * moved
     return force * step * step
 
@@ -134,18 +125,7 @@ def heavier(system: System, phase: int, freedom: int, k: int, span: Span, series
 @kernel
 def measure(system: System, phase: int, motion: Motion, step: float) -> None:
     """Set bounds of D and q and of their rates over the stretch of the series, and of how much they change."""
-    terms = system.phases[phase].terms
-    for i in range(motion.series.shape[0]):
-        moves = turns = 0.0
-        for k in range(terms - 1, 1, -1):
-            size = abs(motion.series[i, k])
-            moves += size
-            turns += k * size
-        first = abs(motion.series[i, 1])
-        motion.reach[SIZE, i] = abs(motion.series[i, 0]) + first + moves
-        motion.reach[RATE, i] = (first + turns) / step
-        motion.reach[MOVES, i] = first + moves
-        motion.reach[TURNS_BY, i] = turns / step
+    set_reach(motion.reach, motion.series, system.phases[phase].terms, step)
 
 
 @kernel
@@ -182,7 +162,7 @@ def bound_of(system: System, rows: Array, phase: int, row: int, which: int, moti
         size += abs(rows[phase, row, moving] * span.ground) + abs(rows[phase, row, moving + 1])
         for i in range(system.layout.memory, system.layout.memory + system.layout.remembered):
             size += abs(rows[phase, row, i] * motion.state[i])
-    for i in range(motion.series.shape[0]):
+    for i in range(motion.w.shape[1] // 2):
         place, speed = (i, n + i) if i < n else (2 * i, 2 * i + 1)
         size += abs(rows[phase, row, place]) * motion.reach[which, i]
         size += abs(rows[phase, row, speed]) * motion.reach[which + 1, i]
@@ -205,20 +185,18 @@ def row_series(system: System, phase: int, row: int, motion: Motion, span: Span)
 @kernel
 def develop_row(system: System, rows: Array, phase: int, row: int, place: int, motion: Motion, span: Span) -> None:
     """Compute the Taylor coefficients of one of `rows` in `motion.polys[place]`, without vertical acceleration."""
-    n, pairs, terms = system.layout.modes, motion.series.shape[0], system.phases[phase].terms
-    polys, series, step = motion.polys, motion.series, span.length
+    n, pairs, terms = system.layout.modes, motion.w.shape[1] // 2, system.phases[phase].terms
+    polys, weights, step = motion.polys, motion.reach[WEIGHTS : WEIGHTS + 2], span.length
     ground = rows.shape[2] - 2
-    for k in range(polys.shape[1]):
+    for i in range(n):
+        weights[0, i] = rows[phase, row, i]
+        weights[1, i] = rows[phase, row, n + i] / step
+    for i in range(n, pairs):
+        weights[0, i] = rows[phase, row, 2 * i]
+        weights[1, i] = rows[phase, row, 2 * i + 1] / step
+    set_polynomial(polys[place], motion.series, weights, terms)
+    for k in range(terms, polys.shape[1]):
         polys[place, k] = 0.0
-    for i in range(pairs):
-        weight = rows[phase, row, i if i < n else 2 * i]
-        if weight != 0.0:
-            for k in range(terms):
-                polys[place, k] += weight * series[i, k]
-        weight = rows[phase, row, n + i if i < n else 2 * i + 1] / step
-        if weight != 0.0:
-            for k in range(terms - 1):
-                polys[place, k] += weight * (k + 1.0) * series[i, k + 1]
     polys[place, 0] += rows[phase, row, ground] * span.ground + rows[phase, row, ground + 1]
     for i in range(system.layout.memory, system.layout.memory + system.layout.remembered):
         polys[place, 0] += rows[phase, row, i] * motion.state[i]
@@ -228,8 +206,8 @@ def develop_row(system: System, rows: Array, phase: int, row: int, place: int, m
 @kernel
 def advance(system: System, motion: Motion, u: float, step: float) -> None:
     """Replace the state at the start of `step` by that at its fraction `u`, from the series."""
-    n = system.layout.modes
-    for i in range(motion.series.shape[0]):
-        value, rate = evaluate(motion.series, i, u)
-        motion.state[i if i < n else 2 * i] = value
-        motion.state[n + i if i < n else 2 * i + 1] = rate / step
+    n, places, speeds = system.layout.modes, motion.reach[PLACES], motion.reach[SPEEDS]
+    set_values(places, speeds, motion.series, u)
+    for i in range(motion.w.shape[1] // 2):
+        motion.state[i if i < n else 2 * i] = places[i]
+        motion.state[n + i if i < n else 2 * i + 1] = speeds[i] / step

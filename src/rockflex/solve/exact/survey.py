@@ -85,7 +85,7 @@ def survey(system: System, at: Progress, span: Span, log: Log, motion: Motion) -
         probed = False
     for k in range(motion.w.shape[1]):
         motion.w[ENDS, k] = motion.w[HELD, k]
-    for f in range(motion.values.shape[1]):
+    for f in range(motion.flags.shape[1]):
         motion.flags[ASKED, f] = True
     at.searching = False
     return True

@@ -13,9 +13,11 @@ from scipy.linalg import expm
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._vectors import BLOCK, padded
+from rockflex._numba_vectors import padded
+from rockflex._vectors import BLOCK
 from rockflex.models import SUMS, Phase, RockingModel
 from rockflex.solve.exact.basis import Basis, Drift
+from rockflex.solve.exact.entries import modes_of
 from rockflex.solve.exact.powers import put_powers
 from rockflex.solve.exact.series import NEGLIGIBLE
 from rockflex.solve.layout import (
@@ -86,11 +88,13 @@ def empty_system(
     whole = (capacity, levels + 1)
     memories, changes, fences = layout.remembered, model.most_changes, model.most_fences
     moved = capacity if shaken else 0
+    border = np.zeros((capacity, 2, b, padded(pairs)))
+    border[:, COUPLING, range(b), range(n, pairs)] = -1.0
     links = np.full((capacity, CHANGED + changes + fences), -1, dtype=np.int64)
     return System(
         layout=layout,
         dt=dt,
-        modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega)),
+        modes=modes_of(p.omega, p.zeta, pairs),
         phases=np.zeros(capacity, dtype=PHASE),
         turning_row=rows - fences - 2 if model.turning else -1,
         chords=model.complete,
@@ -105,7 +109,7 @@ def empty_system(
         marks=np.full((capacity, memories), np.nan),
         turnings=np.full((capacity, memories, 2), np.nan),
         recall=np.zeros((capacity, b, memories)),
-        border=np.zeros((capacity, b, 2, n)),
+        border=border,
         base=np.zeros((capacity, 3, b, b)),
         push=np.zeros((capacity, 2, b)),
         pulls=np.zeros((capacity, SUMS, 1 + memories)),
@@ -114,18 +118,18 @@ def empty_system(
         heavier_limits=np.zeros((moved, 2, 2)),
         heavier_rows=np.zeros((moved, rows, columns)),
         plain_rows=np.zeros((capacity, rows, columns)),
-        basis=np.zeros((capacity, 2, core, core)),
+        basis=np.zeros((capacity, 2, core, padded(core))),
         forced=np.zeros((capacity, 3 + memories, core)),
-        rows=np.zeros((capacity, 2, rows, core)),
+        rows=np.zeros((capacity, 2, core, padded(rows))),
         row_forcing=np.zeros((capacity, rows, 3 + memories)),
         blocks=np.zeros((*whole, 4, pairs)),
         propagator=np.zeros((*whole, core, core)) if dense else np.zeros((0, 0, 0, 0)),
-        bounds=np.zeros((capacity, 3, levels + 1, rows, pairs)),
+        bounds=np.zeros((capacity, 3, levels + 1, pairs, padded(rows))),
         ahead=np.zeros((capacity, rows, core, BLOCK)),
         kicked=np.zeros((capacity, rows, 2 * BLOCK)),
         leap=np.zeros((capacity, 4, pairs)),
         pushed=np.zeros((capacity, BLOCK, padded(core))),
-        leeway=np.zeros((capacity, rows, pairs)),
+        leeway=np.zeros((capacity, pairs, padded(rows))),
         stray=np.zeros((capacity, rows)),
     )
 
@@ -133,18 +137,6 @@ def empty_system(
 def size_of(system: System) -> int:
     """Return the memory of all tables in bytes."""
     return sum(table.nbytes for table in system if isinstance(table, np.ndarray))
-
-
-def grown(system: System, larger: System) -> System:
-    """Return `larger` with the content of `system`."""
-    for old, new in zip(system[2:], larger[2:], strict=True):
-        if isinstance(old, int) or isinstance(new, int):
-            continue
-        if old.size and new.shape != old.shape:
-            new[tuple(slice(length) for length in old.shape)] = old
-        elif old.size:
-            new[...] = old
-    return larger
 
 
 def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None, plain_rows: Array, twin: int) -> None:
@@ -182,7 +174,8 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     dense = marches and basis.dense
     course = active, count, marches, levels, terms
     system.phases[p] = phase.side, phase.free, decays, phase.turns, *course, True, dense, 0, basis.fastest
-    system.border[p, :, COUPLING], system.border[p, :, LEVERAGE] = arrow.coupling, arrow.leverage
+    n = arrow.coupling.shape[1]
+    system.border[p, COUPLING, :, :n], system.border[p, LEVERAGE, :, :n] = arrow.coupling, arrow.leverage
     system.base[p, FLEXIBILITY], system.base[p, DAMPING] = arrow.flexibility, arrow.damping
     system.base[p, STIFFNESS] = arrow.stiffness
     system.push[p, CONSTANT], system.push[p, DRIVE] = arrow.constant, arrow.drive
@@ -197,9 +190,10 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     forcing[:, 0] += plain_rows[:, -2]
     forcing[:, 2] += plain_rows[:, -1]
     forcing[:, 3:] += plain_rows[:, memory : memory + system.layout.remembered]
-    system.basis[p, OUT], system.basis[p, INTO] = basis.basis.T, basis.inverse.T
+    count = plain_rows.shape[0]
+    system.basis[p, OUT, :, :core], system.basis[p, INTO, :, :core] = basis.basis.T, basis.inverse.T
     system.forced[p] = basis.steady @ basis.inverse.T
-    system.rows[p, VALUES], system.rows[p, SLOPES] = rows, first
+    system.rows[p, VALUES, :, :count], system.rows[p, SLOPES, :, :count] = rows.T, first.T
     system.row_forcing[p] = forcing
     if twin >= 0 and np.array_equal(np.abs(moving), np.abs(system.plain_rows[twin, :, :core])):
         system.blocks[p], system.bounds[p] = system.blocks[twin], system.bounds[twin]
@@ -214,7 +208,8 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
         bounds = _dense_bounds(basis, rows, steps)
     else:
         bounds = _bounds(basis, rows, first, steps)
-    system.bounds[p, SAG, own], system.bounds[p, SWING, own], system.bounds[p, RIPPLE, own] = bounds
+    for which, bound in zip((SAG, SWING, RIPPLE), bounds, strict=True):
+        system.bounds[p, which, own, :, :count] = bound.transpose(0, 2, 1)
     put_powers(system, p)
 
 
