@@ -1,5 +1,6 @@
 """The frame against closed forms, exact algebra and assemblies that share nothing with it."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -139,6 +140,42 @@ def test_period_and_base_are_as_asked(n, ratio):
     assert asked.modal().period[0] == pytest.approx(0.8, rel=1e-11)
     assert asked.modal().effective_height[0] / asked.half_width == pytest.approx(6.0, rel=1e-11)
     assert asked.rocking().half_width == asked.half_width
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.125, math.inf])
+@pytest.mark.parametrize("n", [1, 2, 15])
+def test_scaled_parameters_are_those_of_the_assembled_frame(n, ratio):
+    asked = frame(n_stories=n, stiffness_ratio=ratio)
+    scaled, assembled = asked.rocking(), asked.lumped.rocking()
+    for field in dataclasses.fields(scaled):
+        if field.name not in ("floors", "elements"):
+            value = getattr(scaled, field.name)
+            np.testing.assert_allclose(value, getattr(assembled, field.name), rtol=1e-9, err_msg=field.name)
+    for name in ("heights", "displacement", "force"):
+        value, other = (getattr(each.floors, name) for each in (scaled, assembled))
+        np.testing.assert_allclose(value, other, rtol=1e-9, atol=1e-9 * abs(other).max(), err_msg=name)
+        assert not value.flags.writeable
+    assert not any(getattr(scaled, name).flags.writeable for name in ("omega", "effective_mass", "zeta"))
+    assert scaled.elements == ()
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"period": 1e-200}, "stiffness of a frame with story_mass = 40000 kg and period = 1e-200 s cannot be"),
+        ({"story_height": 1e200}, "cannot be computed: numbers arise"),
+        ({"aspect_ratio": 1e12}, "i_theta"),
+    ],
+)
+def test_extreme_frames_say_what_overflows(change, text):
+    with pytest.raises(InputError, match=text):
+        frame(**change).rocking()
+
+
+@pytest.mark.parametrize("change", [{"period": 1e30}, {"aspect_ratio": 1e5}, {"base_mass": 1e30}])
+def test_unusual_frames_are_assembled(change):
+    asked = frame(**change)
+    assert asked.rocking() is asked.lumped.rocking()
 
 
 def test_geometry_and_masses():

@@ -3,18 +3,23 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import SupportsIndex
 
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_STORIES, in_range, positive, real_or_nan, whole_number
+from rockflex._checks import MOST_STORIES, in_range, mode_count, positive, real_or_nan, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import ModalProperties, modal_properties
+from rockflex._values import changed
+from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
 from rockflex.structure._based import Assembled
 from rockflex.structure._fish_bone import condensed_stiffness
 from rockflex.structure._lumped import LumpedStructure
+
+SMALL, LARGE = 1e-20, 1e20  # of numbers in SI units whose products certainly do not overflow
+SLENDER = 1e4  # h*_1/B from which the base hardly adds to the inertia, which must be checked
 
 
 @dataclass(frozen=True)
@@ -132,6 +137,49 @@ class Frame(Assembled):
         """Lumped masses: those of `lumped`."""
         return self.lumped
 
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        They are those of a frame with unit masses and stories, scaled.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the number that the structure has.
+        """
+        whole = self._rocking
+        return whole if n_modes is None else whole.truncated(mode_count(n_modes, whole.n_modes))
+
+    @cached_property
+    def _rocking(self) -> RockingProperties:
+        given = (self.story_height, self.story_mass, self.period, self.half_width)
+        if not (min(given) > SMALL and max(given) < LARGE > self.base_mass and self.aspect_ratio < SLENDER):
+            return self.lumped.rocking()  # which says what overflows
+        _, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
+        unit, m, length = _unit_rocking(self.n_stories, self.stiffness_ratio), self.story_mass, self.story_height
+        rate = 2.0 * math.pi / (self.period * float(unit_modes.omega[0]))
+        mass, height = m * unit.effective_mass, length * unit.effective_height
+        n, m_tot = self.n_stories, self.n_stories * m + self.base_mass
+        inertia = m * length**2 * (n * (n + 1) * (2 * n + 1) // 6)
+        floors = unit.floors
+        assert floors is not None
+        heights = length * floors.heights
+        return changed(
+            unit,
+            omega=rate * unit.omega,
+            effective_mass=mass,
+            effective_height=height,
+            i_theta=inertia + m_tot * self.half_width**2,
+            l0r=m * length * unit.l0r,
+            m_tot=m_tot,
+            half_width=self.half_width,
+            zeta=np.full(unit.n_modes, self.damping_ratio),
+            translational_inertia=max(inertia, float(mass @ height**2)),
+            floors=changed(floors, heights=heights, force=(m * rate**2) * floors.force),
+            top_height=float(heights[-1]),
+            base_mass=self.base_mass,
+        )
+
 
 @lru_cache(maxsize=128)
 @computable("The modes of the frame with this stiffness_ratio", field="stiffness_ratio")
@@ -141,6 +189,13 @@ def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Array, ModalPro
     stiffness = condensed_stiffness(one, one, 12.0 * stiffness_ratio * one)
     stiffness.setflags(write=False)
     return stiffness, modal_properties(one, stiffness, np.cumsum(one))
+
+
+@lru_cache(maxsize=128)
+def _unit_rocking(n_stories: int, stiffness_ratio: float) -> RockingProperties:
+    """Return the parameters for unit masses and stories, on a base of unit half-width without mass."""
+    _, modes = _unit_frame(n_stories, stiffness_ratio)
+    return rocking_properties(modes, np.ones(n_stories), modes.heights, 0.0, 1.0, 0.0)
 
 
 def _checked_stiffness_ratio(value: float) -> float:
