@@ -13,7 +13,6 @@ from rockflex._shown import shown
 from rockflex._versions import versions_of
 from rockflex.parallel import core_count, map_dask
 from rockflex.store import Part, PartMaker, StudyFolder
-from rockflex.study._runs import map_runs
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,7 +67,8 @@ def run_study(
         Where the study is stored, as ``spec.json``, ``manifest.json`` and ``parts/*.parquet``. An existing folder of
         this study is resumed; completed parts are skipped. With None nothing is stored.
     workers
-        Number of threads here; None for one a core.
+        Number of threads or processes here; None for one a core. Hundreds of runs are shared among processes where
+        this one can be copied: on Linux, without other threads and without functions of the user.
     dask
         Address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``, whose workers do the runs.
     any_version
@@ -248,7 +248,7 @@ def _compute(
             plan = plan.informed(so_far())
         work = sent(plan)
         # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-        with closing(_here(work, missing, workers) if dask is None else map_dask(work, missing, dask)) as coming:
+        with closing(_here(plan, work, missing, workers) if dask is None else map_dask(work, missing, dask)) as coming:
             for number, result in coming:
                 runs += keep(number, result)
                 done += 1
@@ -256,9 +256,11 @@ def _compute(
 
 
 def _here(
-    work: "Chunks[Result]", numbers: Sequence[int], workers: SupportsIndex | None
+    plan: "ChunkedPlan", work: "Chunks[Result]", numbers: Sequence[int], workers: SupportsIndex | None
 ) -> Generator[tuple[int, Result]]:
-    yield from map_runs(lambda number: (number, work.chunk(number)), numbers, workers)
+    from rockflex.study.plan import map_chunks
+
+    yield from map_chunks(plan, work.chunk, numbers, workers)
 
 
 def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:

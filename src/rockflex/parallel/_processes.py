@@ -1,19 +1,26 @@
 """A map over tasks on processes, one a core, for tasks that mostly hold the interpreter lock."""
 
+import ctypes
+import gc
 import multiprocessing
+import os
 import signal
 import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.synchronize import Event
 from typing import Any, TypeVar
+
+from rockflex._errors import SolverError
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 LOOK = 0.1  # s between looks whether to stop
+DEATH_OF_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2): send a signal when the parent ends
 
 _function: Callable[[Any], Any] | None = None  # of a child: what it was forked to do
 _left: Event | None = None  # of a child: set when nobody waits for it any more
@@ -47,6 +54,11 @@ def map_processes(
         Number of processes.
     asked
         Called some ten times a second; once it returns True, `left` is true too.
+
+    Raises
+    ------
+    SolverError
+        If a copy was ended from outside.
     """
     global _function, _left
     context = multiprocessing.get_context("fork")
@@ -55,7 +67,7 @@ def map_processes(
     with warnings.catch_warnings():
         # Other threads than Python's own, which sleep between products of matrices, are no reason to worry.
         warnings.filterwarnings("ignore", message=".*fork", category=DeprecationWarning)
-        pool = ProcessPoolExecutor(count, mp_context=context, initializer=_ignore_interrupts)
+        pool = ProcessPoolExecutor(count, mp_context=context, initializer=_settle, initargs=(os.getpid(),))
         running: set[Future[Any]] = set()
         try:
             while True:
@@ -70,6 +82,11 @@ def map_processes(
                     leave.set()
                 for future in done:
                     yield future.result()
+        except BrokenProcessPool as error:
+            raise SolverError(
+                "One of the processes that compute the runs was ended from outside, most often because memory ran out. "
+                "Run it again with fewer workers: workers=1 needs no other process."
+            ) from error
         finally:
             leave.set()
             pool.shutdown(cancel_futures=True)
@@ -86,5 +103,10 @@ def _call(task: Any) -> Any:
     return _function(task)
 
 
-def _ignore_interrupts() -> None:
+def _settle(parent: int) -> None:
+    """Prepare a copy for its tasks."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that waits is interrupted, and tells its copies
+    ctypes.CDLL(None).prctl(DEATH_OF_PARENT, signal.SIGKILL)  # or a copy would wait for ever for one that was killed
+    if os.getppid() != parent:
+        os._exit(1)
+    gc.freeze()  # a collection would write to, and so copy, all memory that the processes share

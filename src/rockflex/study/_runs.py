@@ -25,6 +25,29 @@ def map_runs(
     return map_threads(guarded, tasks, workers, leave.set)
 
 
+def map_runs_apart(
+    function: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    workers: SupportsIndex | None = None,
+    rehearse: Callable[[], object] = lambda: None,
+) -> Iterator[Result]:
+    """Map in the same way, by processes where this one can be copied.
+
+    `rehearse` is called before; it compiles the kernels, which each copy would otherwise do for itself. What the
+    function changes in memory is lost, and tasks and results must be picklable.
+    """
+    count = worker_count(workers)
+    if count == 1 or not may_fork():
+        return map_runs(function, tasks, count)
+    rehearse()
+
+    def guarded(task: Task) -> Result:
+        with stopping_when(left):
+            return function(task)
+
+    return map_processes(guarded, tasks, count, asked_to_stop())
+
+
 def in_order(
     function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
 ) -> list[Result]:
@@ -35,23 +58,13 @@ def in_order(
 def in_order_apart(
     function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
 ) -> list[Result]:
-    """Return the same, computed by processes where this one can be copied.
-
-    It pays if the kernels do little between what holds the interpreter lock. What the function changes is lost, and
-    tasks and results must be picklable.
-    """
-    count = worker_count(workers)
-    if count == 1 or not may_fork():
-        return in_order(function, tasks, workers)
+    """Return the same as `in_order`, computed by processes where this one can be copied; see `map_runs_apart`."""
     numbered, queue = _numbered(function), enumerate(tasks)
+    if worker_count(workers) == 1 or not may_fork():
+        return _sorted(map_runs(numbered, queue, workers))
     # The first one here, so that the kernels are compiled before this process is copied.
     first = list(map_runs(numbered, islice(queue, 1), 1))
-
-    def guarded(task: tuple[int, Task]) -> tuple[int, Result]:
-        with stopping_when(left):
-            return numbered(task)
-
-    return _sorted(chain(first, map_processes(guarded, queue, count, asked_to_stop())))
+    return _sorted(chain(first, map_runs_apart(numbered, queue, workers)))
 
 
 def _numbered(function: Callable[[Task], Result]) -> Callable[[tuple[int, Task]], tuple[int, Result]]:

@@ -2,7 +2,7 @@
 
 from rockflex.study._tables import to_frame
 from rockflex.study.plan._bench import Bench
-from rockflex.study.plan._chunked import ChunkedPlan, run_plan
+from rockflex.study.plan._chunked import ChunkedPlan, map_chunks, run_plan
 from rockflex.study.plan._cross import CrossPlan
 from rockflex.study.plan._pivot_lifts import PivotLifts, pivot_lifts
 from rockflex.study.plan._records import Records, record_group
@@ -16,6 +16,7 @@ __all__ = [
     "Records",
     "Spec",
     "StructuresSpec",
+    "map_chunks",
     "pivot_lifts",
     "record_group",
     "run_plan",

@@ -1,17 +1,21 @@
 """A study divided into chunks that can be computed anywhere."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, SupportsIndex
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
 from rockflex._checks import whole_number
 from rockflex.motion import Suite, check_horizontal
-from rockflex.study._runs import in_order
+from rockflex.study._runs import map_runs, map_runs_apart
 from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
 from rockflex.study.plan._records import checksums
 
 if TYPE_CHECKING:
     import pandas as pd
+
+Result = TypeVar("Result")
+
+FEW = 256  # runs for which it is not worth while to start processes
 
 
 class ChunkedPlan(ABC):
@@ -51,6 +55,15 @@ class ChunkedPlan(ABC):
         InputError
             If no run is within its work limit.
         """
+        return
+
+    @property
+    def copyable(self) -> bool:
+        """Whether copies of this process may compute the chunks: they need nothing that others change in memory."""
+        return False
+
+    def rehearse(self) -> None:
+        """Run what compiles the kernels that the chunks need, before processes share them."""
         return
 
     @property
@@ -95,14 +108,14 @@ class ChunkedPlan(ABC):
 
 
 def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.DataFrame":
-    """Compute all chunks of a plan on threads, and return them as one table, in order.
+    """Compute all chunks of a plan, and return them as one table, in order.
 
     Parameters
     ----------
     plan
         The plan that `.plan()` of a study returns.
     workers
-        Number of threads; None for one a core.
+        Number of threads or processes; None for one a core.
 
     Returns
     -------
@@ -114,5 +127,23 @@ def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.Dat
     for numbers in plan.rounds:
         if tables:
             plan = plan.informed(to_frame(*tables))
-        tables += in_order(plan.chunk, numbers, workers)
+        found = dict(map_chunks(plan, plan.chunk, numbers, workers))
+        tables += [found[number] for number in numbers]
     return to_frame(*tables)
+
+
+def map_chunks(
+    plan: ChunkedPlan, chunk: Callable[[int], Result], numbers: Sequence[int], workers: SupportsIndex | None
+) -> Iterator[tuple[int, Result]]:
+    """Yield the number and the result of chunks in order of completion.
+
+    Processes compute them where this one can be copied, if the plan allows it and there are more than a few runs;
+    otherwise threads.
+    """
+
+    def numbered(number: int) -> tuple[int, Result]:
+        return number, chunk(number)
+
+    if plan.copyable and len(numbers) > 1 and plan.n_runs * len(numbers) >= FEW * plan.n_chunks:
+        return map_runs_apart(numbered, numbers, workers, plan.rehearse)
+    return map_runs(numbered, numbers, workers)

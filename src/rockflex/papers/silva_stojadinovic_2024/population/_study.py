@@ -100,6 +100,15 @@ class PopulationPlan(ChunkedPlan):
         return 2 * self.n_units
 
     @property
+    def copyable(self) -> bool:
+        """Whether copies of this process may compute the chunks: always."""
+        return True
+
+    def rehearse(self) -> None:
+        """Run one pair."""
+        self.rows(0)
+
+    @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
         found: dict[str, Any] = {"pair": int, "n_stories": int, "behaviour": BEHAVIOURS, **kinds_of(DRAWN, float)}
