@@ -260,8 +260,8 @@ def test_a_cluster_that_does_not_answer(study, monkeypatch):
 def test_ctrl_c_says_what_is_kept(study, tmp_path, monkeypatch):
     real = rockflex.kinds._run._here
 
-    def interrupted(plan, numbers, workers):
-        yield next(iter(real(plan, numbers, 1)))
+    def interrupted(plan, work, numbers, workers):
+        yield next(iter(real(plan, work, numbers, 1)))
         raise KeyboardInterrupt
 
     monkeypatch.setattr(rockflex.kinds._run, "_here", interrupted)

@@ -78,9 +78,9 @@ def test_a_changed_study_is_refused(tmp_path):
     assert rf.StudyFolder.load(tmp_path / "kept").finished
 
 
-def test_threads_and_a_cluster_exclude_each_other():
+def test_workers_and_a_cluster_exclude_each_other():
     with pytest.raises(
-        rf.InputError, match=r"workers is for threads here, but 2 was given together with the cluster at"
+        rf.InputError, match=r"workers is for this machine, but 2 was given together with the cluster at"
     ):
         rf.run_study(STUDY, workers=2, dask="tcp://127.0.0.1:1")
 

@@ -139,12 +139,13 @@ def study_progress(title: str) -> Generator[Callable[[int, int, int], None], Non
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
     look = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[rate]}"))
-    with Progress(*look, TimeRemainingColumn(), console=console, transient=True) as bar:
+    # Refreshed after each part: a thread for it would keep this process from being copied.
+    with Progress(*look, TimeRemainingColumn(), console=console, transient=True, auto_refresh=False) as bar:
         task, start = bar.add_task(title, total=None, rate=""), perf_counter()
 
         def show(parts: int, done: int, runs: int) -> None:
             rate = runs / max(perf_counter() - start, 1e-9)
-            bar.update(task, total=parts, completed=done, rate=f"{rate:.0f} rows/s" if runs else "")
+            bar.update(task, total=parts, completed=done, rate=f"{rate:.0f} rows/s" if runs else "", refresh=True)
 
         yield show
 

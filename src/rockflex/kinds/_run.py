@@ -203,7 +203,7 @@ def _loaded(study: "Spec | str | Path") -> "Spec":
 def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None) -> "ChunkedPlan":
     if workers is not None and dask is not None:
         raise InputError(
-            f"workers is for threads here, but {shown(workers)} was given together with the cluster at {dask}."
+            f"workers is for this machine, but {shown(workers)} was given together with the cluster at {dask}."
         )
     plan = spec.plan()
     plan.check_work()

@@ -180,6 +180,15 @@ class MonteCarloPlan(ChunkedPlan):
         return self.n_units * self._per_structure * len(self.bench.labels) * len(self.scales)
 
     @property
+    def copyable(self) -> bool:
+        """Whether copies of this process may compute the chunks."""
+        return not self.bench.foreign
+
+    def rehearse(self) -> None:
+        """Run the models briefly."""
+        self.bench.rehearse()
+
+    @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
         head, *rest = self.bench.columns.items()

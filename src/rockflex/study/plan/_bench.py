@@ -10,7 +10,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import Suite, intensities
+from rockflex.motion import GroundMotion, Suite, intensities
 from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
@@ -34,6 +34,8 @@ from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
 
 Run = tuple[int, int, int, float]  # the places of a structure, a record and a model, and a scale
+
+BRIEF = 3  # samples of a record that a rehearsal runs
 
 
 @dataclass(frozen=True)
@@ -153,6 +155,18 @@ class Bench:
             results_of(each) | limit | _friction(each) if isinstance(each, Response) else {"error": str(each)}
             for each in found
         ]
+
+    def rehearse(self) -> None:
+        """Run the beginning of a record with each model of the first structure, which compiles the kernels."""
+        self.measures(0, 0)
+        motion = self.motions[0]
+        brief = GroundMotion(motion.acceleration[:BRIEF], motion.dt)
+        for model in range(len(self.labels)):
+            case = self._case(0, model)
+            if isinstance(case, Case):
+                found = case.attempt(brief)
+                if self.assumptions.friction and isinstance(found, Response):
+                    _friction(found)
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
