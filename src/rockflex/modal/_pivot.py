@@ -160,6 +160,13 @@ def pivot_of(
     )
 
 
+def opposite(pivot: Pivot) -> Pivot:
+    """Return the other pivot of a symmetric structure, which differs only in its side."""
+    other = object.__new__(Pivot)
+    vars(other).update(vars(pivot), side=-pivot.side)
+    return other
+
+
 def pivot_inertia(
     nearer: float, half_width: float, i_theta: float, translational_inertia: float, m_tot: float
 ) -> float:
