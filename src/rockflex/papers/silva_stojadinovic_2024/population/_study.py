@@ -14,7 +14,6 @@ from rockflex.models import LinearModel, modal_displacement
 from rockflex.motion import GroundMotion, Suite
 from rockflex.papers.silva_stojadinovic_2024.population._prototypes import STORY_MASS, Prototype, draw_prototype
 from rockflex.response import Response, respond
-from rockflex.solve import Solution
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
 from rockflex.study._case import Case
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
@@ -168,7 +167,8 @@ def _attempt(function: Callable[..., Result], *given: Any) -> "Result | InputErr
         return error
 
 
-def _solutions(cases: list[Case] | Exception, motion: GroundMotion) -> list[Solution]:
+def _solutions(cases: list[Case] | Exception, motion: GroundMotion) -> list[Any]:
+    """Return the solution of each case."""
     if isinstance(cases, Exception):
         raise cases
     return [case.solve(motion) for case in cases]
