@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
+from functools import cache
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -46,8 +47,10 @@ class Value:
 def changed(value: V, **changes: Any) -> V:
     """Return a copy of a value with some fields changed to others that need no checks."""
     other = object.__new__(type(value))
+    known = vars(value)
+    values = {name: changes[name] if name in changes else known[name] for name in _names(type(value))}
     _freeze(changes.values())
-    vars(other).update(dict(_items(value)) | changes)
+    vars(other).update(values)
     return other
 
 
@@ -60,7 +63,12 @@ def _freeze(values: Iterable[Any]) -> None:
 
 
 def _items(value: Any) -> Iterator[tuple[str, Any]]:
-    return ((each.name, getattr(value, each.name)) for each in fields(value))
+    return ((name, getattr(value, name)) for name in _names(type(value)))
+
+
+@cache
+def _names(kind: type) -> tuple[str, ...]:
+    return tuple(each.name for each in fields(kind))
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -160,6 +160,16 @@ def pivot_of(
     )
 
 
+def pivots_of(elements: Sequence[BaseElement], *, alike: bool, **values: float) -> dict[int, Pivot]:
+    """Return both pivots by their sides; if they are alike, they differ only in these. Values as of `pivot_of`."""
+    right = pivot_of(1, elements, alike=alike, **values)
+    if not alike:
+        return {1: right, -1: pivot_of(-1, elements, alike=alike, **values)}
+    left = object.__new__(Pivot)
+    vars(left).update(vars(right), side=-1)
+    return {1: right, -1: left}
+
+
 def pivot_inertia(
     nearer: float, half_width: float, i_theta: float, translational_inertia: float, m_tot: float
 ) -> float:

@@ -16,7 +16,7 @@ from rockflex._constants import GRAVITY
 from rockflex._values import Value, changed
 from rockflex.modal._devices import BaseElement, element_set, mirrored
 from rockflex.modal._floors import FloorModes
-from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_of
+from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivots_of
 from rockflex.modal._rocking_checks import (
     SLACK,
     checked_base_mass,
@@ -179,7 +179,7 @@ class RockingProperties(Value):
     def _by_side(self) -> dict[int, Pivot]:
         values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
         height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
-        return {side: pivot_of(side, self.elements, alike=self.symmetric, height=height, **values) for side in (1, -1)}
+        return pivots_of(self.elements, alike=self.symmetric, height=height, **values)
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:

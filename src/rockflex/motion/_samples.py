@@ -123,7 +123,9 @@ class Samples(Value):
 
     def sd(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral displacement in m at one period (s); see `spectrum`."""
-        return float(self.spectrum([period], damping_ratio).sd[0])
+        from rockflex.motion._spectrum import largest_displacement
+
+        return largest_displacement(self.acceleration, self.dt, period, damping_ratio)
 
     def sa(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""

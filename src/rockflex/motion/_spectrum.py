@@ -1,5 +1,6 @@
 """Elastic response spectra."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ from rockflex._checks import finite_vector, in_range
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.motion._spectrum_kernel import oscillator_peaks
+
+SHORTEST = 1e-6  # s
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +49,17 @@ class ResponseSpectrum(Value):
         return np.divide(2 * np.pi * self.sd, self.period, out=np.zeros_like(self.sd), where=self.period > 0)
 
 
+def largest_displacement(acceleration: Array, dt: float, period: float, damping_ratio: float) -> float:
+    """Return the spectral displacement in m at one period; see `GroundMotion.spectrum`."""
+    if type(period) is type(damping_ratio) is float and SHORTEST <= period < math.inf and 0.0 <= damping_ratio < 1.0:
+        return oscillator_peaks(acceleration, dt, 2 * np.pi / period, damping_ratio)[0]  # most are asked one by one
+    return float(response_spectrum(acceleration, dt, [period], damping_ratio).sd[0])
+
+
 def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
     """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
     period = finite_vector("periods", periods, "s")
-    bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))
+    bad = np.flatnonzero((period < 0) | ((period > 0) & (period < SHORTEST)))
     if bad.size:
         raise InputError(
             f"periods must be zero or at least 1e-6 s, but {period[bad[0]]:g} was given at index {bad[0]}. "

@@ -2,6 +2,7 @@
 
 from functools import cached_property
 from threading import RLock
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,11 +34,12 @@ from rockflex.solve.phases import MOST_LEVELS, CompiledPhases
 FILLED = tuple(name for name in Tables._fields if name not in ("dt", "modes"))
 SIDES = (CLOSED, RIGHT, LEFT)  # of the phases, in their order
 SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
-SIZES = 32  # kinds of empty tables kept
+SIZES = 128  # kinds of empty tables kept
+ALIGNED = 64  # bytes, of a line of the cache
 SPARE = 4  # sets of work arrays kept for each number of modes
 
 _enter = Entry(enter_bare)
-_empty: dict[tuple[StateLayout, int, int], System] = {}
+_empty: dict[tuple[StateLayout, int, int], "Blank"] = {}
 _spare: dict[int, list["Scratch"]] = {}
 
 
@@ -62,6 +64,32 @@ class Scratch:
         self.pairs: Pairs = pairs_of(size, np.empty(size), np.array(order, dtype=np.int64))
         self.accelerations: Array = np.empty((modes + 1, size + 2))
         self.steady: Array = np.empty((3, size))
+
+
+class Blank:
+    """Tables without entries, which are the same for all structures with as many modes, rows and levels.
+
+    Those that the kernel fills are parts of one array, which is faster to copy than each by itself.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self._places = list[tuple[str, tuple[int, ...], np.dtype[Any], int]]()
+        size = 0
+        for name in FILLED:
+            table: NDArray[Any] = getattr(system, name)
+            self._places.append((name, table.shape, table.dtype, size))
+            size += -(-table.nbytes // ALIGNED) * ALIGNED
+        self._content = np.zeros(size, dtype=np.uint8)
+        for name, table in self._parts(self._content).items():
+            table[...] = getattr(system, name)
+
+    def copied(self, dt: float, modes: Array) -> System:
+        """Return tables to be filled; arrays without entries and those that the kernel leaves alone are shared."""
+        return self.system._replace(dt=dt, modes=modes, **self._parts(self._content.copy()))
+
+    def _parts(self, content: NDArray[np.uint8]) -> dict[str, NDArray[Any]]:
+        return {name: np.ndarray(shape, kind, content, place) for name, shape, kind, place in self._places}
 
 
 class BarePhases:
@@ -116,15 +144,14 @@ class BarePhases:
         """The phases one by one, for what the kernel leaves alone."""
         return CompiledPhases(self._model, self._quantities, Quantities.none(self._model.layout.modes))
 
-    def _empty(self, rows: int, levels: int) -> System:
-        """Return empty tables, which are the same for all structures with as many modes, rows and levels."""
+    def _empty(self, rows: int, levels: int) -> Blank:
         key = (self._model.layout, rows, levels)
         if key not in _empty:
             if len(_empty) >= SIZES:
                 _empty.clear()
             system = empty_system(self._model, rows, 0.0, len(SIDES), levels, dense=False, shaken=False)
             system.links[...] = _links()
-            _empty[key] = system
+            _empty[key] = Blank(system)
         return _empty[key]
 
     def knows(self, key: Key) -> bool:
@@ -152,7 +179,7 @@ class BarePhases:
         p = self._model.properties
         rows = 2 + len(self._quantities)
         levels = min(levels_of(fastest, dt), MOST_LEVELS)
-        system = _copied(self._empty(rows, levels), dt, modes_of(p.omega, p.zeta, p.n_modes + 1))
+        system = self._empty(rows, levels).copied(dt, modes_of(p.omega, p.zeta, p.n_modes + 1))
         right, left = p.pivot(RIGHT), p.pivot(LEFT)
         spare = _spare.setdefault(p.n_modes, [])
         try:
@@ -176,12 +203,6 @@ class BarePhases:
             spare.append(scratch)
         self.terms = max(self.terms, terms)
         return system if terms > 0 else None
-
-
-def _copied(empty: System, dt: float, modes: Array) -> System:
-    """Return tables to be filled. Arrays without entries are shared, and so are those that the kernel leaves alone."""
-    arrays = {name: getattr(empty, name).copy() for name in FILLED}
-    return empty._replace(dt=dt, modes=modes, **arrays)
 
 
 def _links() -> NDArray[np.int64]:

@@ -57,7 +57,8 @@ def peaks_among(results: Sequence[Response | InputError | SolverError]) -> Peaks
 def peaks_of(case: Case, runs: Sequence[Scaled]) -> Peaks:
     """Run motions, each at a scale, on a case without a history."""
     columns, failures = dict[str, NDArray[Any]](), dict[int, InputError | SolverError]()
-    for dt, shaken, places in _alike(runs):
+    parts = _alike(runs)
+    for dt, shaken, places in parts:
         some = [runs[place] for place in places]
         try:
             solutions = case.solve_all(some, dt, shaken=shaken)
@@ -65,7 +66,10 @@ def peaks_of(case: Case, runs: Sequence[Scaled]) -> Peaks:
             failures |= dict.fromkeys(places, error)
             continue
         failures |= {places[place]: error for place, error in solutions.failures.items()}
-        for name, values in columns_of(case.model, solutions).items():
+        found = columns_of(case.model, solutions)
+        if len(parts) == 1:
+            return Peaks(len(runs), found, failures)
+        for name, values in found.items():
             columns.setdefault(name, np.zeros(len(runs), values.dtype))[places] = values
     return Peaks(len(runs), columns, failures)
 

@@ -165,12 +165,15 @@ def simulate_many(
     def work(task: list[Part]) -> tuple[ArrowTable, list[WorkLimitError]]:
         refused, begun = list[WorkLimitError](), 0
         sheet = Sheet(sum(last - first for _, first, last, _ in task), columns)
+        for index, _, _, cases in task:  # all of them first, so that the code that prepares stays in the cache
+            for which, case in enumerate(cases):
+                cases[which] = case or case_of(index, which)
         for index, first, last, cases in task:
             for which, runs in parts_of(range(first, last)).items():
                 rows = [begun + place - first for place in runs]
-                case = cases[which] = cases[which] or case_of(index, which)
-                if isinstance(case, str):
-                    sheet.fail(rows, case)
+                case = cases[which]
+                if not isinstance(case, Case):
+                    sheet.fail(rows, str(case))
                     continue
                 peaks = responses_of(index, case, runs) if responses.size else peaks_of(case, list(runs.values()))
                 sheet.put(rows, peaks.columns)
@@ -178,6 +181,8 @@ def simulate_many(
                     sheet.fail(rows[place : place + 1], str(error))
                 refused += [error for error in peaks.failures.values() if isinstance(error, WorkLimitError)]
             begun += last - first
+            if first == 0 and last == each:
+                cases[:] = [None] * len(cases)  # no other task needs them, and the next tables find room in the cache
         return sheet.table(), refused
 
     columns = {"status": STATUSES, "error": str, **RESULTS}

@@ -1,7 +1,6 @@
 """The structures, records and models of a study, prepared for its runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -165,10 +164,9 @@ class Bench:
         for model in range(len(self.labels)):
             case = self._case(0, model)
             if isinstance(case, Case):
-                with suppress(SolverError, InputError):  # of which the run itself tells
-                    response = case.run(brief)
-                    if self.assumptions.friction:
-                        _friction(response)
+                found = case.attempt(brief)
+                if self.assumptions.friction and isinstance(found, Response):
+                    _friction(found)
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""

@@ -1,8 +1,8 @@
 """Random structures under random records, with one mode and with all modes (Sections 3.3 and 3.4)."""
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeVar
 
 from pydantic import Field
 
@@ -34,6 +34,9 @@ SECOND = "period_2 sd_2 sa_2 top_ordinate_2 effective_mass_2 effective_height_2"
 COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear srss_base_moment"
 
 
+Result = TypeVar("Result")
+
+TOGETHER = 16  # structures whose tables fit into a core's cache
 MOST = 2**32 - 1  # pairs with different random numbers
 
 
@@ -118,32 +121,57 @@ class PopulationPlan(ChunkedPlan):
         return found | kinds_of(COMBINED, float) | {"error": str}
 
     def rows(self, units: Sequence[int]) -> list[Row]:
-        """Draw a structure a unit, and simulate it with both models."""
-        return [self._row(unit) for unit in units]
+        """Draw a structure a unit, and simulate it with both models; some at a time."""
+        return [row for first in range(0, len(units), TOGETHER) for row in self._rows(units[first : first + TOGETHER])]
 
-    def _row(self, unit: int) -> Row:
-        drawn = draw_prototype(self.seed, unit, len(self.motions))
-        motion = self.motions[drawn.record]
-        properties = drawn.frame().rocking()
-        row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
-        second = second_mode(properties, motion)
-        row |= _facts_of(drawn, properties) | self._facts[drawn.record] | _second_mode(properties, second)
-        try:
-            all_modes, second_peak = self._run(LinearModel("MDOF-S", properties), motion)
-            one_mode, _ = self._run(LinearModel("2DOF-S", properties.truncated(1)), motion)
-        except (SolverError, InputError) as error:
-            return row | {"error": str(error)}
-        row |= results_of(all_modes, "_mdof")
-        row["max_second_displacement_mdof"] = second_peak
-        row |= results_of(one_mode, "_2dof")
-        return row | _combined(one_mode, second)
+    def _rows(self, units: Sequence[int]) -> list[Row]:
+        """Do each step for all structures before the next one, so that its code stays in the processor's cache."""
+        drawn = [draw_prototype(self.seed, unit, len(self.motions)) for unit in units]
+        motions = [self.motions[each.record] for each in drawn]
+        structures = [each.frame().rocking() for each in drawn]
+        seconds = [second_mode(*each) for each in zip(structures, motions, strict=True)]
+        cases = [_attempt(self._cases, properties) for properties in structures]
+        solved = [_attempt(_solutions, *each) for each in zip(cases, motions, strict=True)]
+        rows = list[Row]()
+        given = zip(units, drawn, motions, structures, seconds, cases, solved, strict=True)
+        for unit, prototype, motion, properties, second, both, solutions in given:
+            row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
+            row |= _facts_of(prototype, properties) | self._facts[prototype.record] | _second_mode(properties, second)
+            if isinstance(both, Exception) or isinstance(solutions, Exception):
+                rows.append(row | {"error": str(solutions)})
+                continue
+            all_modes, one_mode = (
+                respond(case.model, motion.name, solution) for case, solution in zip(both, solutions, strict=True)
+            )
+            row |= results_of(all_modes, "_mdof")
+            row["max_second_displacement_mdof"] = float(solutions[0].peaks[-1])
+            row |= results_of(one_mode, "_2dof")
+            rows.append(row | _combined(one_mode, second))
+        return rows
 
-    def _run(self, model: LinearModel, motion: GroundMotion) -> tuple[Response, float]:
-        """Return the response, and the peak of the second mode (of the first, if there is only one)."""
-        mode = min(model.properties.n_modes, 2) - 1
-        extra = modal_displacement(model, mode)
-        solution = Case(model, self.free_vibration, work_limit=self.work_limit, extra=extra, many=True).solve(motion)
-        return respond(model, motion.name, solution), float(solution.peaks[-1])
+    def _cases(self, properties: RockingProperties) -> list[Case]:
+        """Return the cases of both models, with the peak of the second mode (of the first, if there is only one)."""
+        models = LinearModel("MDOF-S", properties), LinearModel("2DOF-S", properties.truncated(1))
+        extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
+        return [
+            Case(model, self.free_vibration, work_limit=self.work_limit, extra=each, many=True)
+            for model, each in zip(models, extra, strict=True)
+        ]
+
+
+def _attempt(function: Callable[..., Result], *given: Any) -> "Result | InputError | SolverError":
+    """Return what a function returns, or the error that it raises."""
+    try:
+        return function(*given)
+    except (SolverError, InputError) as error:
+        return error
+
+
+def _solutions(cases: list[Case] | Exception, motion: GroundMotion) -> list[Any]:
+    """Return the solution of each case."""
+    if isinstance(cases, Exception):
+        raise cases
+    return [case.solve(motion) for case in cases]
 
 
 def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
