@@ -33,6 +33,18 @@ PURE = (
 )
 
 
+class Numbers:
+    """Numbers as the names of values, which is quicker than to make given names unique."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def register(self, _name: str, deduplicate: bool = False) -> str:  # noqa: ARG002, FBT001, FBT002
+        """Return a name that no other value of this function has."""
+        self._count += 1
+        return str(self._count)
+
+
 class TerseBuilder(Builder):
     """A builder that looks up what was packed or stored, instead of writing instructions that fetch it again."""
 
@@ -150,6 +162,7 @@ class TerseLower(Lower):
     def setup_function(self, fndesc: Any) -> None:
         """Take the terse builder."""
         super().setup_function(fndesc)
+        self.function.scope = Numbers()
         self.builder = TerseBuilder(self.entry_block)
         self.call_helper = self.call_conv.init_call_helper(self.builder)
         for argument in self.function.args:  # numba marks the lengths that it loads as not negative

@@ -5,11 +5,12 @@ calls the same code is processed once for every caller, and only the machine cod
 Here only the outermost function is optimised, as a whole: it compiles sooner and runs faster.
 """
 
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Literal
 
-from llvmlite.binding import newpassmanagers  # pyright: ignore[reportMissingTypeStubs]
 from numba import _dynfunc  # pyright: ignore[reportPrivateUsage, reportAttributeAccessIssue, reportUnknownVariableType]
-from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites
@@ -24,12 +25,13 @@ from numba.core.untyped_passes import (
     WithLifting,
 )
 
+from rockflex import _numba_library
 from rockflex._numba_lowering import TerseLower
+from rockflex._numba_typing import attentive, remembering
 
 # Looked up here, so that a version without them is detected before anything is compiled.
 make_function: Any = _dynfunc.make_function  # pyright: ignore[reportUnknownMemberType]
-KNOWN: Any = JITCodeLibrary
-USED = (KNOWN._optimize_final_module, KNOWN._finalize_final_module, KNOWN._finalize_dynamic_globals, Flags.no_compile)
+USED = Flags.no_compile
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -41,14 +43,7 @@ class IntermediateLowering(NativeLowering):
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
-        library = state.targetctx.codegen().create_library(state.func_id.func_qualname)
-
-        def finalized() -> None:
-            library._finalize_dynamic_globals()
-            library._finalized = True
-
-        library._optimize_final_module = lambda: None
-        library._finalize_final_module = finalized
+        library = _numba_library.Intermediate(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library, state.flags.no_compile = library, True
         super().run_pass(state)
         # numba identifies a function by a callable object; this one does nothing.
@@ -70,21 +65,9 @@ class WholeLowering(NativeLowering):
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
-        library = state.targetctx.codegen().create_library(state.func_id.func_qualname)
-        library.enable_object_caching()
-        library._optimize_final_module = lambda: optimize(library)
-        state.library = library
+        state.library = _numba_library.Whole(state.targetctx.codegen(), state.func_id.func_qualname)
         super().run_pass(state)
         return True
-
-
-def optimize(library: Any) -> None:
-    """Optimise without unrolling or vectorising loops, which makes three times as much code, and no faster code."""
-    codegen = library._codegen
-    tuning = newpassmanagers.create_pipeline_tuning_options(3)
-    tuning.loop_vectorization = tuning.slp_vectorization = tuning.loop_unrolling = False
-    builder = newpassmanagers.create_pass_builder(codegen._tm, tuning)
-    builder.getModulePassManager().run(library._final_module, builder)
 
 
 class QuickFlags(Flags):
@@ -124,6 +107,7 @@ class Terse(CompilerBase):
     def define_pipelines(self) -> list[Any]:
         """Return the pipeline."""
         self.state.flags.__class__ = QuickFlags
+        self.state.typingctx = attentive(self.state.typingctx)
         passes = PassManager(self.lowering._name)
         for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes:
             if step not in UNUSED:
@@ -142,3 +126,20 @@ class Whole(Terse):
     """For kernels that Python calls."""
 
     lowering = WholeLowering
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile, with what helps to do so quickly."""
+        with remembering(), without_collection():
+            return super().compile_extra(func)
+
+
+@contextmanager
+def without_collection() -> Iterator[None]:
+    """Let no garbage be collected: there is little, among many objects."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
