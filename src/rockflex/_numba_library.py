@@ -31,10 +31,7 @@ class Intermediate(KNOWN):
         self.texts: list[str] = []
 
     def add_ir_module(self, ir_module: Any) -> None:
-        """Keep the text, with functions that may be defined several times."""
-        for each in ir_module.functions:
-            if not each.is_declaration:
-                each.linkage = "linkonce_odr"
+        """Keep the text."""
         self.texts.append(normalize_ir_text(str(ir_module)))
 
     def finalize(self) -> None:
@@ -49,6 +46,9 @@ class Intermediate(KNOWN):
         self._ensure_finalized()
         if self._shared_module is None:
             link(self._final_module, [self])
+            own = {each for text in self.texts for each in defined(binding.parse_assembly(text))}
+            declare(self._final_module, own, "linkonce_odr")
+            declare(self._final_module, defined(self._final_module) - own, "internal")
             self._shared_module = self._final_module
         return self._shared_module
 
@@ -61,17 +61,18 @@ class Whole(KNOWN):
         self.enable_object_caching()
 
     def finalize(self) -> None:
-        """Optimise and generate machine code.
-
-        Functions that are called within this library only are not declared as such, because LLVM would then make a few
-        enormous functions out of them, for twice the time.
-        """
+        """Optimise and generate machine code."""
         self._raise_if_finalized()
         for library in self._linking_libraries:
             self._reload_init.update(library._reload_init)
+        own = defined(self._final_module)
         link(self._final_module, self._linking_libraries)
         self._final_module.verify()
+        # What is internal from the start LLVM makes into fewer and larger functions, for twice the time.
+        declare(self._final_module, defined(self._final_module) - own, "linkonce_odr")
         optimize(self._codegen, self._final_module)
+        # Of equal names, LLVM would take the first in the process, even from a function that was freed.
+        declare(self._final_module, defined(self._final_module) - own, "internal")
         self._finalize_final_module()
 
     def _optimize_functions(self, ll_module: Any) -> None:
@@ -88,6 +89,18 @@ def link(module: Any, libraries: list[Any]) -> None:
                 module.link_in(part)
         else:
             module.link_in(library._get_module_for_linking(), preserve=True)
+
+
+def defined(module: Any) -> set[str]:
+    """Return the names of the functions in a module."""
+    return {each.name for each in module.functions if not each.is_declaration}
+
+
+def declare(module: Any, names: set[str], linkage: str) -> None:
+    """Say who may call these functions of a module."""
+    for each in module.functions:
+        if each.name in names:
+            each.linkage = linkage
 
 
 def _all_of(libraries: list[Any], seen: set[Any]) -> Iterator[Any]:

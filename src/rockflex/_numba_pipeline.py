@@ -75,6 +75,12 @@ class QuickFlags(Flags):
 
     __slots__ = ()
 
+    def __hash__(self) -> int:
+        return NAMES
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Flags) and self.values() == other.values())  # pyright: ignore[reportAttributeAccessIssue, reportUnknownMemberType]
+
     def values(self) -> dict[str, Any]:
         """Return all values."""
         return DEFAULTS | self._values  # pyright: ignore[reportAttributeAccessIssue]
@@ -82,6 +88,8 @@ class QuickFlags(Flags):
 
 QuickFlags.__name__ = Flags.__name__  # part of the names of compiled functions
 DEFAULTS = {name: option.default for name, option in Flags.options.items()}  # pyright: ignore[reportAttributeAccessIssue]
+
+NAMES = hash(tuple(sorted(DEFAULTS)))  # as the original
 
 # Passes for what no kernel uses: closures, `with`, unrolled tuples, literal arguments, functions inlined by numba,
 # expressions of arrays, exceptions with computed arguments.
@@ -104,9 +112,12 @@ class Terse(CompilerBase):
 
     lowering: Any
 
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.state.flags.__class__ = QuickFlags
+
     def define_pipelines(self) -> list[Any]:
         """Return the pipeline."""
-        self.state.flags.__class__ = QuickFlags
         self.state.typingctx = attentive(self.state.typingctx)
         passes = PassManager(self.lowering._name)
         for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes:
