@@ -26,7 +26,7 @@ from numba.core.untyped_passes import (
 )
 
 from rockflex import _numba_library
-from rockflex._numba_lowering import TerseLower
+from rockflex._numba_lowering import InnerLower, TerseLower
 from rockflex._numba_typing import attentive, remembering
 
 # Looked up here, so that a version without them is detected before anything is compiled.
@@ -39,7 +39,7 @@ class IntermediateLowering(NativeLowering):
     """Lowering into a library without machine code."""
 
     _name = "intermediate_lowering"
-    lowering_class: Any = TerseLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
+    lowering_class: Any = InnerLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
@@ -51,7 +51,7 @@ class IntermediateLowering(NativeLowering):
         name = described.qualname.split(".")[-1]
         known_by = make_function(described.lookup_module(), name, "", 0, state.cr.env, (library,))
         state["cr"] = state.cr._replace(cfunc=known_by)
-        state.targetctx.insert_user_function(known_by, described, [library])
+        library.passing.register(state.targetctx, known_by, library)
         state.reload_init.extend(library._reload_init)
         return True
 
