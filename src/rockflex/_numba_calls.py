@@ -1,8 +1,8 @@
 """Calls between kernels: large named tuples are passed as one pointer, and kernels that cannot fail are not checked.
 
-numba passes every word of a tuple as an argument of its own, some two hundred in a call of the driver, and checks after
-every call whether it raised an exception. Here the words of a tuple are in memory, eight bytes each, where the outermost
-kernel put them; inner kernels read those that they use, and pass the pointer on.
+numba passes every word of a tuple as an argument of its own, some two hundred in a call of the driver, and checks
+after every call whether it raised an exception. Here the words of a tuple are in memory, eight bytes each, where the
+outermost kernel put them; inner kernels read those that they use, and pass the pointer on.
 """
 
 from functools import cache
@@ -19,7 +19,7 @@ from numba.core.types import BaseNamedTuple, Optional, none
 
 WORD = 8  # bytes
 FEW = 8  # words that are passed by value
-BYTES, INDEX = ir.IntType(8).as_pointer(), ir.IntType(64)
+BIT, BYTES, INDEX = ir.IntType(1), ir.IntType(8).as_pointer(), ir.IntType(64)
 KNOWN = ArgumentAttributes._known  # pyright: ignore[reportPrivateUsage, reportUnknownMemberType]
 READ_ONLY = ("noalias", "readonly", "captures(none)" if "captures(none)" in KNOWN else "nocapture")
 SUCCESSES = {RETCODE_OK.constant, RETCODE_NONE.constant}
@@ -29,30 +29,39 @@ class Layout:
     """Where the words of a value are, by the parts of its model."""
 
     def __init__(self, model: Any) -> None:
-        self.model = model
         self.type = model.get_value_type()
         self.parts: list[tuple[Layout, int]] = []  # and the first word of each
         self.words = 0
-        models = model._models if isinstance(model, StructModel) else []
-        if isinstance(model, UniTupleModel):
-            models = [model._elem_model] * model._count
         self.is_word = not isinstance(model, (StructModel, UniTupleModel))
+        models: list[Any] = []
+        if isinstance(model, StructModel):
+            models = list(model._models)  # pyright: ignore[reportPrivateUsage]
+        elif isinstance(model, UniTupleModel):
+            models = [model._elem_model] * model._count  # pyright: ignore[reportPrivateUsage]
         for each in models:
             part = layout_of(each)
             self.parts.append((part, self.words))
             self.words += part.words
         if self.is_word:
             self.words = 1
-            self.argument = model.get_argument_type()
+            self.stored: Any = ir.IntType(8) if self.type == BIT else self.type
 
     def fits(self) -> bool:
         """Return True if all parts are single words."""
         if self.is_word:
-            kind = self.argument
-            return isinstance(kind, (ir.PointerType, ir.DoubleType, ir.FloatType)) or (
-                isinstance(kind, ir.IntType) and kind.width <= 8 * WORD
-            )
+            whole = isinstance(self.type, ir.IntType) and self.type.width <= 8 * WORD
+            return whole or isinstance(self.type, (ir.PointerType, ir.DoubleType, ir.FloatType))
         return all(part.fits() for part, _ in self.parts)
+
+    def read(self, builder: Any, pointer: Any) -> Any:
+        """Return the value of a word."""
+        value = builder.load(builder.bitcast(pointer, self.stored.as_pointer()))
+        return builder.trunc(value, BIT) if self.type == BIT else value
+
+    def write(self, builder: Any, value: Any, pointer: Any) -> None:
+        """Write a word."""
+        value = builder.zext(value, self.stored) if self.type == BIT else value
+        builder.store(value, builder.bitcast(pointer, self.stored.as_pointer()))
 
 
 @cache
@@ -84,8 +93,7 @@ class Lent(ir.Value):
         return builder.known(self.pointer, first) or self._read(builder, layout, first)
 
     def _read(self, builder: Any, layout: Layout, first: int) -> Any:
-        place = builder.bitcast(_place(builder, self.pointer, first), layout.argument.as_pointer())
-        value = layout.model.from_argument(builder, builder.load(place))
+        value = layout.read(builder, _place(builder, self.pointer, first))
         builder.learn(self.pointer, first, value)
         return value
 
@@ -113,8 +121,7 @@ def lend(builder: Any, value: Any, layout: Layout) -> Any:
 
 def _put(builder: Any, value: Any, layout: Layout, room: Any, first: int) -> None:
     if layout.is_word:
-        place = builder.bitcast(_place(builder, room, first), layout.argument.as_pointer())
-        builder.store(layout.model.as_argument(builder, value), place)
+        layout.write(builder, value, _place(builder, room, first))
     for index, (part, offset) in enumerate(layout.parts):
         _put(builder, builder.extract_value(value, [index]), part, room, first + offset)
 
@@ -235,3 +242,5 @@ def settle(function: Any, start: Any) -> None:
                 builder = start(block)
                 builder.position_before(each)
                 each.replace_usage(value, value.whole(builder))
+            if isinstance(each, instructions.InsertValue):
+                each.aggregate, each.value = each.operands

@@ -1,7 +1,7 @@
 """Libraries of LLVM's intermediate code: one for each inner kernel, and one for an entry point with all that it calls.
 
-numba optimises the functions of every library, verifies it, and copies it with everything that it calls into each of its
-callers. Here the text of a kernel is parsed once for every entry point that contains it, and optimised only there.
+numba optimises the functions of every library, verifies it, and copies it with everything that it calls into each of
+its callers. Here the text of a kernel is parsed once for every entry point that contains it, and optimised only there.
 """
 
 from collections.abc import Iterator

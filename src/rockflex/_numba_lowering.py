@@ -42,7 +42,7 @@ class Numbers:
     def __init__(self) -> None:
         self._count = 0
 
-    def register(self, _name: str, deduplicate: bool = False) -> str:  # noqa: ARG002, FBT001, FBT002
+    def register(self, _name: str, deduplicate: bool = False) -> str:  # noqa: ARG002
         """Return a name that no other value of this function has."""
         self._count += 1
         return str(self._count)
@@ -246,6 +246,6 @@ class InnerLower(TerseLower):
         super().lower_normal_function(fndesc)
         self.library.passing.look_at(self.function)
 
-    def _lower_call_RecursiveCall(self, _kind: Any, _call: Any, _signature: Any) -> Any:  # noqa: N802
+    def _lower_call_RecursiveCall(self, fnty: Any, expr: Any, signature: Any) -> Any:  # noqa: N802
         message = f"the kernel {self.fndesc.qualname} calls itself, which kernels cannot do; write a loop"
         raise NotImplementedError(message)

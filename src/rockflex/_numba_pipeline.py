@@ -6,7 +6,7 @@ Here only the outermost function is optimised, as a whole: it compiles sooner an
 """
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from typing import Any, Literal
 
@@ -145,7 +145,7 @@ class Whole(Terse):
 
 
 @contextmanager
-def without_collection() -> Iterator[None]:
+def without_collection() -> Generator[None, None, None]:
     """Let no garbage be collected: there is little, among many objects."""
     enabled = gc.isenabled()
     gc.disable()

@@ -3,13 +3,13 @@
 numba tries all forms of a function, and for operators of arrays there are dozens, whenever one is called.
 """
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
-from numba.core.types import Function, Type
-from numba.core.typing import Context
+from numba.core.types import Function
+from numba.core.typing.context import Context
 
 KNOWN: Any = Context
 USED = (KNOWN.resolve_function_type, KNOWN.resolve_setitem, KNOWN.resolve_getattr)
@@ -17,7 +17,7 @@ MEMORIES: list[dict[Any, tuple[Any, Any]]] = []  # by identities: the objects, s
 
 
 @contextmanager
-def remembering() -> Iterator[None]:
+def remembering() -> Generator[None, None, None]:
     """Remember until the end of a compilation: later, functions may have other forms."""
     MEMORIES.append({})
     try:
@@ -33,28 +33,27 @@ class Attentive(KNOWN):
         """Return the signature of a call."""
         if type(func) is not Function or kws:
             return super().resolve_function_type(func, args, kws)
-        return _remembered((func, *args), lambda: super(Attentive, self).resolve_function_type(func, args, kws))
+        return _remembered(super().resolve_function_type, (func, args, kws), (func, *args))
 
     def resolve_setitem(self, target: Any, index: Any, value: Any) -> Any:
         """Return the signature of an assignment to an element."""
-        given = ("setitem", target, index, value)
-        return _remembered(given, lambda: super(Attentive, self).resolve_setitem(target, index, value))
+        return _remembered(super().resolve_setitem, (target, index, value), ("setitem", target, index, value))
 
     def resolve_getattr(self, typ: Any, attr: str) -> Any:
         """Return the type of an attribute."""
-        return _remembered((typ, attr), lambda: super(Attentive, self).resolve_getattr(typ, attr))
+        return _remembered(super().resolve_getattr, (typ, attr), (typ, attr))
 
 
-def _remembered(given: tuple[Any, ...], infer: Any) -> Any:
+def _remembered(infer: Any, given: tuple[Any, ...], objects: tuple[Any, ...]) -> Any:
     if not MEMORIES:
-        return infer()
-    key = tuple(each if isinstance(each, str) else id(each) for each in given)
+        return infer(*given)
+    key = tuple(each if isinstance(each, str) else id(each) for each in objects)
     known = MEMORIES[-1]
     if key not in known:
-        answer = infer()
+        answer = infer(*given)
         if answer is None:
             return None
-        known[key] = given, answer
+        known[key] = objects, answer
     return known[key][1]
 
 

@@ -41,8 +41,11 @@ FOUNDATION = {
     "_kernel",
     "_matrices",
     "_numba",
+    "_numba_calls",
+    "_numba_library",
     "_numba_lowering",
     "_numba_pipeline",
+    "_numba_typing",
     "_schema",
     "_shown",
     "_values",
@@ -57,7 +60,15 @@ HOME = {
     "matplotlib": {"plot", "papers"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "numba": {"_numba", "_numba_lowering", "_numba_pipeline", "_vectors"},
+    "numba": {
+        "_numba",
+        "_numba_calls",
+        "_numba_library",
+        "_numba_lowering",
+        "_numba_pipeline",
+        "_numba_typing",
+        "_vectors",
+    },
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
@@ -202,8 +213,11 @@ def test_the_walk_sees_the_package() -> None:
     assert {"rockflex.__init__", "rockflex._kernel", "rockflex.solve.exact.march"} <= SOURCES.keys()
     assert {each.importer for each in FOUND if each.target.split(".")[0] == "numba"} == {
         "rockflex._numba",
+        "rockflex._numba_calls",
+        "rockflex._numba_library",
         "rockflex._numba_lowering",
         "rockflex._numba_pipeline",
+        "rockflex._numba_typing",
         "rockflex._vectors",
     }
     assert any(each.when == DEFERRED for each in FOUND)
