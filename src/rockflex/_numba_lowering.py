@@ -13,10 +13,13 @@ from numba.core.analysis import compute_cfg_from_blocks, compute_use_defs, must_
 from numba.core.ir import Assign
 from numba.core.lowering import Lower
 
+from rockflex._numba_calls import Lent, Passing, lend, lendable, settle
+
 # Private parts of numba and llvmlite are looked up here, so that a version without them is detected
 # before anything is compiled.
 KNOWN: Any = Lower
 USED = (KNOWN._find_singly_assigned_variable, KNOWN.setup_function, KNOWN.delvar, KNOWN.lower_normal_function)
+USED_IN_CALLS = (KNOWN.extract_function_arguments, KNOWN._lower_call_RecursiveCall)
 Builder: Any = ir.IRBuilder
 USED_OF_BUILDER = (Builder._insert, Builder.extract_value, Builder.load)
 
@@ -33,6 +36,18 @@ PURE = (
 )
 
 
+class Numbers:
+    """Numbers as the names of values, which is quicker than to make given names unique."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def register(self, _name: str, deduplicate: bool = False) -> str:  # noqa: ARG002
+        """Return a name that no other value of this function has."""
+        self._count += 1
+        return str(self._count)
+
+
 class TerseBuilder(Builder):
     """A builder that looks up what was packed or stored, instead of writing instructions that fetch it again."""
 
@@ -41,6 +56,7 @@ class TerseBuilder(Builder):
         self._places: dict[int, tuple[Any, tuple[int, ...]]] = {}  # pointers into the stack: slot, and where in it
         self._contents: dict[int, tuple[Any, Any]] = {}  # of slots: block of the last store, and value
         self._shared: set[int] = set()  # slots with a pointer that other instructions use
+        self._read: dict[tuple[int, int], tuple[Any, Any, Any]] = {}  # words of tuples: pointer, block and value
 
     def extract_value(self, agg: Any, idx: Any, name: str = "") -> Any:
         """Return the value that was inserted there, if known."""
@@ -64,13 +80,27 @@ class TerseBuilder(Builder):
             self._places.clear()
         return super().phi(typ, *arguments, **options)
 
+    def known(self, pointer: Any, word: int) -> Any:
+        """Return a word of a tuple in memory if this block has read it."""
+        _, block, value = self._read.get((id(pointer), word), (None, None, None))
+        return value if block is self.block and self._at_end() else None
+
+    def learn(self, pointer: Any, word: int, value: Any) -> None:
+        """Remember a word that this block has read."""
+        if self._at_end():
+            self._read[id(pointer), word] = pointer, self.block, value
+
     def _part(self, value: Any, path: tuple[int, ...], name: str = "") -> Any:
         for depth, index in enumerate(path):
             found = value
+            if isinstance(found, Lent):
+                return found.part(self, path[depth:])
             while isinstance(found, instructions.InsertValue) and len(found.indices) == 1:
                 if found.indices[0] == index:
                     break
                 found = found.aggregate
+            if isinstance(found, Lent):
+                return found.part(self, path[depth:])
             if not isinstance(found, instructions.InsertValue) or len(found.indices) != 1:
                 return super().extract_value(found, path[depth:], name)
             value = found.value
@@ -125,6 +155,7 @@ def sweep(function: Any) -> None:
             continue
         live.add(id(each))
         sources = [value for value, _ in each.incomings] if isinstance(each, instructions.PhiInstr) else each.operands
+        sources = [source.pointer if isinstance(source, Lent) else source for source in sources]
         todo.extend(source for source in sources if isinstance(source, instructions.Instruction))
         todo.extend(stores.get(id(each), ()))
     for block in function.blocks:
@@ -149,16 +180,33 @@ class TerseLower(Lower):
 
     def setup_function(self, fndesc: Any) -> None:
         """Take the terse builder."""
-        super().setup_function(fndesc)
+        self.function = self.declare(fndesc)
+        self.function.scope = Numbers()
+        self.entry_block = self.function.append_basic_block("entry")
         self.builder = TerseBuilder(self.entry_block)
         self.call_helper = self.call_conv.init_call_helper(self.builder)
         for argument in self.function.args:  # numba marks the lengths that it loads as not negative
             argument.set_metadata = _ignore
 
+    def declare(self, fndesc: Any) -> Any:
+        """Return the function as numba calls it."""
+        return self.context.declare_function(self.module, fndesc)
+
+    def extract_function_arguments(self) -> list[Any]:
+        """Put large tuples into memory, for all kernels."""
+        values = super().extract_function_arguments()
+        layouts = [lendable(self.context, kind) for kind in self.fndesc.argtypes]
+        self.fnargs = [
+            Lent(lend(self.builder, value, layout), layout, 0) if layout else value
+            for value, layout in zip(values, layouts, strict=True)
+        ]
+        return self.fnargs
+
     def lower_normal_function(self, fndesc: Any) -> None:
         """Sweep at the end."""
         super().lower_normal_function(fndesc)
         sweep(self.function)
+        settle(self.function, TerseBuilder)
 
     def delvar(self, name: str) -> None:
         """Do nothing, since nothing is counted."""
@@ -178,3 +226,26 @@ class TerseLower(Lower):
         for label, used in compute_use_defs(blocks).usemap.items():
             wanted -= {name for name in used & wanted if home[name] == label or home[name] not in dominators[label]}
         self._singly_assigned_vars |= wanted
+
+
+class InnerLower(TerseLower):
+    """For kernels that only kernels call."""
+
+    def declare(self, fndesc: Any) -> Any:
+        """Return the function as kernels call it."""
+        self.library.passing = Passing(self.context, fndesc)
+        return self.library.passing.declare(self.module)
+
+    def extract_function_arguments(self) -> list[Any]:
+        """Take large tuples from memory."""
+        self.fnargs = self.library.passing.decode(self.builder, self.function)
+        return self.fnargs
+
+    def lower_normal_function(self, fndesc: Any) -> None:
+        """See at the end whether the function can fail."""
+        super().lower_normal_function(fndesc)
+        self.library.passing.look_at(self.function)
+
+    def _lower_call_RecursiveCall(self, fnty: Any, expr: Any, signature: Any) -> Any:  # noqa: N802
+        message = f"the kernel {self.fndesc.qualname} calls itself, which kernels cannot do; write a loop"
+        raise NotImplementedError(message)

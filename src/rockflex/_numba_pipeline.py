@@ -5,11 +5,12 @@ calls the same code is processed once for every caller, and only the machine cod
 Here only the outermost function is optimised, as a whole: it compiles sooner and runs faster.
 """
 
+import gc
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import Any, Literal
 
-from llvmlite.binding import newpassmanagers  # pyright: ignore[reportMissingTypeStubs]
 from numba import _dynfunc  # pyright: ignore[reportPrivateUsage, reportAttributeAccessIssue, reportUnknownVariableType]
-from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites
@@ -24,12 +25,13 @@ from numba.core.untyped_passes import (
     WithLifting,
 )
 
-from rockflex._numba_lowering import TerseLower
+from rockflex import _numba_library
+from rockflex._numba_lowering import InnerLower, TerseLower
+from rockflex._numba_typing import attentive, remembering
 
 # Looked up here, so that a version without them is detected before anything is compiled.
 make_function: Any = _dynfunc.make_function  # pyright: ignore[reportUnknownMemberType]
-KNOWN: Any = JITCodeLibrary
-USED = (KNOWN._optimize_final_module, KNOWN._finalize_final_module, KNOWN._finalize_dynamic_globals, Flags.no_compile)
+USED = Flags.no_compile
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -37,18 +39,11 @@ class IntermediateLowering(NativeLowering):
     """Lowering into a library without machine code."""
 
     _name = "intermediate_lowering"
-    lowering_class: Any = TerseLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
+    lowering_class: Any = InnerLower  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
-        library = state.targetctx.codegen().create_library(state.func_id.func_qualname)
-
-        def finalized() -> None:
-            library._finalize_dynamic_globals()
-            library._finalized = True
-
-        library._optimize_final_module = lambda: None
-        library._finalize_final_module = finalized
+        library = _numba_library.Intermediate(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library, state.flags.no_compile = library, True
         super().run_pass(state)
         # numba identifies a function by a callable object; this one does nothing.
@@ -56,7 +51,7 @@ class IntermediateLowering(NativeLowering):
         name = described.qualname.split(".")[-1]
         known_by = make_function(described.lookup_module(), name, "", 0, state.cr.env, (library,))
         state["cr"] = state.cr._replace(cfunc=known_by)
-        state.targetctx.insert_user_function(known_by, described, [library])
+        library.passing.register(state.targetctx, known_by, library)
         state.reload_init.extend(library._reload_init)
         return True
 
@@ -70,27 +65,21 @@ class WholeLowering(NativeLowering):
 
     def run_pass(self, state: Any) -> Literal[True]:
         """Lower one function."""
-        library = state.targetctx.codegen().create_library(state.func_id.func_qualname)
-        library.enable_object_caching()
-        library._optimize_final_module = lambda: optimize(library)
-        state.library = library
+        state.library = _numba_library.Whole(state.targetctx.codegen(), state.func_id.func_qualname)
         super().run_pass(state)
         return True
-
-
-def optimize(library: Any) -> None:
-    """Optimise without unrolling or vectorising loops, which makes three times as much code, and no faster code."""
-    codegen = library._codegen
-    tuning = newpassmanagers.create_pipeline_tuning_options(3)
-    tuning.loop_vectorization = tuning.slp_vectorization = tuning.loop_unrolling = False
-    builder = newpassmanagers.create_pass_builder(codegen._tm, tuning)
-    builder.getModulePassManager().run(library._final_module, builder)
 
 
 class QuickFlags(Flags):
     """numba's flags, which are compared at every call of a function; the original asks for each by name."""
 
     __slots__ = ()
+
+    def __hash__(self) -> int:
+        return NAMES
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Flags) and self.values() == other.values())  # pyright: ignore[reportAttributeAccessIssue, reportUnknownMemberType]
 
     def values(self) -> dict[str, Any]:
         """Return all values."""
@@ -99,6 +88,8 @@ class QuickFlags(Flags):
 
 QuickFlags.__name__ = Flags.__name__  # part of the names of compiled functions
 DEFAULTS = {name: option.default for name, option in Flags.options.items()}  # pyright: ignore[reportAttributeAccessIssue]
+
+NAMES = hash(tuple(sorted(DEFAULTS)))  # as the original
 
 # Passes for what no kernel uses: closures, `with`, unrolled tuples, literal arguments, functions inlined by numba,
 # expressions of arrays, exceptions with computed arguments.
@@ -121,9 +112,13 @@ class Terse(CompilerBase):
 
     lowering: Any
 
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.state.flags.__class__ = QuickFlags
+
     def define_pipelines(self) -> list[Any]:
         """Return the pipeline."""
-        self.state.flags.__class__ = QuickFlags
+        self.state.typingctx = attentive(self.state.typingctx)
         passes = PassManager(self.lowering._name)
         for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes:
             if step not in UNUSED:
@@ -142,3 +137,20 @@ class Whole(Terse):
     """For kernels that Python calls."""
 
     lowering = WholeLowering
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile, with what helps to do so quickly."""
+        with remembering(), without_collection():
+            return super().compile_extra(func)
+
+
+@contextmanager
+def without_collection() -> Generator[None, None, None]:
+    """Let no garbage be collected: there is little, among many objects."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
