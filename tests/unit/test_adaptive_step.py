@@ -87,7 +87,7 @@ def test_stages_are_placed_by_the_table(stage):
     rng = np.random.default_rng(stage)
     start, rates, out = rng.standard_normal(7), rng.standard_normal((tableau.STAGES, 7)), np.full(7, np.nan)
     rates[stage:] = np.nan  # not known yet
-    place_stage(stage, 0.3, start, rates, out)
+    place_stage(stage, 0.3, start, rates, out, 7)
     np.testing.assert_allclose(out, start + 0.3 * (tableau.A[stage, :stage] @ rates[:stage]), rtol=1e-12, atol=1e-13)
 
 

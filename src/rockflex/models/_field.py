@@ -10,8 +10,9 @@ import math
 from typing import NamedTuple
 
 from rockflex._arrays import Array
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models._pulls import DAMPING, HOLD, MOMENT, STIFFNESS
+from rockflex.models._sines import sine_and_cosine
 
 EXTRA = 4  # components in addition to those of the simplified models
 
@@ -28,6 +29,7 @@ class Field(NamedTuple):
     complete: bool  # Eqs. 13 and 14; otherwise Eq. 23
     hysteretic: bool
     viscous: bool  # with dampers at the base
+    ledger: bool  # whether the rates of the energies, and of what the dampers sweep, are computed
     modes: Array  # (4, N): ω², 2ζω, h* and m*
     pivots: Array  # (2, 9), for the right and the left pivot: see the indices above; elements change their sums
     weight_arm: float  # L_0^r
@@ -76,16 +78,26 @@ def field_rates(
     The latter, `rise`, acts like more gravity. `branch` is the sign of D'_1 used in the hysteresis law, which is
     therefore smooth up to the reversal.
     """
+    stage_rates(field, side, branch, acceleration, rise, motion, rates)
+
+
+@inlined_kernel
+def stage_rates(
+    field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
+) -> None:
+    """Compute the same as `field_rates`, as a part of the loop over the stages of a step."""
     n = field.modes.shape[1]
     gravity = field.gravity + rise
     theta, spin = motion[2 * n], motion[2 * n + 1]
     sine, cosine = 0.0, 1.0
     if side != 0.0 and field.complete:
-        sine, cosine = math.sin(theta), math.cos(theta)
+        sine, cosine = sine_and_cosine(float(theta))
     pivot = pivot_at(side)
     offset = side * field.pivots[pivot, ARM]
-    rates[2 * n + 2] = 0.0
-    rates[2 * n + 5] = 0.0
+    free = side != 0.0 and field.pivots[pivot, HELD] == 0.0
+    mobility = 1.0 / inertia_left(field, side, motion) if free else 0.0  # early: the division takes time
+    if field.ledger:
+        rates[2 * n + 2] = rates[2 * n + 5] = 0.0
     damped = drive = moment = displaced = carried = 0.0
     lever = 1.0  # of an element: δ'/(r |θ|')
     for i in range(n):
@@ -98,7 +110,8 @@ def field_rates(
                 field.modes[OMEGA2, i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
             )
             restoring += slip
-            rates[2 * n + 5] = field.modes[MASS, i] * slip * v
+            if field.ledger:
+                rates[2 * n + 5] = field.modes[MASS, i] * slip * v
             rates[2 * n + 2] = hysteresis(field, branch, float(v), float(motion[2 * n + 2]))
         rest = -restoring - drag - acceleration * cosine
         if side != 0.0 and field.complete:
@@ -118,7 +131,8 @@ def field_rates(
             across = weight * cosine - field.weight_arm * sine - displaced * cosine
             moment += gravity * across
             # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
-            lever = math.sqrt(0.5 + 0.5 * cosine)
+            if field.viscous or field.pivots[pivot, PULLED] != 0.0:
+                lever = math.sqrt(0.5 + 0.5 * cosine)
             moment += side * field.pivots[pivot, PULLED] * lever + field.pivots[pivot, STIFFENED] * sine
         else:
             arm = field.weight_arm
@@ -128,17 +142,18 @@ def field_rates(
         if field.viscous:
             moment += field.pivots[pivot, DAMPED] * lever * lever * spin
         moment += acceleration * arm
-        angular = -moment / inertia_left(field, side, motion) if field.pivots[pivot, HELD] == 0.0 else 0.0
+        angular = -moment * mobility
         drive = arm * spin
         climb = across * spin - carried * sine
         for i in range(n):
             rates[n + i] -= field.modes[HEIGHT, i] * angular
     rates[2 * n] = spin
     rates[2 * n + 1] = angular
-    rates[2 * n + 3] = damped
-    rates[2 * n + 4] = -acceleration * (drive + cosine * carried) - rise * climb
-    if field.viscous:
-        rates[2 * n + 6] = (lever * spin) ** 2 if side != 0.0 else 0.0
+    if field.ledger:
+        rates[2 * n + 3] = damped
+        rates[2 * n + 4] = -acceleration * (drive + cosine * carried) - rise * climb
+        if field.viscous:
+            rates[2 * n + 6] = (lever * spin) ** 2 if side != 0.0 else 0.0
 
 
 @kernel

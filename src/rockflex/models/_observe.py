@@ -11,6 +11,7 @@ from rockflex._arrays import Array
 from rockflex._kernel import kernel, python_kernel
 from rockflex.models._field import ARM, MASS, PULLS, Field, pivot_at, take_pulls
 from rockflex.models._pulls import DRAG, FORCE, PULL
+from rockflex.models._sines import sine_and_cosine
 
 LINEAR = 0  # the row itself
 SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row gives its u (Eq. 3)
@@ -38,7 +39,7 @@ def posture_of(field: Field, side: float, acceleration: float, rise: float, moti
     n = field.modes.shape[1]
     gravity = field.gravity + rise
     spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
-    sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
+    sine, cosine = sine_and_cosine(float(motion[2 * n]))
     upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
     half = 0.5 * sine / upright
     pivot = pivot_at(side)

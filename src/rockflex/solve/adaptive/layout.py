@@ -32,6 +32,8 @@ class Flow(NamedTuple):
     rest: float  # vertical reaction at rest
     scale: Array  # (2N + 3,): sizes below which the error of a component does not matter
     tolerance: float  # relative, for each step
+    moving: int  # entries of the state on which its rates depend
+    counted: int  # entries that are integrated: those, or the energies, too
 
 
 class Stages(NamedTuple):

@@ -4,9 +4,9 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex.models import field_rates
+from rockflex.models import field_rates, stage_rates
 from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, ROW_TERMS, TERMS, TRIAL, Flow, Stages
-from rockflex.solve.adaptive.sums import place_stage
+from rockflex.solve.adaptive.sums import place_others, place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.layout import LEFT, STEP, Span, System, is_shaken
 
@@ -34,8 +34,8 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     while True:
         room.work[LEFT] -= room.work[STEP]
         for stage in range(1, LAST + 1):
-            place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL])
-            field_rates(
+            place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL], flow.moving)
+            stage_rates(
                 flow.field,
                 side,
                 room.at.branch,
@@ -46,6 +46,7 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
             )
         error = error_of(flow, step, room)
         if error <= 1.0:
+            place_others(step, room.motion, room.rates, room.vectors[TRIAL], flow.moving, flow.counted)
             grown = step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
             # A step shortened by a sample or an event gives little information about the next one.
             room.at.step = grown if step < longest else max(grown, room.at.step)
@@ -73,7 +74,7 @@ def choose_branch(flow: Flow, side: float, acceleration: float, rise: float, roo
 def error_of(flow: Flow, step: float, room: Stages) -> float:
     """Return the error norm of the step relative to the tolerance; infinite if the step overflowed."""
     fifth = third = 0.0
-    for i in range(flow.scale.size):
+    for i in range(flow.moving):
         coarse, fine = ERROR_3[0] * room.rates[0, i], ERROR_5[0] * room.rates[0, i]
         for k in range(5, LAST):
             coarse += ERROR_3[k] * room.rates[k, i]
@@ -90,9 +91,9 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
 @inlined_kernel
 def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
     """Compute `room.bends`, the continuous extension of the accepted step."""
-    n, step = room.motion.size, span.length
+    step = span.length
     for stage in range(LAST + 1, STAGES):
-        place_stage(stage, step, room.motion, room.rates, room.bends[0])
+        place_stage(stage, step, room.motion, room.rates, room.bends[0], flow.moving)
         field_rates(
             flow.field,
             side,
@@ -102,13 +103,13 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
             room.bends[0],
             room.rates[stage],
         )
-    for i in range(n):
+    for i in range(flow.counted):
         rise = room.vectors[TRIAL, i] - room.motion[i]
         room.bends[0, i] = rise
         room.bends[1, i] = step * room.rates[0, i] - rise
         room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
     for j in range(4):
-        for i in range(n):
+        for i in range(flow.counted):
             total = DENSE[j, 0] * room.rates[0, i]
             for k in range(5, STAGES):
                 total += DENSE[j, k] * room.rates[k, i]
