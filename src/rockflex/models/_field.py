@@ -159,7 +159,9 @@ def stage_rates(
 @kernel
 def hysteresis(field: Field, branch: float, velocity: float, z: float) -> float:
     """Return the rate of z (Eq. 38), with `branch` D' in place of |D'|."""
-    if field.whole > 0:
+    if field.whole == 2:
+        power = z * z
+    elif field.whole > 0:
         power, factor, left = 1.0, abs(z), field.whole
         while left > 0:
             if left & 1:
@@ -168,6 +170,6 @@ def hysteresis(field: Field, branch: float, velocity: float, z: float) -> float:
             left >>= 1
     else:
         power = math.pow(abs(z), field.exponent)
-    # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z.
-    turn = branch * velocity * (power if z >= 0.0 else -power)
-    return (velocity - field.gamma * turn - field.beta * velocity * power) / field.yield_displacement
+    # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z. The power comes last, as z is known last.
+    lean = field.beta + (branch * field.gamma if z >= 0.0 else -branch * field.gamma)
+    return velocity / field.yield_displacement * (1.0 - lean * power)

@@ -17,10 +17,10 @@ TERMS = 8  # of the polynomial over a step
 ROW_TERMS = TERMS + 1  # of a row, which may be multiplied by the vertical acceleration of the ground
 
 # Indices in `Stages.vectors`: the state at the end of the step, the state and its rates within the step, and the state
-# and its rates at the end of a part of the step. Indices in `Stages.rows`: at the start and the end of the step,
-# shortly after each, and within the step.
+# and its rates at the end of a part of the step. Indices in `Stages.rows`: at the start and the end of the step, at the
+# two places between them, and anywhere.
 TRIAL, PLACE, PLACE_RATES, END, END_RATES = 0, 1, 2, 3, 4
-AT_STARTS, AT_ENDS, AT_STARTS_AHEAD, AT_ENDS_AHEAD, TOLD = 0, 1, 2, 3, 4
+AT_STARTS, AT_ENDS, AT_EARLY, AT_LATE, TOLD = 0, 1, 2, 3, 4
 
 
 class Flow(NamedTuple):

@@ -47,9 +47,11 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
         error = error_of(flow, step, room)
         if error <= 1.0:
             place_others(step, room.motion, room.rates, room.vectors[TRIAL], flow.moving, flow.counted)
-            grown = step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
             # A step shortened by a sample or an event gives little information about the next one.
-            room.at.step = grown if step < longest else max(grown, room.at.step)
+            if step < longest:
+                room.at.step = grown(step, most, error)
+            elif room.at.step < step * most:
+                room.at.step = max(grown(step, most, error), room.at.step)
             return step
         most = 1.0
         shrunk = max(LEAST, SAFETY * error**-0.125) if error < np.inf else LEAST
@@ -57,6 +59,12 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
         room.at.step = step
         if not step > SHORTEST:
             return FAILED
+
+
+@kernel
+def grown(step: float, most: float, error: float) -> float:
+    """Return the length of the next step, at most `most` times this one."""
+    return step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
 
 
 @inlined_kernel
