@@ -48,6 +48,7 @@ FOUNDATION = {
     "_values",
     "_vectors",
     "_versions",
+    "_weighted",
 }  # every layer may import these; they only each other
 FACES = {"cli", "web", "__main__"}  # may import anything, and nothing below them or the front
 USERS = {"papers"}  # may import the package's own front too, as its users do
@@ -57,7 +58,7 @@ HOME = {
     "matplotlib": {"plot", "papers"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "numba": {"_numba", "_numba_lowering", "_numba_pipeline", "_vectors"},
+    "numba": {"_numba", "_numba_lowering", "_numba_pipeline", "_vectors", "_weighted"},
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
@@ -205,6 +206,7 @@ def test_the_walk_sees_the_package() -> None:
         "rockflex._numba_lowering",
         "rockflex._numba_pipeline",
         "rockflex._vectors",
+        "rockflex._weighted",
     }
     assert any(each.when == DEFERRED for each in FOUND)
     assert any(each.when == TYPING for each in FOUND)

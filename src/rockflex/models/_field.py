@@ -153,20 +153,24 @@ def stage_rates(
         rates[2 * n + 3] = damped
         rates[2 * n + 4] = -acceleration * (drive + cosine * carried) - rise * climb
         if field.viscous:
-            rates[2 * n + 6] = (lever * spin) ** 2 if side != 0.0 else 0.0
+            swing = lever * spin
+            rates[2 * n + 6] = swing * swing if side != 0.0 else 0.0
 
 
 @kernel
 def hysteresis(field: Field, branch: float, velocity: float, z: float) -> float:
     """Return the rate of z (Eq. 38), with `branch` D' in place of |D'|."""
-    if field.whole == 2:
-        power = z * z
-    elif field.whole > 0:
-        power, factor, left = 1.0, abs(z), field.whole
+    if field.whole > 0:
+        power, left = abs(z), field.whole
+        while left & 1 == 0:
+            power *= power
+            left >>= 1
+        factor = power
+        left >>= 1
         while left > 0:
+            factor *= factor
             if left & 1:
                 power *= factor
-            factor *= factor
             left >>= 1
     else:
         power = math.pow(abs(z), field.exponent)

@@ -7,11 +7,11 @@ hundredths of the curvature of the cubic (for a harmonic of ω: (ωh)²/48); a f
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex.solve.adaptive.curves import NEAR, WHOLE, curves_hide, is_curved, stretch
+from rockflex.solve.adaptive.curves import WHOLE, curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
 from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System, heavier_limits, is_shaken
-from rockflex.solve.peaks import raise_peaks, size_of
+from rockflex.solve.peaks import NEAR, is_far, raise_peaks, size_of
 
 
 @kernel
@@ -80,9 +80,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
             first, last = first + rise * start, last + risen * end
         room.rows[AT_ENDS, f] = last
         if f != GUARD:
-            # Far from its peak at both ends, a row does not reach it in between.
-            size = max(size_of(first, f, log), size_of(last, f, log))
-            if size <= log.peaks[f] - (1.0 - NEAR) * abs(log.peaks[f]):
+            if is_far(first, last, f, log):
                 continue
         elif not system.phases[phase].free:
             low, high = min(first, last), max(first, last)

@@ -27,10 +27,9 @@ from rockflex.solve.adaptive.sums import place_stage
 from rockflex.solve.adaptive.tableau import C
 from rockflex.solve.exact.probe import cubic_range
 from rockflex.solve.layout import Log, Span, System, part_of
-from rockflex.solve.peaks import raise_row, row_at, size_of
+from rockflex.solve.peaks import NEAR, raise_row, row_at, size_of
 
 STRAY = 0.2
-NEAR = 0.75  # fraction of its peak that a row must reach at either end for the evaluations in between
 LIGHT = 0.05  # of the vertical reaction at rest: smallest scale for the loss of support
 EARLY, LATE = 7, 8  # the stages in between
 WHOLE = -1.0  # instead of a part of a step: all of it, before its extension is computed
@@ -146,7 +145,7 @@ def tell_between(
     place = room.vectors[PLACE]
     if stop == WHOLE:
         place_stage(stage, span.length, room.motion, room.rates, place, flow.moving)
-        for i in range(flow.moving, place.size):
+        for i in range(flow.moving, room.motion.size):
             place[i] = room.motion[i]
         tell(system, flow, phase, ground, rise, place, room.rates[stage], values)
         return

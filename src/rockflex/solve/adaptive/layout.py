@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
+from rockflex._weighted import whole_vectors
 from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
 from rockflex.solve.layout import Progress
@@ -37,12 +38,12 @@ class Flow(NamedTuple):
 
 
 class Stages(NamedTuple):
-    """Work arrays for one step."""
+    """Work arrays for one step; S'' is the size S' of the state rounded up to whole vectors."""
 
     motion: Array  # (S',): at the start of the step; `Motion.state`
-    vectors: Array  # (5, S'): other states and rates, at the indices above
-    rates: Array  # (16, S')
-    bends: Array  # (7, S'): the continuous extension
+    vectors: Array  # (5, S''): other states and rates, at the indices above
+    rates: Array  # (16, S'')
+    bends: Array  # (7, S''): the continuous extension
     polys: Array  # (F + 1, 9)
     rows: Array  # (5, F): values of the rows, at the indices above
     doubt: NDArray[np.bool_]  # (F,): curved rows that may have a peak
@@ -56,7 +57,7 @@ def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) 
 
     `work` is that of the log of the run.
     """
-    n = motion.size
+    n = whole_vectors(motion.size)
     return Stages(
         motion,
         np.zeros((5, n)),

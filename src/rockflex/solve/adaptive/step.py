@@ -4,14 +4,27 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
+from rockflex._weighted import weigh
 from rockflex.models import field_rates, stage_rates
-from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, ROW_TERMS, TERMS, TRIAL, Flow, Stages
+from rockflex.solve.adaptive.layout import (
+    AT_ENDS,
+    AT_STARTS,
+    PLACE,
+    PLACE_RATES,
+    ROW_TERMS,
+    TERMS,
+    TRIAL,
+    Flow,
+    Stages,
+)
 from rockflex.solve.adaptive.sums import place_others, place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.layout import LEFT, STEP, Span, System, is_shaken
 
 SHORTEST = 1e-13  # s: if a shorter step is needed, the motion cannot be integrated
 FAILED = -1.0
+COARSE, FINE = 0, 1
+ERRORS = np.stack((ERROR_3, ERROR_5))
 SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 
@@ -20,8 +33,12 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`.
 
     `room.vectors[TRIAL]` contains the end of the step, `room.rates` the stages up to it. The work limit is checked only
-    between steps, because interrupting the attempts at a step would lose their information.
+    between steps, because interrupting the attempts at a step would lose their information. A step that has been tried
+    is not repeated.
     """
+    if room.at.tried:
+        room.at.tried = False
+        return float(room.at.length)
     longest = rest.length
     step = min(room.at.step, longest)
     if not room.at.known:
@@ -82,14 +99,13 @@ def choose_branch(flow: Flow, side: float, acceleration: float, rise: float, roo
 def error_of(flow: Flow, step: float, room: Stages) -> float:
     """Return the error norm of the step relative to the tolerance; infinite if the step overflowed."""
     fifth = third = 0.0
+    weigh(room.vectors[PLACE], 1.0, ERRORS, COARSE, room.rates, 5, LAST, flow.moving)
+    weigh(room.vectors[PLACE_RATES], 1.0, ERRORS, FINE, room.rates, 5, LAST, flow.moving)
     for i in range(flow.moving):
-        coarse, fine = ERROR_3[0] * room.rates[0, i], ERROR_5[0] * room.rates[0, i]
-        for k in range(5, LAST):
-            coarse += ERROR_3[k] * room.rates[k, i]
-            fine += ERROR_5[k] * room.rates[k, i]
-        size = max(room.size[i], abs(room.motion[i]), abs(room.vectors[TRIAL, i]), flow.scale[i])
-        fifth += (fine / size) ** 2
-        third += (coarse / size) ** 2
+        size = 1.0 / max(room.size[i], abs(room.motion[i]), abs(room.vectors[TRIAL, i]), flow.scale[i])
+        coarse, fine = room.vectors[PLACE, i] * size, room.vectors[PLACE_RATES, i] * size
+        fifth += fine * fine  # as a power it would be a loop
+        third += coarse * coarse
     if fifth == 0.0:
         return 0.0
     error = abs(step) * fifth / np.sqrt((fifth + 0.01 * third) * flow.scale.size) / flow.tolerance
@@ -117,17 +133,13 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
         room.bends[1, i] = step * room.rates[0, i] - rise
         room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
     for j in range(4):
-        for i in range(flow.counted):
-            total = DENSE[j, 0] * room.rates[0, i]
-            for k in range(5, STAGES):
-                total += DENSE[j, k] * room.rates[k, i]
-            room.bends[3 + j, i] = step * total
+        weigh(room.bends[3 + j], step, DENSE, j, room.rates, 5, STAGES, flow.counted)
 
 
 @kernel
 def forget(room: Stages) -> None:
     """Record that the motion changed after the last step, so that its rates are not known."""
-    room.at.known = False
+    room.at.known = room.at.tried = False
 
 
 @inlined_kernel
