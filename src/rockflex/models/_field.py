@@ -86,75 +86,135 @@ def stage_rates(
     field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
 ) -> None:
     """Compute the same as `field_rates`, as a part of the loop over the stages of a step."""
+    if side == 0.0:
+        rates_in_contact(field, branch, acceleration, motion, rates)
+    elif field.complete:
+        rates_of_large_rotation(field, side, branch, acceleration, rise, motion, rates)
+    else:
+        rates_of_small_rotation(field, side, branch, acceleration, rise, motion, rates)
+
+
+@inlined_kernel
+def rates_in_contact(field: Field, branch: float, acceleration: float, motion: Array, rates: Array) -> None:
+    """Compute the rates while the base stands still (Eq. 13 or 23 without rotation)."""
     n = field.modes.shape[1]
-    gravity = field.gravity + rise
-    theta, spin = motion[2 * n], motion[2 * n + 1]
-    sine, cosine = 0.0, 1.0
-    if side != 0.0 and field.complete:
-        sine, cosine = sine_and_cosine(float(theta))
-    pivot = pivot_at(side)
-    offset = side * field.pivots[pivot, ARM]
-    free = side != 0.0 and field.pivots[pivot, HELD] == 0.0
-    mobility = 1.0 / inertia_left(field, side, motion) if free else 0.0  # early: the division takes time
-    if field.ledger:
-        rates[2 * n + 2] = rates[2 * n + 5] = 0.0
-    damped = drive = moment = displaced = carried = 0.0
-    lever = 1.0  # of an element: δ'/(r |θ|')
+    damped = carried = 0.0
     for i in range(n):
-        d, v = motion[i], motion[n + i]
+        v = motion[n + i]
         drag = field.modes[DRAG, i] * v
-        restoring = field.modes[OMEGA2, i] * d
-        if field.hysteretic:
-            restoring *= field.post_yield_ratio
-            slip = (
-                field.modes[OMEGA2, i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
-            )
-            restoring += slip
-            if field.ledger:
-                rates[2 * n + 5] = field.modes[MASS, i] * slip * v
-            rates[2 * n + 2] = hysteresis(field, branch, float(v), float(motion[2 * n + 2]))
-        rest = -restoring - drag - acceleration * cosine
-        if side != 0.0 and field.complete:
-            rest += gravity * sine - spin * spin * (offset - d)
-            moment += 2.0 * spin * v * field.modes[MASS, i] * (d - offset)
+        rates[i] = v
+        rates[n + i] = -restoring_force(field, branch, i, motion, rates) - drag - acceleration
+        damped += field.modes[MASS, i] * drag * v
+        carried += field.modes[MASS, i] * v
+    rates[2 * n], rates[2 * n + 1] = motion[2 * n + 1], 0.0
+    if field.ledger:
+        enter(field, damped, -acceleration * carried, 0.0, rates)
+
+
+@inlined_kernel
+def rates_of_small_rotation(
+    field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
+) -> None:
+    """Compute the rates of the simplified models while rocking (Eq. 23)."""
+    n, pivot = field.modes.shape[1], pivot_at(side)
+    theta, spin = motion[2 * n], motion[2 * n + 1]
+    weight = field.total_mass * side * field.pivots[pivot, ARM]
+    across = weight - field.weight_arm * theta
+    moment = (field.gravity + rise) * across + acceleration * field.weight_arm
+    moment += side * field.pivots[pivot, PULLED] + field.pivots[pivot, STIFFENED] * theta
+    if field.viscous:
+        moment += field.pivots[pivot, DAMPED] * spin
+    damped = carried = 0.0
+    for i in range(n):
+        v = motion[n + i]
+        drag = field.modes[DRAG, i] * v
+        rest = -restoring_force(field, branch, i, motion, rates) - drag - acceleration
         rates[i] = v
         rates[n + i] = rest
         moment += field.modes[MASS, i] * field.modes[HEIGHT, i] * rest
         damped += field.modes[MASS, i] * drag * v
-        displaced += field.modes[MASS, i] * d
         carried += field.modes[MASS, i] * v
-    angular = climb = 0.0  # θ'' and Σ m z'
-    if side != 0.0:
-        weight = field.total_mass * offset
-        if field.complete:
-            arm = weight * sine + field.weight_arm * cosine - displaced * sine
-            across = weight * cosine - field.weight_arm * sine - displaced * cosine
-            moment += gravity * across
-            # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
-            if field.viscous or field.pivots[pivot, PULLED] != 0.0:
-                lever = math.sqrt(0.5 + 0.5 * cosine)
-            moment += side * field.pivots[pivot, PULLED] * lever + field.pivots[pivot, STIFFENED] * sine
-        else:
-            arm = field.weight_arm
-            across = weight - field.weight_arm * theta
-            moment += gravity * across
-            moment += side * field.pivots[pivot, PULLED] + field.pivots[pivot, STIFFENED] * theta
+    turn(field, side, moment, motion, rates)
+    if field.ledger:
+        work = -acceleration * (field.weight_arm * spin + carried) - rise * across * spin
+        enter(field, damped, work, float(spin), rates)
+
+
+@inlined_kernel
+def rates_of_large_rotation(
+    field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
+) -> None:
+    """Compute the rates of the complete models while rocking (Eqs. 13 and 14)."""
+    n, pivot = field.modes.shape[1], pivot_at(side)
+    gravity, spin = field.gravity + rise, motion[2 * n + 1]
+    sine, cosine = sine_and_cosine(float(motion[2 * n]))
+    offset = side * field.pivots[pivot, ARM]
+    drive = gravity * sine - acceleration * cosine
+    damped = moment = displaced = carried = 0.0
+    for i in range(n):
+        d, v, mass = motion[i], motion[n + i], field.modes[MASS, i]
+        drag, behind = field.modes[DRAG, i] * v, d - offset
+        rest = drive - restoring_force(field, branch, i, motion, rates) - drag + spin * spin * behind
+        rates[i] = v
+        rates[n + i] = rest
+        moment += mass * (field.modes[HEIGHT, i] * rest + 2.0 * spin * v * behind)
+        damped += mass * drag * v
+        displaced += mass * d
+        carried += mass * v
+    beside = field.total_mass * offset - displaced
+    arm = beside * sine + field.weight_arm * cosine
+    across = beside * cosine - field.weight_arm * sine
+    moment += gravity * across + acceleration * arm
+    moment += field.pivots[pivot, STIFFENED] * sine
+    # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
+    lever = 1.0
+    if field.viscous or field.pivots[pivot, PULLED] != 0.0:
+        lever = math.sqrt(0.5 + 0.5 * cosine)
+        moment += side * field.pivots[pivot, PULLED] * lever
         if field.viscous:
             moment += field.pivots[pivot, DAMPED] * lever * lever * spin
-        moment += acceleration * arm
-        angular = -moment * mobility
-        drive = arm * spin
-        climb = across * spin - carried * sine
-        for i in range(n):
-            rates[n + i] -= field.modes[HEIGHT, i] * angular
-    rates[2 * n] = spin
-    rates[2 * n + 1] = angular
+    turn(field, side, moment, motion, rates)
     if field.ledger:
-        rates[2 * n + 3] = damped
-        rates[2 * n + 4] = -acceleration * (drive + cosine * carried) - rise * climb
-        if field.viscous:
-            swing = lever * spin
-            rates[2 * n + 6] = swing * swing if side != 0.0 else 0.0
+        work = -acceleration * (arm * spin + cosine * carried) - rise * (across * spin - carried * sine)
+        enter(field, damped, work, lever * spin, rates)
+
+
+@inlined_kernel
+def restoring_force(field: Field, branch: float, mode: int, motion: Array, rates: Array) -> float:
+    """Return the restoring force of a mode per unit of modal mass, and compute the rates of a hysteretic spring."""
+    elastic = field.modes[OMEGA2, mode] * motion[mode]
+    if not field.hysteretic:
+        return float(elastic)
+    n = field.modes.shape[1]
+    v, z = motion[n + mode], motion[2 * n + 2]
+    slip = field.modes[OMEGA2, mode] * field.yield_displacement * (1.0 - field.post_yield_ratio) * z
+    rates[2 * n + 2] = hysteresis(field, branch, float(v), float(z))
+    if field.ledger:
+        rates[2 * n + 5] = field.modes[MASS, mode] * slip * v
+    return float(field.post_yield_ratio * elastic + slip)
+
+
+@inlined_kernel
+def turn(field: Field, side: float, moment: float, motion: Array, rates: Array) -> None:
+    """Compute θ'' from the moment with θ'' = 0, and what it adds to D''."""
+    n = field.modes.shape[1]
+    angular = 0.0
+    if field.pivots[pivot_at(side), HELD] == 0.0:
+        angular = -moment * (1.0 / inertia_left(field, side, motion))  # the division can start before the moment is known
+    for i in range(n):
+        rates[n + i] -= field.modes[HEIGHT, i] * angular
+    rates[2 * n], rates[2 * n + 1] = motion[2 * n + 1], angular
+
+
+@inlined_kernel
+def enter(field: Field, damped: float, work: float, swing: float, rates: Array) -> None:
+    """Compute the rates of the damped energy, of the work of the ground, and of what the viscous dampers sweep."""
+    n = field.modes.shape[1]
+    rates[2 * n + 3], rates[2 * n + 4] = damped, work
+    if not field.hysteretic:
+        rates[2 * n + 2] = rates[2 * n + 5] = 0.0
+    if field.viscous:
+        rates[2 * n + 6] = swing * swing
 
 
 @kernel
