@@ -33,8 +33,8 @@ STRAY = 0.2
 LIGHT = 0.05  # of the vertical reaction at rest: smallest scale for the loss of support
 EARLY, LATE = 7, 8  # the stages in between
 WHOLE = -1.0  # instead of a part of a step: all of it, before its extension is computed
-LOOKS = 8  # evaluations across a stretch that may contain a peak
-CLOSER = 4  # times that the interval around a peak is reduced to an eighth
+LOOKS = 4  # evaluations across a stretch that may contain a peak
+CLOSER = 3  # times that the interval around a peak is reduced to an eighth
 
 
 def _slopes(at: float) -> tuple[float, ...]:
@@ -177,17 +177,22 @@ def raise_curve(
 ) -> None:
     """Raise one curved row's peak to its largest size over [0, stop]."""
     best, where = -np.inf, 0.0
-    for k in range(LOOKS + 1):
-        u = stop * k / LOOKS
-        size = size_of(curve_at(system, flow, phase, f, u, span, room), f, log)
-        if size > best:
-            best, where = size, u
     width = stop / LOOKS
+    left = centre = right = size = -np.inf  # around the best place, where they are known
+    for k in range(LOOKS + 1):
+        before, size = size, size_of(curve_at(system, flow, phase, f, width * k, span, room), f, log)
+        if size > best:
+            best, where, left, centre, right = size, width * k, before, size, -np.inf
+        elif where == width * (k - 1):
+            right = size
     for _ in range(CLOSER):
         middle = min(max(where, width), stop - width)
-        left = size_of(curve_at(system, flow, phase, f, middle - width, span, room), f, log)
-        centre = size_of(curve_at(system, flow, phase, f, middle, span, room), f, log)
-        right = size_of(curve_at(system, flow, phase, f, middle + width, span, room), f, log)
+        if left == -np.inf or middle != where:
+            left = size_of(curve_at(system, flow, phase, f, middle - width, span, room), f, log)
+        if middle != where:
+            centre = size_of(curve_at(system, flow, phase, f, middle, span, room), f, log)
+        if right == -np.inf or middle != where:
+            right = size_of(curve_at(system, flow, phase, f, middle + width, span, room), f, log)
         bend = left - 2.0 * centre + right
         if bend >= 0.0:
             break
@@ -195,8 +200,9 @@ def raise_curve(
         size = size_of(curve_at(system, flow, phase, f, u, span, room), f, log)
         if size > best:
             best, where = size, u
+        left, centre, right = -np.inf, best, -np.inf
         width *= 0.125
-    raise_row(f, curve_at(system, flow, phase, f, where, span, room), span.time + span.length * where, log)
+    raise_row(f, best, span.time + span.length * where, log)
 
 
 @kernel
