@@ -101,10 +101,9 @@ def rates_in_contact(field: Field, branch: float, acceleration: float, motion: A
     damped = carried = 0.0
     for i in range(n):
         v = motion[n + i]
-        drag = field.modes[DRAG, i] * v
         rates[i] = v
-        rates[n + i] = -restoring_force(field, branch, i, motion, rates) - drag - acceleration
-        damped += field.modes[MASS, i] * drag * v
+        rates[n + i] = -acceleration - restoring_force(field, branch, i, motion, rates) - field.modes[DRAG, i] * v
+        damped += field.modes[MASS, i] * field.modes[DRAG, i] * v * v
         carried += field.modes[MASS, i] * v
     rates[2 * n], rates[2 * n + 1] = motion[2 * n + 1], 0.0
     if field.ledger:
@@ -127,12 +126,11 @@ def rates_of_small_rotation(
     damped = carried = 0.0
     for i in range(n):
         v = motion[n + i]
-        drag = field.modes[DRAG, i] * v
-        rest = -restoring_force(field, branch, i, motion, rates) - drag - acceleration
+        rest = -acceleration - restoring_force(field, branch, i, motion, rates) - field.modes[DRAG, i] * v
         rates[i] = v
         rates[n + i] = rest
         moment += field.modes[MASS, i] * field.modes[HEIGHT, i] * rest
-        damped += field.modes[MASS, i] * drag * v
+        damped += field.modes[MASS, i] * field.modes[DRAG, i] * v * v
         carried += field.modes[MASS, i] * v
     turn(field, side, moment, motion, rates)
     if field.ledger:
@@ -144,28 +142,21 @@ def rates_of_small_rotation(
 def rates_of_large_rotation(
     field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
 ) -> None:
-    """Compute the rates of the complete models while rocking (Eqs. 13 and 14)."""
+    """Compute the rates of the complete models while rocking (Eqs. 13 and 14).
+
+    Terms of the velocities are added last: in a step the velocities are known last, and every stage waits for them.
+    """
     n, pivot = field.modes.shape[1], pivot_at(side)
     gravity, spin = field.gravity + rise, motion[2 * n + 1]
     sine, cosine = sine_and_cosine(float(motion[2 * n]))
     offset = side * field.pivots[pivot, ARM]
-    drive = gravity * sine - acceleration * cosine
-    damped = moment = displaced = carried = 0.0
+    displaced = 0.0
     for i in range(n):
-        d, v, mass = motion[i], motion[n + i], field.modes[MASS, i]
-        drag, behind = field.modes[DRAG, i] * v, d - offset
-        rest = drive - restoring_force(field, branch, i, motion, rates) - drag + spin * spin * behind
-        rates[i] = v
-        rates[n + i] = rest
-        moment += mass * (field.modes[HEIGHT, i] * rest + 2.0 * spin * v * behind)
-        damped += mass * drag * v
-        displaced += mass * d
-        carried += mass * v
+        displaced += field.modes[MASS, i] * motion[i]
     beside = field.total_mass * offset - displaced
     arm = beside * sine + field.weight_arm * cosine
     across = beside * cosine - field.weight_arm * sine
-    moment += gravity * across + acceleration * arm
-    moment += field.pivots[pivot, STIFFENED] * sine
+    moment = gravity * across + acceleration * arm + field.pivots[pivot, STIFFENED] * sine
     # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
     lever = 1.0
     if field.viscous or field.pivots[pivot, PULLED] != 0.0:
@@ -173,6 +164,17 @@ def rates_of_large_rotation(
         moment += side * field.pivots[pivot, PULLED] * lever
         if field.viscous:
             moment += field.pivots[pivot, DAMPED] * lever * lever * spin
+    drive, square = gravity * sine - acceleration * cosine, spin * spin
+    damped = carried = 0.0
+    for i in range(n):
+        v, mass, behind = motion[n + i], field.modes[MASS, i], motion[i] - offset
+        rest = drive - restoring_force(field, branch, i, motion, rates) + square * behind - field.modes[DRAG, i] * v
+        rates[i] = v
+        rates[n + i] = rest
+        moment += 2.0 * mass * behind * (spin * v)
+        moment += mass * field.modes[HEIGHT, i] * rest
+        damped += mass * field.modes[DRAG, i] * v * v
+        carried += mass * v
     turn(field, side, moment, motion, rates)
     if field.ledger:
         work = -acceleration * (arm * spin + cosine * carried) - rise * (across * spin - carried * sine)
@@ -200,7 +202,7 @@ def turn(field: Field, side: float, moment: float, motion: Array, rates: Array) 
     n = field.modes.shape[1]
     angular = 0.0
     if field.pivots[pivot_at(side), HELD] == 0.0:
-        angular = -moment * (1.0 / inertia_left(field, side, motion))  # the division can start before the moment is known
+        angular = moment * (-1.0 / inertia_left(field, side, motion))  # divided before the moment is known
     for i in range(n):
         rates[n + i] -= field.modes[HEIGHT, i] * angular
     rates[2 * n], rates[2 * n + 1] = motion[2 * n + 1], angular
