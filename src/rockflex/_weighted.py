@@ -5,6 +5,7 @@ See `rockflex._vectors` for why the operations on vectors are stated.
 
 from typing import Any, cast
 
+import numpy as np
 from llvmlite import ir
 from numba import config, types
 from numba.core import cgutils
@@ -12,7 +13,7 @@ from numba.extending import intrinsic
 
 from rockflex._arrays import Array
 
-LANES = 4  # numbers in a vector
+LANES, LINE = 4, 8  # numbers in a vector, and in a cache line
 
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _SAME = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
@@ -21,6 +22,13 @@ _SAME = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
 def whole_vectors(size: int) -> int:
     """Return a size rounded up to a multiple of `LANES`."""
     return -(-size // LANES) * LANES
+
+
+def aligned(rows: int, columns: int) -> Array:
+    """Return an array of zeros that starts at a cache line, so that few vectors extend over two of them."""
+    room = np.zeros(rows * columns + LINE)
+    begin = -(room.ctypes.data // room.itemsize) % LINE
+    return room[begin : begin + rows * columns].reshape(rows, columns)
 
 
 def _plain_weigh(
@@ -70,27 +78,39 @@ def _sum(context: Any, builder: Any, signature: Any, arguments: Any, start: int)
         return ir.Constant(ir.IntType(64), value)
 
     def times(number: Any, values: Any, total: Any = None) -> Any:
-        product = builder.fmul(same(number), values, flags=("contract",))
+        product = builder.fmul(number, values, flags=("contract",))
         return product if total is None else builder.fadd(total, product, flags=("contract",))
 
     out, weights, table = array(0), array(start + 2), array(start + 4)
     factor, row, first, last, count = (arguments[start + i] for i in (1, 3, 5, 6, 7))
     width = builder.extract_value(table.shape, 1)
     weight = builder.gep(weights.data, [builder.mul(row, builder.extract_value(weights.shape, 1))])
-    blocks = builder.udiv(builder.add(count, index(LANES - 1)), index(LANES))
-    sums = cgutils.alloca_once(builder, _VECTOR)
-    with cgutils.for_range(builder, blocks) as outer:
-        place = builder.mul(outer.index, index(LANES))
-        builder.store(times(builder.load(weight), builder.load(vector(table.data, place), align=8)), sums)
+
+    def sum_vectors(place: Any, number: int) -> None:
+        """Sum vectors that follow one another, in one loop over the rows."""
+        places = [builder.add(place, index(LANES * i)) for i in range(number)]
+        sums = [cgutils.alloca_once(builder, _VECTOR) for _ in places]
+
+        def add(k: Any, totals: list[Any]) -> None:
+            factor, begin = same(builder.load(builder.gep(weight, [k]))), builder.mul(k, width)
+            for each, total, kept in zip(places, totals, sums, strict=True):
+                values = builder.load(vector(table.data, builder.add(each, begin)), align=8)
+                builder.store(times(factor, values, total), kept)
+
+        add(index(0), [None] * number)
         with cgutils.for_range(builder, last, start=first, intp=last.type) as loop:
-            values = builder.load(vector(table.data, builder.add(place, builder.mul(loop.index, width))), align=8)
-            builder.store(times(builder.load(builder.gep(weight, [loop.index])), values, builder.load(sums)), sums)
-        if start:
-            given = builder.load(vector(array(1).data, place), align=8)
-            total = times(factor, builder.load(sums), given)
-        else:
-            total = times(factor, builder.load(sums))
-        builder.store(total, vector(out.data, place), align=8)
+            add(loop.index, [builder.load(each) for each in sums])
+        for each, total in zip(places, sums, strict=True):
+            given = builder.load(vector(array(1).data, each), align=8) if start else None
+            builder.store(times(same(factor), builder.load(total), given), vector(out.data, each), align=8)
+
+    # Pairs of vectors, and one more if their number is odd.
+    vectors = builder.udiv(builder.add(count, index(LANES - 1)), index(LANES))
+    pairs = builder.lshr(vectors, index(1))
+    with cgutils.for_range(builder, pairs) as loop:
+        sum_vectors(builder.mul(loop.index, index(2 * LANES)), 2)
+    with builder.if_then(builder.trunc(vectors, ir.IntType(1))):
+        sum_vectors(builder.mul(pairs, index(2 * LANES)), 1)
     return context.get_dummy_value()
 
 

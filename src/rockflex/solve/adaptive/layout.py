@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex._weighted import whole_vectors
+from rockflex._weighted import aligned, whole_vectors
 from rockflex.models import Field
 from rockflex.solve.adaptive.tableau import STAGES
 from rockflex.solve.layout import Progress
@@ -60,9 +60,9 @@ def stages_of(motion: Array, moving: int, rows: int, work: Array, at: Progress) 
     n = whole_vectors(motion.size)
     return Stages(
         motion,
-        np.zeros((5, n)),
-        np.zeros((STAGES, n)),
-        np.zeros((TERMS - 1, n)),
+        aligned(5, n),
+        aligned(STAGES, n),
+        aligned(TERMS - 1, n),
         np.zeros((rows + 1, ROW_TERMS)),
         np.zeros((5, rows)),
         np.zeros(rows, dtype=np.bool_),
