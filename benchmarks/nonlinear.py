@@ -49,9 +49,7 @@ def measure(label: str, motion: rf.GroundMotion) -> tuple[str, ...]:
         return abs((rotation, displacement)[row] / reference.peaks[row] - 1.0)
 
     mine = rf.simulate(structure, motion, label, "peaks", bouc_wen=bouc_wen)
-    call = least(
-        lambda: rf.simulate(structure, motion, label, "peaks", bouc_wen=bouc_wen), 200, time.process_time
-    )
+    call = least(lambda: rf.simulate(structure, motion, label, "peaks", bouc_wen=bouc_wen), 200, time.process_time)
     for rtol in (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11):
         rotation, displacement = peak_rotation(tied.properties, motion, rtol, **given)
         reached = error(rotation, top * displacement)

@@ -22,9 +22,7 @@ def frame(n: int) -> rf.Frame:
     )
 
 
-def least(
-    function: Callable[[], object], repetitions: int, clock: Callable[[], float] = time.perf_counter
-) -> float:
+def least(function: Callable[[], object], repetitions: int, clock: Callable[[], float] = time.perf_counter) -> float:
     """Minimum time of a call, in s, by a clock."""
     function()
     times = []

@@ -130,6 +130,7 @@ def _place(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
 def _compiled_weigh(
     _: Any, out: Any, factor: Any, weights: Any, row: Any, table: Any, first: Any, last: Any, count: Any
 ) -> Any:
+    del factor, row, first, last, count  # numba converts them
     whole = types.int64
     given = (out, types.float64, weights, whole, table, whole, whole, whole)
     return (types.none(*given), _weigh) if _contiguous(*given) else None
@@ -139,6 +140,7 @@ def _compiled_weigh(
 def _compiled_place(
     _: Any, out: Any, start: Any, factor: Any, weights: Any, row: Any, table: Any, first: Any, last: Any, count: Any
 ) -> Any:
+    del factor, row, first, last, count
     whole = types.int64
     given = (out, start, types.float64, weights, whole, table, whole, whole, whole)
     return (types.none(*given), _place) if _contiguous(*given) else None

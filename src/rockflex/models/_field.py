@@ -178,7 +178,7 @@ def rates_of_large_rotation(
     turn(field, side, moment, motion, rates)
     if field.ledger:
         work = -acceleration * (arm * spin + cosine * carried) - rise * (across * spin - carried * sine)
-        enter(field, damped, work, lever * spin, rates)
+        enter(field, damped, work, float(lever * spin), rates)
 
 
 @inlined_kernel

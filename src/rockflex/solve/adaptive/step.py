@@ -134,8 +134,9 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
         room.bends[0, i] = rise
         room.bends[1, i] = step * room.rates[0, i] - rise
         room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
+    # All entries, with or without energies: another number of them could be summed, and so rounded, in another way.
     for j in range(4):
-        weigh(room.bends[3 + j], step, DENSE, j, room.rates, 5, STAGES, flow.counted)
+        weigh(room.bends[3 + j], step, DENSE, j, room.rates, 5, STAGES, room.motion.size)
 
 
 @kernel
