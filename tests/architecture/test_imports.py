@@ -53,6 +53,7 @@ FOUNDATION = {
     "_values",
     "_vectors",
     "_versions",
+    "_weighted",
 }  # every layer may import these; they only each other
 FACES = {"cli", "web", "__main__"}  # may import anything, and nothing below them or the front
 USERS = {"papers"}  # may import the package's own front too, as its users do
@@ -72,6 +73,7 @@ HOME = {
         "_numba_vectors",
         "_series_vectors",
         "_vectors",
+        "_weighted",
     },
     "distributed": {"parallel"},
     "dask": {"parallel"},
@@ -225,6 +227,7 @@ def test_the_walk_sees_the_package() -> None:
         "rockflex._numba_vectors",
         "rockflex._series_vectors",
         "rockflex._vectors",
+        "rockflex._weighted",
     }
     assert any(each.when == DEFERRED for each in FOUND)
     assert any(each.when == TYPING for each in FOUND)

@@ -12,7 +12,7 @@ from rockflex.models._element_states import (
     stored_energy,
 )
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of, stiffness_of_fuses
-from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at
+from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at, stage_rates
 from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
@@ -183,6 +183,7 @@ __all__ = [
     "rotation_by_side",
     "rows_of",
     "spring_forces",
+    "stage_rates",
     "stick",
     "stiffness_of_fuses",
     "stored_energies",

@@ -10,8 +10,9 @@ import math
 from typing import NamedTuple
 
 from rockflex._arrays import Array
-from rockflex._kernel import kernel
+from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models._pulls import DAMPING, HOLD, MOMENT, STIFFNESS
+from rockflex.models._sines import sine_and_cosine
 
 EXTRA = 4  # components in addition to those of the simplified models
 
@@ -28,6 +29,7 @@ class Field(NamedTuple):
     complete: bool  # Eqs. 13 and 14; otherwise Eq. 23
     hysteretic: bool
     viscous: bool  # with dampers at the base
+    ledger: bool  # whether the rates of the energies, and of what the dampers sweep, are computed
     modes: Array  # (4, N): ω², 2ζω, h* and m*
     pivots: Array  # (2, 9), for the right and the left pivot: see the indices above; elements change their sums
     weight_arm: float  # L_0^r
@@ -76,83 +78,164 @@ def field_rates(
     The latter, `rise`, acts like more gravity. `branch` is the sign of D'_1 used in the hysteresis law, which is
     therefore smooth up to the reversal.
     """
+    stage_rates(field, side, branch, acceleration, rise, motion, rates)
+
+
+@inlined_kernel
+def stage_rates(
+    field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
+) -> None:
+    """Compute the same as `field_rates`, as a part of the loop over the stages of a step."""
+    if side == 0.0:
+        rates_in_contact(field, branch, acceleration, motion, rates)
+    elif field.complete:
+        rates_of_large_rotation(field, side, branch, acceleration, rise, motion, rates)
+    else:
+        rates_of_small_rotation(field, side, branch, acceleration, rise, motion, rates)
+
+
+@inlined_kernel
+def rates_in_contact(field: Field, branch: float, acceleration: float, motion: Array, rates: Array) -> None:
+    """Compute the rates while the base stands still (Eq. 13 or 23 without rotation)."""
     n = field.modes.shape[1]
-    gravity = field.gravity + rise
-    theta, spin = motion[2 * n], motion[2 * n + 1]
-    sine, cosine = 0.0, 1.0
-    if side != 0.0 and field.complete:
-        sine, cosine = math.sin(theta), math.cos(theta)
-    pivot = pivot_at(side)
-    offset = side * field.pivots[pivot, ARM]
-    rates[2 * n + 2] = 0.0
-    rates[2 * n + 5] = 0.0
-    damped = drive = moment = displaced = carried = 0.0
-    lever = 1.0  # of an element: δ'/(r |θ|')
+    damped = carried = 0.0
     for i in range(n):
-        d, v = motion[i], motion[n + i]
-        drag = field.modes[DRAG, i] * v
-        restoring = field.modes[OMEGA2, i] * d
-        if field.hysteretic:
-            restoring *= field.post_yield_ratio
-            slip = (
-                field.modes[OMEGA2, i] * field.yield_displacement * (1.0 - field.post_yield_ratio) * motion[2 * n + 2]
-            )
-            restoring += slip
-            rates[2 * n + 5] = field.modes[MASS, i] * slip * v
-            rates[2 * n + 2] = hysteresis(field, branch, float(v), float(motion[2 * n + 2]))
-        rest = -restoring - drag - acceleration * cosine
-        if side != 0.0 and field.complete:
-            rest += gravity * sine - spin * spin * (offset - d)
-            moment += 2.0 * spin * v * field.modes[MASS, i] * (d - offset)
+        v = motion[n + i]
+        rates[i] = v
+        rates[n + i] = -acceleration - restoring_force(field, branch, i, motion, rates) - field.modes[DRAG, i] * v
+        damped += field.modes[MASS, i] * field.modes[DRAG, i] * v * v
+        carried += field.modes[MASS, i] * v
+    rates[2 * n], rates[2 * n + 1] = motion[2 * n + 1], 0.0
+    if field.ledger:
+        enter(field, damped, -acceleration * carried, 0.0, rates)
+
+
+@inlined_kernel
+def rates_of_small_rotation(
+    field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
+) -> None:
+    """Compute the rates of the simplified models while rocking (Eq. 23)."""
+    n, pivot = field.modes.shape[1], pivot_at(side)
+    theta, spin = motion[2 * n], motion[2 * n + 1]
+    weight = field.total_mass * side * field.pivots[pivot, ARM]
+    across = weight - field.weight_arm * theta
+    moment = (field.gravity + rise) * across + acceleration * field.weight_arm
+    moment += side * field.pivots[pivot, PULLED] + field.pivots[pivot, STIFFENED] * theta
+    if field.viscous:
+        moment += field.pivots[pivot, DAMPED] * spin
+    damped = carried = 0.0
+    for i in range(n):
+        v = motion[n + i]
+        rest = -acceleration - restoring_force(field, branch, i, motion, rates) - field.modes[DRAG, i] * v
         rates[i] = v
         rates[n + i] = rest
         moment += field.modes[MASS, i] * field.modes[HEIGHT, i] * rest
-        damped += field.modes[MASS, i] * drag * v
-        displaced += field.modes[MASS, i] * d
+        damped += field.modes[MASS, i] * field.modes[DRAG, i] * v * v
         carried += field.modes[MASS, i] * v
-    angular = climb = 0.0  # θ'' and Σ m z'
-    if side != 0.0:
-        weight = field.total_mass * offset
-        if field.complete:
-            arm = weight * sine + field.weight_arm * cosine - displaced * sine
-            across = weight * cosine - field.weight_arm * sine - displaced * cosine
-            moment += gravity * across
-            # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
-            lever = math.sqrt(0.5 + 0.5 * cosine)
-            moment += side * field.pivots[pivot, PULLED] * lever + field.pivots[pivot, STIFFENED] * sine
-        else:
-            arm = field.weight_arm
-            across = weight - field.weight_arm * theta
-            moment += gravity * across
-            moment += side * field.pivots[pivot, PULLED] + field.pivots[pivot, STIFFENED] * theta
+    turn(field, side, moment, motion, rates)
+    if field.ledger:
+        work = -acceleration * (field.weight_arm * spin + carried) - rise * across * spin
+        enter(field, damped, work, float(spin), rates)
+
+
+@inlined_kernel
+def rates_of_large_rotation(
+    field: Field, side: float, branch: float, acceleration: float, rise: float, motion: Array, rates: Array
+) -> None:
+    """Compute the rates of the complete models while rocking (Eqs. 13 and 14).
+
+    Terms of the velocities are added last: in a step the velocities are known last, and every stage waits for them.
+    """
+    n, pivot = field.modes.shape[1], pivot_at(side)
+    gravity, spin = field.gravity + rise, motion[2 * n + 1]
+    sine, cosine = sine_and_cosine(float(motion[2 * n]))
+    offset = side * field.pivots[pivot, ARM]
+    displaced = 0.0
+    for i in range(n):
+        displaced += field.modes[MASS, i] * motion[i]
+    beside = field.total_mass * offset - displaced
+    arm = beside * sine + field.weight_arm * cosine
+    across = beside * cosine - field.weight_arm * sine
+    moment = gravity * across + acceleration * arm + field.pivots[pivot, STIFFENED] * sine
+    # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
+    lever = 1.0
+    if field.viscous or field.pivots[pivot, PULLED] != 0.0:
+        lever = math.sqrt(0.5 + 0.5 * cosine)
+        moment += side * field.pivots[pivot, PULLED] * lever
         if field.viscous:
             moment += field.pivots[pivot, DAMPED] * lever * lever * spin
-        moment += acceleration * arm
-        angular = -moment / inertia_left(field, side, motion) if field.pivots[pivot, HELD] == 0.0 else 0.0
-        drive = arm * spin
-        climb = across * spin - carried * sine
-        for i in range(n):
-            rates[n + i] -= field.modes[HEIGHT, i] * angular
-    rates[2 * n] = spin
-    rates[2 * n + 1] = angular
-    rates[2 * n + 3] = damped
-    rates[2 * n + 4] = -acceleration * (drive + cosine * carried) - rise * climb
+    drive, square = gravity * sine - acceleration * cosine, spin * spin
+    damped = carried = 0.0
+    for i in range(n):
+        v, mass, behind = motion[n + i], field.modes[MASS, i], motion[i] - offset
+        rest = drive - restoring_force(field, branch, i, motion, rates) + square * behind - field.modes[DRAG, i] * v
+        rates[i] = v
+        rates[n + i] = rest
+        moment += 2.0 * mass * behind * (spin * v)
+        moment += mass * field.modes[HEIGHT, i] * rest
+        damped += mass * field.modes[DRAG, i] * v * v
+        carried += mass * v
+    turn(field, side, moment, motion, rates)
+    if field.ledger:
+        work = -acceleration * (arm * spin + cosine * carried) - rise * (across * spin - carried * sine)
+        enter(field, damped, work, float(lever * spin), rates)
+
+
+@inlined_kernel
+def restoring_force(field: Field, branch: float, mode: int, motion: Array, rates: Array) -> float:
+    """Return the restoring force of a mode per unit of modal mass, and compute the rates of a hysteretic spring."""
+    elastic = field.modes[OMEGA2, mode] * motion[mode]
+    if not field.hysteretic:
+        return float(elastic)
+    n = field.modes.shape[1]
+    v, z = motion[n + mode], motion[2 * n + 2]
+    slip = field.modes[OMEGA2, mode] * field.yield_displacement * (1.0 - field.post_yield_ratio) * z
+    rates[2 * n + 2] = hysteresis(field, branch, float(v), float(z))
+    if field.ledger:
+        rates[2 * n + 5] = field.modes[MASS, mode] * slip * v
+    return float(field.post_yield_ratio * elastic + slip)
+
+
+@inlined_kernel
+def turn(field: Field, side: float, moment: float, motion: Array, rates: Array) -> None:
+    """Compute θ'' from the moment with θ'' = 0, and what it adds to D''."""
+    n = field.modes.shape[1]
+    angular = 0.0
+    if field.pivots[pivot_at(side), HELD] == 0.0:
+        angular = moment * (-1.0 / inertia_left(field, side, motion))  # divided before the moment is known
+    for i in range(n):
+        rates[n + i] -= field.modes[HEIGHT, i] * angular
+    rates[2 * n], rates[2 * n + 1] = motion[2 * n + 1], angular
+
+
+@inlined_kernel
+def enter(field: Field, damped: float, work: float, swing: float, rates: Array) -> None:
+    """Compute the rates of the damped energy, of the work of the ground, and of what the viscous dampers sweep."""
+    n = field.modes.shape[1]
+    rates[2 * n + 3], rates[2 * n + 4] = damped, work
+    if not field.hysteretic:
+        rates[2 * n + 2] = rates[2 * n + 5] = 0.0
     if field.viscous:
-        rates[2 * n + 6] = (lever * spin) ** 2 if side != 0.0 else 0.0
+        rates[2 * n + 6] = swing * swing
 
 
 @kernel
 def hysteresis(field: Field, branch: float, velocity: float, z: float) -> float:
     """Return the rate of z (Eq. 38), with `branch` D' in place of |D'|."""
     if field.whole > 0:
-        power, factor, left = 1.0, abs(z), field.whole
+        power, left = abs(z), field.whole
+        while left & 1 == 0:
+            power *= power
+            left >>= 1
+        factor = power
+        left >>= 1
         while left > 0:
+            factor *= factor
             if left & 1:
                 power *= factor
-            factor *= factor
             left >>= 1
     else:
         power = math.pow(abs(z), field.exponent)
-    # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z.
-    turn = branch * velocity * (power if z >= 0.0 else -power)
-    return (velocity - field.gamma * turn - field.beta * velocity * power) / field.yield_displacement
+    # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z. The power comes last, as z is known last.
+    lean = field.beta + (branch * field.gamma if z >= 0.0 else -branch * field.gamma)
+    return velocity / field.yield_displacement * (1.0 - lean * power)

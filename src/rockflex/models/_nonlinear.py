@@ -72,6 +72,7 @@ class NonlinearModel(ModalModel):
             complete=self.complete,
             hysteretic=self.bouc_wen is not None,
             viscous=self.layout.swept >= 0,
+            ledger=True,
             modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega, p.effective_height, p.effective_mass)),
             pivots=np.array(
                 [(each.arm, each.i_theta, *pulls_of(p, self.elements, self.start(each.side))[:, 0]) for each in pivots]

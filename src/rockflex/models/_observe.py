@@ -11,6 +11,7 @@ from rockflex._arrays import Array
 from rockflex._kernel import kernel, python_kernel
 from rockflex.models._field import ARM, MASS, PULLS, Field, pivot_at, take_pulls
 from rockflex.models._pulls import DRAG, FORCE, PULL
+from rockflex.models._sines import sine_and_cosine
 
 LINEAR = 0  # the row itself
 SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row gives its u (Eq. 3)
@@ -38,9 +39,7 @@ def posture_of(field: Field, side: float, acceleration: float, rise: float, moti
     n = field.modes.shape[1]
     gravity = field.gravity + rise
     spin, turn = motion[2 * n + 1], float(rates[2 * n + 1])
-    sine, cosine = math.sin(motion[2 * n]), math.cos(motion[2 * n])
-    upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
-    half = 0.5 * sine / upright
+    sine, cosine = sine_and_cosine(float(motion[2 * n]))
     pivot = pivot_at(side)
     offset = side * field.pivots[pivot, ARM]
     across = field.total_mass * offset  # Σ m_i (s B - u_i)
@@ -51,19 +50,28 @@ def posture_of(field: Field, side: float, acceleration: float, rise: float, moti
         push += field.modes[MASS, i] * rates[n + i]
     along, beside = across * cosine - field.weight_arm * sine, across * sine + field.weight_arm * cosine
     # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
-    pull = field.pivots[pivot, PULLS + FORCE] + 2.0 * field.pivots[pivot, PULLS + PULL] * abs(half)
-    pull += field.pivots[pivot, PULLS + DRAG] * upright * side * spin
+    aside = upwards = 0.0  # forces of the elements
+    force, stiffness, drag = (
+        field.pivots[pivot, PULLS + FORCE],
+        field.pivots[pivot, PULLS + PULL],
+        field.pivots[pivot, PULLS + DRAG],
+    )
+    if force != 0.0 or stiffness != 0.0 or drag != 0.0:
+        upright = math.sqrt(0.5 + 0.5 * cosine)  # cos θ/2
+        half = 0.5 * sine / upright
+        pull = force + 2.0 * stiffness * abs(half) + drag * upright * side * spin
+        aside, upwards = pull * half, pull * upright
     square, coriolis = spin * spin, 2.0 * spin * speed
     return Posture(
         sine=sine,
         cosine=cosine,
-        shift=2.0 * offset * half * half,
+        shift=offset * sine * sine / (1.0 + cosine),  # without the cancellation of 1 - cos θ
         drive=acceleration * cosine - gravity * sine + square * offset,
         turn=turn,
         horizontal=field.total_mass * acceleration
-        + (turn * beside + push * cosine - coriolis * sine + square * along + pull * half),
+        + (turn * beside + push * cosine - coriolis * sine + square * along + aside),
         vertical=field.total_mass * field.gravity
-        + (turn * along - push * sine - coriolis * cosine - square * beside + pull * upright)
+        + (turn * along - push * sine - coriolis * cosine - square * beside + upwards)
         + field.total_mass * rise,
     )
 

@@ -24,7 +24,15 @@ def flow_of(model: NonlinearModel, quantities: Quantities, tolerance: float) -> 
         rest=model.properties.resting_reaction,
         scale=_scale(model),
         tolerance=tolerance,
+        moving=model.layout.core + (model.bouc_wen is not None),
+        counted=model.layout.memory,
     )
+
+
+def flow_in(flow: Flow, pivots: Array, *, ledger: bool) -> Flow:
+    """Return the parameters for one run, with its own pivots and with or without energies, which no motion needs."""
+    field = flow.field._replace(pivots=pivots, ledger=ledger)
+    return flow._replace(field=field, counted=flow.counted if ledger else flow.moving)
 
 
 def _scale(model: RockingModel) -> Array:

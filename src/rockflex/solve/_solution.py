@@ -26,7 +26,7 @@ class Solution:
         Number of uplifts and of impacts.
     final_state
         The last state: [D.., D'.., θ, θ', ..] as in `rockflex.models.StateLayout`. If the run has settled with the base
-        open, θ is the rotation that remains.
+        open, θ is the rotation that remains. Energies of integrated models are known only with a history.
     states
         One row per state: time, side, ground acceleration, D (N), D' (N), θ, θ'. There are states before and after
         every jump. None if only peaks were requested.

@@ -13,8 +13,8 @@ from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import field_rates, inertia_left
 from rockflex.solve.adaptive.curves import is_curved, raise_curves
-from rockflex.solve.adaptive.layout import Flow, Integrator, Stages
-from rockflex.solve.adaptive.step import extend, forget, row_poly, settle_on, step_over, take_step
+from rockflex.solve.adaptive.layout import END, Flow, Integrator, Stages
+from rockflex.solve.adaptive.step import extend, forget, place_at, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.turning import BARELY
 from rockflex.solve.exact.series import advance, expand, largest, margin, measure, row_series
 from rockflex.solve.exits import fence_exit, phase_exit, turn_back
@@ -32,10 +32,11 @@ from rockflex.solve.layout import (
     Progress,
     Span,
     System,
+    is_shaken,
     rows_in,
 )
 from rockflex.solve.memory import gather, load_in
-from rockflex.solve.peaks import raise_peak, raise_to
+from rockflex.solve.peaks import is_far, raise_peak, raise_to, row_at
 
 
 @inlined_kernel
@@ -175,8 +176,16 @@ def move_by_step(system: System, flow: Flow, at: Progress, span: Span, stop: flo
         raise_peak(room.polys, GUARD, stop, span, log)
         if flow.field.complete:
             raise_curves(system, flow, p, span, stop, log, room)
+    end, there = room.vectors[END], span.ground + span.slope * span.length * stop
+    place_at(stop, room, end)
     for f in range(1, log.peaks.size):
         if not is_curved(flow, f, side):
+            first, last = (
+                row_at(system.plain_rows, p, f, span.ground, room.motion),
+                row_at(system.plain_rows, p, f, there, end),
+            )
+            if not is_shaken(span) and is_far(first, last, f, log):
+                continue
             row_poly(system, p, f, span, room)
             raise_peak(room.polys, f, stop, span, log)
     if stop == 1.0:

@@ -13,7 +13,7 @@ from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingMode
 from rockflex.solve._beginning import course_of, first_peaks, prices_of, samples_in
 from rockflex.solve._desk import desks_of
 from rockflex.solve._failures import failure_of, failure_of_law, failure_of_limit
-from rockflex.solve._flow import flow_of
+from rockflex.solve._flow import flow_in, flow_of
 from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._preparing import phases_of, preparing
 from rockflex.solve._solution import Solution
@@ -271,7 +271,7 @@ class Engine:
         if self._flow is None:
             return None
         motion.pivots[:] = self._flow.field.pivots
-        flow = self._flow._replace(field=self._flow.field._replace(pivots=motion.pivots))
+        flow = flow_in(self._flow, motion.pivots, ledger=log.history.shape[0] > 0)
         return Integrator(flow, stages_of(motion.state, self.model.layout.core + 1, self._n_rows, log.work, at))
 
     def _carry(

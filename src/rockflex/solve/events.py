@@ -80,6 +80,7 @@ def cross(
         if linear:
             unit = float(unit_of(system, system.phases[p].levels))
             longest = unit if at.begun == unit * at.place else unit * (at.place + 1) - at.begun
+        doubted = at.tried
         length = begin(system, steps, at, part_of(sample, now, at.begun, longest))
         if length == FAILED:
             return STALLED
@@ -89,6 +90,7 @@ def cross(
             steps is not None
             and not linear
             and at.onset == INSIDE
+            and not doubted
             and nothing_hides(system, steps.flow, p, span, motion.limits, log, steps.room)
         ):
             step_over(steps.room)

@@ -6,6 +6,7 @@ from rockflex.solve.layout import GUARD, Log, Motion, Span, System
 from rockflex.solve.polynomials import bend, evaluate, first_descent
 
 ROUNDING = 1e-16
+NEAR = 0.75  # fraction of its peak that a row must reach at either end of a step to exceed it in between
 MOST_TURNS = 64  # extremes of a row within a unit, in which the phase of no mode advances by more than a radian
 
 
@@ -13,6 +14,12 @@ MOST_TURNS = 64  # extremes of a row within a unit, in which the phase of no mod
 def size_of(value: float, row: int, log: Log) -> float:
     """Return the size whose largest value is the peak: the magnitude, or the value itself."""
     return value if row >= log.signed else abs(value)
+
+
+@kernel
+def is_far(first: float, last: float, row: int, log: Log) -> bool:
+    """Return whether a row is so far from its peak at both ends of a step that it does not reach it in between."""
+    return max(size_of(first, row, log), size_of(last, row, log)) <= log.peaks[row] - (1.0 - NEAR) * abs(log.peaks[row])
 
 
 @kernel

@@ -45,6 +45,8 @@ _PROGRESS = record_of(
         ("step", np.float64),  # length proposed by the error control
         ("branch", np.float64),  # sign of the hysteretic spring's velocity
         ("known", np.bool_),  # whether the first stage is known from the previous step
+        ("tried", np.bool_),  # whether the next step has been taken, and found to need a closer look
+        ("length", np.float64),  # of that step
         ("told", np.bool_),  # whether the curved rows at the start of a step are known
         ("lacking", np.int64),  # offset from `BESIDE` or `FOLLOWS` of the phase needed; -1 for none
     ]

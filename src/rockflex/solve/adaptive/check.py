@@ -7,11 +7,11 @@ hundredths of the curvature of the cubic (for a harmonic of ω: (ωh)²/48); a f
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex.solve.adaptive.curves import curves_hide, is_curved, stretch
+from rockflex.solve.adaptive.curves import WHOLE, curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
 from rockflex.solve.adaptive.tableau import LAST
 from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System, heavier_limits, is_shaken
-from rockflex.solve.peaks import raise_peaks, size_of
+from rockflex.solve.peaks import NEAR, is_far, raise_peaks, size_of
 
 
 @kernel
@@ -53,7 +53,7 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
     if (
         side != 0.0
         and flow.field.complete
-        and curves_hide(system, flow, phase, span, room.vectors[TRIAL], room.rates[LAST], log, room)
+        and curves_hide(system, flow, phase, span, room.vectors[TRIAL], room.rates[LAST], WHOLE, log, room)
     ):
         return False
     if system.phases[phase].turns != 0 and turn_hides(system, phase, step, room):
@@ -68,20 +68,33 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
         if is_curved(flow, f, side):
             continue
         first = rows[phase, f, n] * span.ground + rows[phase, f, n + 1]
-        before = rows[phase, f, n] * span.slope
-        last, after = first + before * step, before
+        last = first + rows[phase, f, n] * span.slope * step
         for i in range(n):
             weight = rows[phase, f, i]
             if weight != 0.0:
                 first += weight * room.motion[i]
                 last += weight * room.vectors[TRIAL, i]
-                before += weight * room.rates[0, i]
-                after += weight * room.rates[LAST, i]
+        start = end = start_rate = end_rate = 0.0
         if shaken:
             start, end, start_rate, end_rate = heavier_ends(system, phase, f, span, room)
             first, last = first + rise * start, last + risen * end
-            before += rise * start_rate + span.rise_slope * start
-            after += risen * end_rate + span.rise_slope * end
+        room.rows[AT_ENDS, f] = last
+        if f != GUARD:
+            if is_far(first, last, f, log):
+                continue
+        elif not system.phases[phase].free:
+            low, high = min(first, last), max(first, last)
+            if low > NEAR * low_limit and high < NEAR * high_limit:
+                continue
+        before = rows[phase, f, n] * span.slope
+        after = before
+        for i in range(n):
+            weight = rows[phase, f, i]
+            if weight != 0.0:
+                before += weight * room.rates[0, i]
+                after += weight * room.rates[LAST, i]
+        before += rise * start_rate + span.rise_slope * start
+        after += risen * end_rate + span.rise_slope * end
         low, high = stretch(first, last, step * before, step * after)
         if f != GUARD:
             # Peaks at the ends are known; they are recorded below.
@@ -94,6 +107,5 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
             hidden = hidden or max(high, -low) > max(log.peaks[GUARD], abs(first), abs(last))
         if hidden:
             return False
-        room.rows[AT_ENDS, f] = last
     raise_peaks(room.rows[AT_ENDS], system.phases[phase].free, span.time + step, log)
     return True

@@ -1,7 +1,7 @@
 """Peaks of the nonlinear ("curved") rows of a complete model while it rocks: whether one can occur, and where.
 
-These rows are evaluated from the motion and its rates. Their own rates come from a second evaluation shortly
-afterwards, which is done only for rows that are close to their peaks.
+These rows are evaluated from the motion and its rates, which a step has at both ends. At two stages between them the
+rates are known, too; the rows that are close to their peaks are evaluated there as well.
 """
 
 import numpy as np
@@ -10,10 +10,10 @@ from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
 from rockflex.models import LINEAR, SWAY, VERTICAL, field_rates, observe, posture_of
 from rockflex.solve.adaptive.layout import (
+    AT_EARLY,
     AT_ENDS,
-    AT_ENDS_AHEAD,
+    AT_LATE,
     AT_STARTS,
-    AT_STARTS_AHEAD,
     END,
     END_RATES,
     PLACE,
@@ -23,16 +23,28 @@ from rockflex.solve.adaptive.layout import (
     Stages,
 )
 from rockflex.solve.adaptive.step import choose_branch, place_at
+from rockflex.solve.adaptive.sums import place_stage
+from rockflex.solve.adaptive.tableau import C
 from rockflex.solve.exact.probe import cubic_range
 from rockflex.solve.layout import Log, Span, System, part_of
-from rockflex.solve.peaks import raise_row, row_at, size_of
+from rockflex.solve.peaks import NEAR, raise_row, row_at, size_of
 
 STRAY = 0.2
-NEAR = 0.7  # fraction of its peak that a row must reach for the second evaluation
 LIGHT = 0.05  # of the vertical reaction at rest: smallest scale for the loss of support
-AHEAD = 1e-4  # of a step, between the two evaluations
-LOOKS = 8  # evaluations across a stretch that may contain a peak
-CLOSER = 4  # times that the interval around a peak is reduced to an eighth
+EARLY, LATE = 7, 8  # the stages in between
+WHOLE = -1.0  # instead of a part of a step: all of it, before its extension is computed
+LOOKS = 4  # evaluations across a stretch that may contain a peak
+CLOSER = 3  # times that the interval around a peak is reduced to an eighth
+
+
+def _slopes(at: float) -> tuple[float, ...]:
+    """Return the slope at a place of the cubics that are 1 at the start, early, late or at the end, 0 at the others."""
+    nodes = np.array([0.0, C[EARLY], C[LATE], 1.0])
+    cubics = np.linalg.inv(np.vander(nodes, increasing=True))  # coefficients in the columns
+    return tuple((np.array([0.0, 1.0, 2.0 * at, 3.0 * at * at]) @ cubics).tolist())
+
+
+AT_START, AT_END = _slopes(0.0), _slopes(1.0)
 
 
 @kernel
@@ -78,13 +90,15 @@ def curves_hide(
     span: Span,
     end: Array,
     end_rates: Array,
+    stop: float,
     log: Log,
     room: Stages,
 ) -> bool:
     """Return whether a curved row may have a new peak between the motion and `end`, over a span.
 
-    Peaks at the start are recorded, because forces jump at events. The values at the end are stored in
-    `room.rows[AT_ENDS]`, and `room.doubt` marks the rows in question.
+    The span is the fraction `stop` of a step with a continuous extension, or the step itself if it is `WHOLE`. Peaks at
+    the start are recorded, because forces jump at events. The values at the end are stored in `room.rows[AT_ENDS]`, and
+    `room.doubt` marks the rows in question.
     """
     there, risen = span.ground + span.slope * span.length, span.rise + span.rise_slope * span.length
     if not room.at.told:
@@ -105,17 +119,15 @@ def curves_hide(
         raise_row(f, room.rows[AT_STARTS, f], span.time, log)
     if not near:
         return False
-    last = part_of(span, span.time, span.length, span.length)
-    look_ahead(system, flow, phase, span, room.motion, room.rates[0], room.rows[AT_STARTS_AHEAD], room)
-    look_ahead(system, flow, phase, last, end, end_rates, room.rows[AT_ENDS_AHEAD], room)
+    tell_between(system, flow, phase, EARLY, span, stop, room.rows[AT_EARLY], room)
+    tell_between(system, flow, phase, LATE, span, stop, room.rows[AT_LATE], room)
     hidden = False
     for f in range(1, log.peaks.size):
         if room.doubt[f]:
             first, last = room.rows[AT_STARTS, f], room.rows[AT_ENDS, f]
-            before, after = (
-                (room.rows[AT_STARTS_AHEAD, f] - first) / AHEAD,
-                (room.rows[AT_ENDS_AHEAD, f] - last) / AHEAD,
-            )
+            early, late = room.rows[AT_EARLY, f], room.rows[AT_LATE, f]
+            before = AT_START[0] * first + AT_START[1] * early + AT_START[2] * late + AT_START[3] * last
+            after = AT_END[0] * first + AT_END[1] * early + AT_END[2] * late + AT_END[3] * last
             low, high = stretch(first, last, before, after)
             known = max(log.peaks[f], size_of(last, f, log))
             room.doubt[f] = max(size_of(low, f, log), size_of(high, f, log)) > known
@@ -123,25 +135,24 @@ def curves_hide(
     return hidden
 
 
-@inlined_kernel
-def look_ahead(
-    system: System,
-    flow: Flow,
-    phase: int,
-    span: Span,
-    motion: Array,
-    rates: Array,
-    values: Array,
-    room: Stages,
+@kernel
+def tell_between(
+    system: System, flow: Flow, phase: int, stage: int, span: Span, stop: float, values: Array, room: Stages
 ) -> None:
-    """Compute the values of the curved rows shortly after the start of a stretch."""
-    later = span.ground + span.slope * AHEAD * span.length
-    rise = span.rise + span.rise_slope * AHEAD * span.length
-    for i in range(motion.size):
-        room.vectors[PLACE, i] = motion[i] + AHEAD * span.length * rates[i]
-    place, rates = room.vectors[PLACE], room.vectors[PLACE_RATES]
-    field_rates(flow.field, system.phases[phase].side, room.at.branch, later, rise, place, rates)
-    tell(system, flow, phase, later, rise, place, rates, values)
+    """Compute the values of the curved rows at one of the two places inside a span."""
+    length = C[stage] * span.length
+    ground, rise = span.ground + span.slope * length, span.rise + span.rise_slope * length
+    place = room.vectors[PLACE]
+    if stop == WHOLE:
+        place_stage(stage, span.length, room.motion, room.rates, place, flow.moving)
+        for i in range(flow.moving, room.motion.size):
+            place[i] = room.motion[i]
+        tell(system, flow, phase, ground, rise, place, room.rates[stage], values)
+        return
+    place_at(C[stage] * stop, room, place)
+    rates = room.vectors[PLACE_RATES]
+    field_rates(flow.field, system.phases[phase].side, room.at.branch, ground, rise, place, rates)
+    tell(system, flow, phase, ground, rise, place, rates, values)
 
 
 @kernel
@@ -152,7 +163,7 @@ def raise_curves(system: System, flow: Flow, phase: int, span: Span, stop: float
     ground, rise = span.ground + span.slope * length, span.rise + span.rise_slope * length
     end, rates = room.vectors[END], room.vectors[END_RATES]
     field_rates(flow.field, side, room.at.branch, ground, rise, end, rates)
-    hidden = curves_hide(system, flow, phase, part_of(span, span.time, 0.0, length), end, rates, log, room)
+    hidden = curves_hide(system, flow, phase, part_of(span, span.time, 0.0, length), end, rates, stop, log, room)
     for f in range(1, log.peaks.size):
         if is_curved(flow, f, side):
             raise_row(f, room.rows[AT_ENDS, f], span.time + length, log)
@@ -166,17 +177,22 @@ def raise_curve(
 ) -> None:
     """Raise one curved row's peak to its largest size over [0, stop]."""
     best, where = -np.inf, 0.0
-    for k in range(LOOKS + 1):
-        u = stop * k / LOOKS
-        size = size_of(curve_at(system, flow, phase, f, u, span, room), f, log)
-        if size > best:
-            best, where = size, u
     width = stop / LOOKS
+    left = centre = right = size = -np.inf  # around the best place, where they are known
+    for k in range(LOOKS + 1):
+        before, size = size, size_of(curve_at(system, flow, phase, f, width * k, span, room), f, log)
+        if size > best:
+            best, where, left, centre, right = size, width * k, before, size, -np.inf
+        elif where == width * (k - 1):
+            right = size
     for _ in range(CLOSER):
         middle = min(max(where, width), stop - width)
-        left = size_of(curve_at(system, flow, phase, f, middle - width, span, room), f, log)
-        centre = size_of(curve_at(system, flow, phase, f, middle, span, room), f, log)
-        right = size_of(curve_at(system, flow, phase, f, middle + width, span, room), f, log)
+        if left == -np.inf or middle != where:
+            left = size_of(curve_at(system, flow, phase, f, middle - width, span, room), f, log)
+        if middle != where:
+            centre = size_of(curve_at(system, flow, phase, f, middle, span, room), f, log)
+        if right == -np.inf or middle != where:
+            right = size_of(curve_at(system, flow, phase, f, middle + width, span, room), f, log)
         bend = left - 2.0 * centre + right
         if bend >= 0.0:
             break
@@ -184,8 +200,9 @@ def raise_curve(
         size = size_of(curve_at(system, flow, phase, f, u, span, room), f, log)
         if size > best:
             best, where = size, u
+        left, centre, right = -np.inf, best, -np.inf
         width *= 0.125
-    raise_row(f, curve_at(system, flow, phase, f, where, span, room), span.time + span.length * where, log)
+    raise_row(f, best, span.time + span.length * where, log)
 
 
 @kernel

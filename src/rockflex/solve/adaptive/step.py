@@ -4,14 +4,27 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
-from rockflex.models import field_rates
-from rockflex.solve.adaptive.layout import AT_ENDS, AT_STARTS, ROW_TERMS, TERMS, TRIAL, Flow, Stages
-from rockflex.solve.adaptive.sums import place_stage
+from rockflex._weighted import weigh
+from rockflex.models import field_rates, stage_rates
+from rockflex.solve.adaptive.layout import (
+    AT_ENDS,
+    AT_STARTS,
+    PLACE,
+    PLACE_RATES,
+    ROW_TERMS,
+    TERMS,
+    TRIAL,
+    Flow,
+    Stages,
+)
+from rockflex.solve.adaptive.sums import place_others, place_stage
 from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.layout import LEFT, STEP, Span, System, is_shaken
 
 SHORTEST = 1e-13  # s: if a shorter step is needed, the motion cannot be integrated
 FAILED = -1.0
+COARSE, FINE = 0, 1
+ERRORS = np.stack((ERROR_3, ERROR_5))
 SAFETY, LEAST, MOST = 0.9, 0.2, 4.0  # of the error control
 
 
@@ -20,8 +33,12 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     """Try steps of at most `rest` until one is accurate; return its length, or `FAILED`.
 
     `room.vectors[TRIAL]` contains the end of the step, `room.rates` the stages up to it. The work limit is checked only
-    between steps, because interrupting the attempts at a step would lose their information.
+    between steps, because interrupting the attempts at a step would lose their information. A step that has been tried
+    is not repeated.
     """
+    if room.at.tried:
+        room.at.tried = False
+        return float(room.at.length)
     longest = rest.length
     step = min(room.at.step, longest)
     if not room.at.known:
@@ -34,8 +51,8 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
     while True:
         room.work[LEFT] -= room.work[STEP]
         for stage in range(1, LAST + 1):
-            place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL])
-            field_rates(
+            place_stage(stage, step, room.motion, room.rates, room.vectors[TRIAL], flow.moving)
+            stage_rates(
                 flow.field,
                 side,
                 room.at.branch,
@@ -46,9 +63,12 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
             )
         error = error_of(flow, step, room)
         if error <= 1.0:
-            grown = step * min(most, SAFETY * error**-0.125 if error > 0.0 else most)
+            place_others(step, room.motion, room.rates, room.vectors[TRIAL], flow.moving, flow.counted)
             # A step shortened by a sample or an event gives little information about the next one.
-            room.at.step = grown if step < longest else max(grown, room.at.step)
+            if step < longest:
+                room.at.step = grown(step, most, error)
+            elif room.at.step < step * most:
+                room.at.step = max(grown(step, most, error), room.at.step)
             return step
         most = 1.0
         shrunk = max(LEAST, SAFETY * error**-0.125) if error < np.inf else LEAST
@@ -56,6 +76,14 @@ def take_step(flow: Flow, side: float, rest: Span, room: Stages) -> float:
         room.at.step = step
         if not step > SHORTEST:
             return FAILED
+
+
+@kernel
+def grown(step: float, most: float, error: float) -> float:
+    """Return the length of the next step, at most `most` times this one."""
+    if error == 0.0:
+        return step * most
+    return step * min(most, SAFETY / np.sqrt(np.sqrt(np.sqrt(error))))  # faster than a power
 
 
 @inlined_kernel
@@ -73,14 +101,13 @@ def choose_branch(flow: Flow, side: float, acceleration: float, rise: float, roo
 def error_of(flow: Flow, step: float, room: Stages) -> float:
     """Return the error norm of the step relative to the tolerance; infinite if the step overflowed."""
     fifth = third = 0.0
-    for i in range(flow.scale.size):
-        coarse, fine = ERROR_3[0] * room.rates[0, i], ERROR_5[0] * room.rates[0, i]
-        for k in range(5, LAST):
-            coarse += ERROR_3[k] * room.rates[k, i]
-            fine += ERROR_5[k] * room.rates[k, i]
-        size = max(room.size[i], abs(room.motion[i]), abs(room.vectors[TRIAL, i]), flow.scale[i])
-        fifth += (fine / size) ** 2
-        third += (coarse / size) ** 2
+    weigh(room.vectors[PLACE], 1.0, ERRORS, COARSE, room.rates, 5, LAST, flow.moving)
+    weigh(room.vectors[PLACE_RATES], 1.0, ERRORS, FINE, room.rates, 5, LAST, flow.moving)
+    for i in range(flow.moving):
+        size = 1.0 / max(room.size[i], abs(room.motion[i]), abs(room.vectors[TRIAL, i]), flow.scale[i])
+        coarse, fine = room.vectors[PLACE, i] * size, room.vectors[PLACE_RATES, i] * size
+        fifth += fine * fine  # as a power it would be a loop
+        third += coarse * coarse
     if fifth == 0.0:
         return 0.0
     error = abs(step) * fifth / np.sqrt((fifth + 0.01 * third) * flow.scale.size) / flow.tolerance
@@ -90,9 +117,9 @@ def error_of(flow: Flow, step: float, room: Stages) -> float:
 @inlined_kernel
 def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
     """Compute `room.bends`, the continuous extension of the accepted step."""
-    n, step = room.motion.size, span.length
+    step = span.length
     for stage in range(LAST + 1, STAGES):
-        place_stage(stage, step, room.motion, room.rates, room.bends[0])
+        place_stage(stage, step, room.motion, room.rates, room.bends[0], flow.moving)
         field_rates(
             flow.field,
             side,
@@ -102,23 +129,20 @@ def extend(flow: Flow, side: float, span: Span, room: Stages) -> None:
             room.bends[0],
             room.rates[stage],
         )
-    for i in range(n):
+    for i in range(flow.counted):
         rise = room.vectors[TRIAL, i] - room.motion[i]
         room.bends[0, i] = rise
         room.bends[1, i] = step * room.rates[0, i] - rise
         room.bends[2, i] = 2.0 * rise - step * (room.rates[0, i] + room.rates[LAST, i])
+    # All entries, with or without energies: another number of them could be summed, and so rounded, in another way.
     for j in range(4):
-        for i in range(n):
-            total = DENSE[j, 0] * room.rates[0, i]
-            for k in range(5, STAGES):
-                total += DENSE[j, k] * room.rates[k, i]
-            room.bends[3 + j, i] = step * total
+        weigh(room.bends[3 + j], step, DENSE, j, room.rates, 5, STAGES, room.motion.size)
 
 
 @kernel
 def forget(room: Stages) -> None:
     """Record that the motion changed after the last step, so that its rates are not known."""
-    room.at.known = False
+    room.at.known = room.at.tried = False
 
 
 @inlined_kernel

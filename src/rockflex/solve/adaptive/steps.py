@@ -45,13 +45,12 @@ def step_through(
                 rise + rise_slope * at.begun,
                 rise_slope,
             )
-            proposed = at.step
             step = take_step(flow, side, rest, stages)
             if step == FAILED:
                 return True
             span = Span(rest.time, until, rest.ground, slope, step, rest.rise, rise_slope)
             if not nothing_hides(system, flow, at.phase, span, limits, log, stages):
-                at.step = proposed  # the closer look repeats this step, so that the motion does not depend on the rows
+                at.tried, at.length = True, step  # the closer look continues with this step
                 return True
             step_over(stages)
             at.begun = dt if step == longest else at.begun + step

@@ -1,84 +1,38 @@
-"""Sums of stages, unrolled: loops over so few weights would cost more than the arithmetic."""
+"""Sums of stages: the places at which the field is evaluated."""
+
+import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel
-from rockflex.solve.adaptive.tableau import A
+from rockflex._weighted import place_by
+from rockflex.solve.adaptive.tableau import STAGES, A
+
+# The first stage after 0 with a weight in each stage.
+FROM = np.array([0, *(1 + int(np.flatnonzero(A[stage, 1:])[0]) if stage > 1 else 1 for stage in range(1, STAGES))])
 
 
 @inlined_kernel
-def place_stage(stage: int, step: float, start: Array, rates: Array, out: Array) -> None:
-    """Compute the state at which a stage is evaluated, `start` + step Σ A rates; stage 12 is the end of the step."""
-    if stage == 1:
-        for i in range(start.size):
-            total = A[1, 0] * rates[0, i]
-            out[i] = start[i] + step * total
-    elif stage == 2:
-        for i in range(start.size):
-            total = A[2, 0] * rates[0, i] + A[2, 1] * rates[1, i]
-            out[i] = start[i] + step * total
-    elif stage == 3:
-        for i in range(start.size):
-            total = A[3, 0] * rates[0, i] + A[3, 2] * rates[2, i]
-            out[i] = start[i] + step * total
-    elif stage == 4:
-        for i in range(start.size):
-            total = A[4, 0] * rates[0, i] + A[4, 2] * rates[2, i] + A[4, 3] * rates[3, i]
-            out[i] = start[i] + step * total
-    elif stage == 5:
-        for i in range(start.size):
-            total = A[5, 0] * rates[0, i] + A[5, 3] * rates[3, i] + A[5, 4] * rates[4, i]
-            out[i] = start[i] + step * total
-    elif stage == 6:
-        for i in range(start.size):
-            total = A[6, 0] * rates[0, i] + A[6, 3] * rates[3, i] + A[6, 4] * rates[4, i] + A[6, 5] * rates[5, i]
-            out[i] = start[i] + step * total
-    elif stage == 7:
-        for i in range(start.size):
-            total = A[7, 0] * rates[0, i] + A[7, 3] * rates[3, i] + A[7, 4] * rates[4, i] + A[7, 5] * rates[5, i]
-            total += A[7, 6] * rates[6, i]
-            out[i] = start[i] + step * total
-    elif stage == 8:
-        for i in range(start.size):
-            total = A[8, 0] * rates[0, i] + A[8, 3] * rates[3, i] + A[8, 4] * rates[4, i] + A[8, 5] * rates[5, i]
-            total += A[8, 6] * rates[6, i] + A[8, 7] * rates[7, i]
-            out[i] = start[i] + step * total
-    elif stage == 9:
-        for i in range(start.size):
-            total = A[9, 0] * rates[0, i] + A[9, 3] * rates[3, i] + A[9, 4] * rates[4, i] + A[9, 5] * rates[5, i]
-            total += A[9, 6] * rates[6, i] + A[9, 7] * rates[7, i] + A[9, 8] * rates[8, i]
-            out[i] = start[i] + step * total
-    elif stage == 10:
-        for i in range(start.size):
-            total = A[10, 0] * rates[0, i] + A[10, 3] * rates[3, i] + A[10, 4] * rates[4, i] + A[10, 5] * rates[5, i]
-            total += A[10, 6] * rates[6, i] + A[10, 7] * rates[7, i] + A[10, 8] * rates[8, i] + A[10, 9] * rates[9, i]
-            out[i] = start[i] + step * total
-    elif stage == 11:
-        for i in range(start.size):
-            total = A[11, 0] * rates[0, i] + A[11, 3] * rates[3, i] + A[11, 4] * rates[4, i] + A[11, 5] * rates[5, i]
-            total += A[11, 6] * rates[6, i] + A[11, 7] * rates[7, i] + A[11, 8] * rates[8, i] + A[11, 9] * rates[9, i]
-            total += A[11, 10] * rates[10, i]
-            out[i] = start[i] + step * total
-    elif stage == 12:
-        for i in range(start.size):
-            total = A[12, 0] * rates[0, i] + A[12, 5] * rates[5, i] + A[12, 6] * rates[6, i]
-            total += A[12, 7] * rates[7, i] + A[12, 8] * rates[8, i] + A[12, 9] * rates[9, i]
-            total += A[12, 10] * rates[10, i] + A[12, 11] * rates[11, i]
-            out[i] = start[i] + step * total
-    elif stage == 13:
-        for i in range(start.size):
-            total = A[13, 0] * rates[0, i] + A[13, 6] * rates[6, i] + A[13, 7] * rates[7, i]
-            total += A[13, 8] * rates[8, i] + A[13, 9] * rates[9, i] + A[13, 10] * rates[10, i]
-            total += A[13, 11] * rates[11, i] + A[13, 12] * rates[12, i]
-            out[i] = start[i] + step * total
-    elif stage == 14:
-        for i in range(start.size):
-            total = A[14, 0] * rates[0, i] + A[14, 5] * rates[5, i] + A[14, 6] * rates[6, i]
-            total += A[14, 7] * rates[7, i] + A[14, 10] * rates[10, i] + A[14, 11] * rates[11, i]
-            total += A[14, 12] * rates[12, i] + A[14, 13] * rates[13, i]
-            out[i] = start[i] + step * total
-    elif stage == 15:
-        for i in range(start.size):
-            total = A[15, 0] * rates[0, i] + A[15, 5] * rates[5, i] + A[15, 6] * rates[6, i]
-            total += A[15, 7] * rates[7, i] + A[15, 8] * rates[8, i] + A[15, 12] * rates[12, i]
-            total += A[15, 13] * rates[13, i] + A[15, 14] * rates[14, i]
-            out[i] = start[i] + step * total
+def place_stage(stage: int, step: float, start: Array, rates: Array, out: Array, moving: int) -> None:
+    """Compute the state at which a stage is evaluated, `start` + step Σ A rates; stage 12 is the end of the step.
+
+    Only the first `moving` entries are needed, on which the rates depend.
+    """
+    newest = stage - 1
+    place_by(out, start, step, A, stage, rates, FROM[stage], newest, moving)
+    if newest > 0:
+        # One by one, as they were written: a vector could not be loaded before all of it is in the cache.
+        weight = step * A[stage, newest]
+        for i in range(moving):
+            out[i] += weight * rates[newest, i]
+
+
+@inlined_kernel
+def place_others(step: float, start: Array, rates: Array, out: Array, moving: int, counted: int) -> None:
+    """Compute the other entries at the end of the step: up to `counted` they have rates, the rest is constant."""
+    for i in range(moving, counted):
+        total = A[12, 0] * rates[0, i]
+        for k in range(5, 12):
+            total += A[12, k] * rates[k, i]
+        out[i] = start[i] + step * total
+    for i in range(counted, start.size):
+        out[i] = start[i]
