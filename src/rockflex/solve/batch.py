@@ -194,6 +194,11 @@ def begin(steps: Integrator | None, log: Log, motion: Motion, batch: Batch) -> N
         motion.flags[DOUBT, f], motion.flags[ASKED, f], motion.clear[f] = False, True, 0
     for place in range(motion.deferred.size):
         motion.deferred[place].waits = False
+    for k in range(motion.series.shape[1]):  # sums run over the entries beyond the last coordinate, too
+        for i in range(motion.series.shape[0]):
+            motion.series[i, k] = 0.0
+        for i in range(motion.reach.shape[0]):
+            motion.reach[i, k] = 0.0
     if steps is not None:
         for i in range(steps.room.size.size):
             steps.room.size[i] = 0.0
