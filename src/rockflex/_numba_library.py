@@ -37,8 +37,7 @@ class Intermediate(KNOWN):
     def finalize(self) -> None:
         """Neither optimise nor generate machine code."""
         self._raise_if_finalized()
-        for library in self._linking_libraries:
-            self._reload_init.update(library._reload_init)
+        inherit(self)
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
@@ -63,8 +62,7 @@ class Whole(KNOWN):
     def finalize(self) -> None:
         """Optimise and generate machine code."""
         self._raise_if_finalized()
-        for library in self._linking_libraries:
-            self._reload_init.update(library._reload_init)
+        inherit(self)
         own = defined(self._final_module)
         link(self._final_module, self._linking_libraries)
         self._final_module.verify()
@@ -77,6 +75,13 @@ class Whole(KNOWN):
 
     def _optimize_functions(self, ll_module: Any) -> None:
         ll_module.data_layout = self._codegen._data_layout
+
+
+def inherit(library: Any) -> None:
+    """Take over what must be initialised when code is loaded from disk; older versions have nothing of the kind."""
+    for each in library._linking_libraries:
+        if hasattr(library, "_reload_init"):
+            library._reload_init.update(each._reload_init)
 
 
 def link(module: Any, libraries: list[Any]) -> None:

@@ -52,7 +52,8 @@ class IntermediateLowering(NativeLowering):
         known_by = make_function(described.lookup_module(), name, "", 0, state.cr.env, (library,))
         state["cr"] = state.cr._replace(cfunc=known_by)
         library.passing.register(state.targetctx, known_by, library)
-        state.reload_init.extend(library._reload_init)
+        if hasattr(library, "_reload_init"):
+            state.reload_init.extend(library._reload_init)
         return True
 
 
