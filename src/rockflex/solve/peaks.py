@@ -19,7 +19,7 @@ def size_of(value: float, row: int, log: Log) -> float:
 @kernel
 def is_far(first: float, last: float, row: int, log: Log) -> bool:
     """Return whether a row is so far from its peak at both ends of a step that it does not reach it in between."""
-    return max(size_of(first, row, log), size_of(last, row, log)) <= log.peaks[row] - (1.0 - NEAR) * abs(log.peaks[row])
+    return max(abs(first), abs(last)) <= NEAR * log.peaks[row]
 
 
 @kernel

@@ -82,10 +82,8 @@ def nothing_hides(system: System, flow: Flow, phase: int, span: Span, limits: Ar
         if f != GUARD:
             if is_far(first, last, f, log):
                 continue
-        elif not system.phases[phase].free:
-            low, high = min(first, last), max(first, last)
-            if low > NEAR * low_limit and high < NEAR * high_limit:
-                continue
+        elif side == 0.0 and max(abs(first), abs(last)) < NEAR * min(-low_limit, high_limit):
+            continue  # in contact the moment varies about zero; of a base that is held at a rotation it does not
         before = rows[phase, f, n] * span.slope
         after = before
         for i in range(n):
