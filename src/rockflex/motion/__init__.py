@@ -14,8 +14,9 @@ from rockflex.motion._pulses import (
     rectangular_pulse,
     ricker_pulse,
 )
-from rockflex.motion._read_suite import OnError, Vertical, folder_files, read_files, read_suite
-from rockflex.motion._readers import read_motion
+from rockflex.motion._folder import folder_files
+from rockflex.motion._read_suite import OnError, Vertical, read_files, read_suite
+from rockflex.motion._readers import parts_of, read_components, read_motion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._shaking import Shaking
 from rockflex.motion._suite import Suite
@@ -42,7 +43,9 @@ __all__ = [
     "one_cosine_pulse",
     "one_sine_pulse",
     "quiet_motion",
+    "parts_of",
     "read_at2",
+    "read_components",
     "read_files",
     "read_motion",
     "read_suite",

@@ -88,4 +88,6 @@ def _by_header(info: RecordInfo | None) -> list[Key]:
         return []
     if info.rsn is not None:
         return [(info.rsn,)]
-    return [(info.event, info.year, info.station)] if None not in (info.event, info.year, info.station) else []
+    if None in (info.event, info.year, info.station):
+        return []
+    return [(info.event, info.year, info.station, info.network, info.location)]
