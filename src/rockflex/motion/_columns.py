@@ -57,15 +57,11 @@ def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None
     return motions
 
 
-def _single(
-    file: Path, table: Table, chosen: Chosen, stated: dict[int, Unit], step: float, name: str
-) -> GroundMotion:
+def _single(file: Path, table: Table, chosen: Chosen, stated: dict[int, Unit], step: float, name: str) -> GroundMotion:
     """Build the motion from the only horizontal column, with the vertical one."""
     column = chosen.along[0]
     alone = bool(table.labels) and UPWARDS.match(table.labels[column])
-    info = RecordInfo(
-        source=file.name, direction="vertical" if alone else direction_of(file), source_format="columns"
-    )
+    info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file), source_format="columns")
     motion = build_motion(file, _column(file, table, column), stated[column], step, info, REMEDY, name)
     if chosen.upwards is None:
         return motion
@@ -79,9 +75,9 @@ def _column(file: Path, table: Table, k: int) -> Array:
 
 def _component(label: str) -> str:
     """Return what a label says besides acceleration and unit."""
-    return ACCELERATION.sub("", BRACKET.sub("", label[: after_brackets(label)]) + label[after_brackets(label) :], 1).strip(
-        " _-."
-    )
+    return ACCELERATION.sub(
+        "", BRACKET.sub("", label[: after_brackets(label)]) + label[after_brackets(label) :], 1
+    ).strip(" _-.")
 
 
 def _choose(file: Path, labels: list[str], n_columns: int) -> Chosen:
@@ -115,7 +111,7 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> Chosen:
 
 
 def _by_names(labels: list[str], others: list[int]) -> tuple[list[int], list[int]]:
-    """Return the horizontal and the vertical columns if all labels only name components: NS (gal), EW (gal), Z (gal)."""
+    """Return the horizontal and the vertical columns if the labels only name components: NS (gal), Z (gal)."""
     upwards = [i for i in others if _component(labels[i]).upper() in ("Z", "V")]
     along = [i for i in others if i not in upwards]
     return (along, upwards) if all(is_horizontal_name(_component(labels[i])) for i in along) else ([], [])
@@ -172,7 +168,9 @@ def _time_step(file: Path, table: Table, column: int | None, dt: float | None) -
         if stated and stated > 0.0 and dt in (None, stated):
             return stated
         if stated and stated > 0.0:
-            raise InputError(f"{file} states DT = {stated:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
+            raise InputError(
+                f"{file} states DT = {stated:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt"
+            )
         if dt is None:
             columns = "one column" if len(table.rows[0][1]) == 1 else f"{len(table.rows[0][1])} columns"
             raise InputError(

@@ -33,7 +33,9 @@ def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
     """
     channels = [each for each in _channels(file, lines) if each.values is not None]
     if not channels:
-        raise InputError(f"{file} is a COSMOS file without a series of acceleration. Give the file of the acceleration.")
+        raise InputError(
+            f"{file} is a COSMOS file without a series of acceleration. Give the file of the acceleration."
+        )
     infos = [info_of(file, each) for each in channels]
     names = told_apart([info.component or "channel" for info in infos])
     motions: list[GroundMotion] = []
@@ -71,7 +73,8 @@ def _take(file: Path, lines: list[str], i: int, block: re.Match[str], channel: C
     form = FORMAT.search(lines[i][:500])
     if form is None or not int(form[2]):
         raise InputError(
-            f'{file}, line {i + 1}: a format of numbers is expected, such as "Format=(8F10.3)". Download the record again.'
+            f'{file}, line {i + 1}: a format of numbers is expected, such as "Format=(8F10.3)". Download the record '
+            "again."
         )
     count, columns = int(block[1]), int(form[1] or 1)
     end = i + 1 + -(-count // max(columns, 1))

@@ -29,14 +29,9 @@ def is_esm(lines: list[str]) -> bool:
 
 def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     """Build the motion from the lines of an ESM file."""
-    header: dict[str, str] = {}
-    start = 0
-    for start, line in enumerate(lines):
-        entry = ENTRY.fullmatch(line.strip())
-        if entry is None and line.strip():
-            break
-        if entry:
-            header[entry[1].strip()] = entry[2].strip()
+    entries = [ENTRY.fullmatch(line.strip()) for line in lines]
+    start = next((i for i, entry in enumerate(entries) if entry is None and lines[i].strip()), len(lines))
+    header = {entry[1].strip(): entry[2].strip() for entry in entries[:start] if entry}
     dt = real(header.get("SAMPLING_INTERVAL_S", ""))
     n_samples = real(header.get("NDATA", ""))
     if not dt or dt <= 0.0 or n_samples is None:
@@ -57,7 +52,9 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file}: UNITS is {header.get('UNITS', '')[:40]!r}, but an acceleration is expected, such as cm/s^2. "
             "Download the processed record."
         )
-    values = np.array([number(line.strip(), file, i) for i, line in enumerate(lines[start:], start + 1) if line.strip()])
+    values = np.array(
+        [number(line.strip(), file, i) for i, line in enumerate(lines[start:], start + 1) if line.strip()]
+    )
     if values.size != n_samples:
         what = "is truncated" if values.size < n_samples else "contains too many values"
         raise InputError(

@@ -15,7 +15,7 @@ from rockflex.motion._text import DECIMAL
 from rockflex.motion._units import Unit
 
 ZIPPED, OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
-LARGEST = 500_000_000  # bytes of a workbook when unpacked
+LARGEST = 100_000_000  # bytes of a workbook when unpacked
 INSTALL = "Install it: pip install 'rockflex[excel]', or save the sheet as CSV."
 
 
@@ -25,7 +25,7 @@ def is_excel(content: bytes) -> bool:
 
 
 def parse_excel(file: Path, content: bytes, units: Unit | None, dt: float | None) -> list[GroundMotion]:
-    """Build the motions from all sheets of a workbook that hold rows of numbers; each is read as columns of text are."""
+    """Build the motions from all sheets of a workbook that hold rows of numbers, read as columns of text are."""
     tables = {name: table for name, cells in sheets_of(file, content).items() if (table := _table(cells))}
     if not tables:
         raise InputError(f"{file} holds no numbers: a sheet is expected with columns of time and acceleration.")

@@ -51,7 +51,8 @@ def folder_files(folder: Path) -> list[Path]:
     files = [file for file in folder.iterdir() if file.is_file() and is_record(file)]
     if not files:
         raise InputError(
-            f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}, or begins as a K-NET, ESM or COSMOS file."
+            f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}, or begins as a K-NET, ESM or COSMOS "
+            "file."
         )
     return sorted(files)
 

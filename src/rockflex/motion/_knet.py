@@ -52,7 +52,9 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file}: a sampling frequency and a duration are expected in lines 11 and 12, but they are "
             f"{header['Sampling Freq(Hz)'][:40]!r} and {header['Duration Time(s)'][:40]!r}. Download the record again."
         )
-    counts = np.array([number(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()])
+    counts = np.array(
+        [number(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()]
+    )
     if not counts.size or abs(counts.size - duration * rate) > rate:
         what = "is truncated" if counts.size < duration * rate else "contains too many values"
         raise InputError(

@@ -36,7 +36,8 @@ def format_of(content: bytes) -> str | None:
                 continue
             try:
                 group = f"obspy.plugin.waveform.{entry.name}"
-                if buffered_load_entry_point(entry.dist.name, group, "isFormat")(io.BytesIO(content)):
+                is_format: Any = buffered_load_entry_point("obspy", group, "isFormat")
+                if is_format(io.BytesIO(content)):
                     return str(name)
             except Exception:  # a foreign reader that stumbles over a file does not know it
                 continue
@@ -73,8 +74,8 @@ def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) ->
     channel = str(trace.stats.channel).strip().upper()
     if len(channel) == 3 and channel[1] in VELOCITY:
         raise InputError(
-            f"{file}: channel {channel} is that of a velocity sensor, but an acceleration is expected. Give the channel "
-            f"of the accelerometer, such as {channel[0]}N{channel[2]}."
+            f"{file}: channel {channel} is that of a velocity sensor, but an acceleration is expected. Give the "
+            f"channel of the accelerometer, such as {channel[0]}N{channel[2]}."
         )
     if np.ma.isMaskedArray(trace.data):
         raise InputError(
@@ -83,7 +84,8 @@ def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) ->
     unit = _unit(file, trace, form, units)
     info = RecordInfo(
         component=channel or None,
-        direction=direction_of(file, channel),
+        # The numbers of a recorder's channels say nothing about directions.
+        direction=direction_of(file, "" if channel.isdigit() else channel),
         azimuth=azimuth_of(channel) if len(channel) == 3 else None,
         station=str(trace.stats.station).strip() or None,
         network=str(trace.stats.network).strip() or None,
@@ -111,8 +113,8 @@ def _unit(file: Path, trace: Any, form: str, units: Unit | None) -> Unit:
         )
     if units is None:
         raise InputError(
-            f"{file} ({form}) does not state the unit of its samples, which may be counts. Declare what the number 1 is: "
-            'read_motion(path, units="2.4e-4 cm/s2"), or units="m/s2" if the instrument was corrected.',
+            f"{file} ({form}) does not state the unit of its samples, which may be counts. Declare what the number 1 "
+            'is: read_motion(path, units="2.4e-4 cm/s2"), or units="m/s2" if the instrument was corrected.',
             field="units",
         )
     return units

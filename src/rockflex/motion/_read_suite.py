@@ -36,8 +36,8 @@ def read_suite(
 
     Tables about the records among the files fill in what headers do not say: PEER's ``_SearchResults.csv``, a flatfile
     of NGA, or a CSV file or workbook of one's own with a column ``file`` or ``RSN`` and any of ``units``, ``dt``,
-    ``magnitude``, ``Rrup (km)``, ``Rjb (km)``, ``Vs30 (m/s)``, ``event``, ``year``, ``station``. In the column ``file``,
-    ``*`` and ``?`` stand for other characters, for units and steps.
+    ``magnitude``, ``Rrup (km)``, ``Rjb (km)``, ``Vs30 (m/s)``, ``event``, ``year``, ``station``. In the column
+    ``file``, ``*`` and ``?`` stand for other characters, for units and steps.
 
     Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out, and a warning lists them; with
     ``vertical="pair"`` each horizontal component gets the vertical one of its station. The direction of a record is
@@ -79,9 +79,9 @@ def read_suite(
     Warns
     -----
     RecordWarning
-        If a vertical component, a borehole component beneath one at the surface (KiK-net), or a file that cannot be read
-        is left out, a record has no vertical component although `vertical` is "pair", or a peak differs by 1 to 20 %
-        from that in the header.
+        If a vertical component, a borehole component beneath one at the surface (KiK-net), or a file that cannot be
+        read is left out, a record has no vertical component although `vertical` is "pair", or a peak differs by 1 to
+        20 % from that in the header.
 
     Examples
     --------

@@ -114,7 +114,7 @@ def read_motion(
 
 
 def read_components(path: str | Path, units: str | None = None, dt: float | None = None) -> tuple[GroundMotion, ...]:
-    """Read all components in a file: the channels of a COSMOS file, the columns of a table, the sheets of a workbook.
+    r"""Read all components in a file: the channels of a COSMOS file, the columns of a table, the sheets of a workbook.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
     Examples
     --------
     >>> import rockflex as rf
-    >>> text = "time (s), NS (gal), EW (gal), UD (gal)\\n0.00, 0, 0, 0\\n0.01, 5, 3, 1\\n0.02, -4, 6, 2\\n"
+    >>> text = "time (s), NS (gal), EW (gal), UD (gal)\n0.00, 0, 0, 0\n0.01, 5, 3, 1\n0.02, -4, 6, 2\n"
     >>> _ = open("station.csv", "w").write(text)
     >>> [motion.name for motion in rf.read_components("station.csv")]
     ['station-NS', 'station-EW', 'station-UD']
@@ -152,6 +152,18 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
     for motion in found:
         _warn(file, motion)
     return tuple(found)
+
+
+def read_plain(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
+    """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers.
+
+    Raises
+    ------
+    InputError
+        As for `read_motion`.
+    """
+    file = path_of("path", path)
+    return _one(file, parts_of(file, *_options(units, dt), foreign=False), None, upright=False)
 
 
 def parts_of(
@@ -184,9 +196,7 @@ def parts_of(
     return found
 
 
-def _parts(
-    file: Path, units: Unit | None, dt: float | None, *, foreign: bool, common: bool
-) -> list[GroundMotion]:
+def _parts(file: Path, units: Unit | None, dt: float | None, *, foreign: bool, common: bool) -> list[GroundMotion]:
     content = read_content(file)
     if is_excel(content):
         return parse_excel(file, content, units, dt)

@@ -76,6 +76,15 @@ class RecordTable:
         numbered = None if rsn is None else self.by_number.get(rsn)
         return info if numbered is None else info.completed(replace(numbered, direction=None))
 
+    def missing(self, names: Iterable[str]) -> list[str]:
+        """Return the files that the table lists, but are not among the names."""
+        present = {name.casefold() for name in names}
+        return [
+            info.source or key
+            for key, info in self.by_file.items()
+            if key not in present and not any(mark in key for mark in "*?[")
+        ]
+
     def unit_of(self, file: Path) -> Unit | None:
         """Return the unit that the tables state for a file."""
         return _matching(self.units, file)
@@ -175,10 +184,11 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
             by_number.setdefault(info.rsn, info)
         for label, direction in FILES.items():
             # Flatfiles give folders too, with either slash; search results write ----- for no file.
-            name = re.split(r"[\\/]", stated.get(label, ""))[-1].casefold()
+            whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
+            name = whole.casefold()
             if not name.strip("- "):
                 continue
-            by_file.setdefault(name, replace(info, direction=direction))  # pyright: ignore[reportArgumentType]
+            by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
             try:
                 if "units" in stated:
                     units.setdefault(name, declared(stated["units"]))

@@ -28,7 +28,7 @@ class Sorted:
 
 
 def sort_out(found: Sequence[FileRead], *, pair: bool) -> Sorted:
-    """Take the horizontal components, with the vertical ones if `pair`; leave boreholes out beneath a surface record."""
+    """Take the horizontal components, with the vertical ones if `pair`; leave out boreholes beneath surface records."""
     motions = {path: motion for each in found for path, motion in each.motions.items()}
     surface = {_place(motion) for motion in motions.values() if _location(motion) == "surface"}
     below = [path for path, each in motions.items() if _location(each) == BELOW and _place(each) in surface]

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from rockflex._errors import InputError
@@ -81,7 +82,7 @@ def _alone(body: list[tuple[int, str]]) -> bool:
     if not all(found):
         return False
     times = [float(content.partition(",")[0] + ".0") if "," in content else float("nan") for _, content in body]
-    return not all(later > earlier for earlier, later in zip(times, times[1:], strict=False))
+    return not all(later > earlier for earlier, later in pairwise(times))
 
 
 def _with_point(file: Path, line: int, cell: str) -> str:

@@ -12,7 +12,9 @@ from rockflex._shown import shown
 UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "mg": 1e-3 * GRAVITY, "in/s2": 0.0254}
 LENGTH = re.compile(r"(c|m)?m(?:s-2|/(s|sec)(?:2|/\2))|in(?:s-2|/(s|sec)(?:2|/\3))")
 LONGEST = 100  # characters of a unit
-FACTOR = re.compile(r"\s*+([+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[Ee][+-]?+\d++)?+)\s*+\*?+(?=[\s*a-zA-Z])\s*+(.*)", re.DOTALL)
+FACTOR = re.compile(
+    r"\s*+([+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[Ee][+-]?+\d++)?+)\s*+\*?+(?=[\s*a-zA-Z])\s*+(.*)", re.DOTALL
+)
 
 
 @dataclass(frozen=True)
