@@ -79,8 +79,7 @@ def _stems(file: Path, motion: GroundMotion) -> list[str]:
     upright = station_of_vertical(file)
     if motion.metadata is not None and motion.metadata.is_vertical:
         return [] if upright is None else [upright]
-    splits = [key[1] for key in _keys(file, None)]
-    return [str(each) for each in splits if each]
+    return [file.stem[: len(str(key[1]))] for key in _keys(file, None) if key[1]]
 
 
 def named(files: Iterable[Path]) -> str:

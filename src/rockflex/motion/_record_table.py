@@ -193,15 +193,19 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
                 if "units" in stated:
                     units.setdefault(name, declared(stated["units"]))
                 if "dt" in stated and "units" in columns.values():
-                    steps.setdefault(name, positive("dt", real(stated["dt"]) or 0.0, "s"))
+                    steps.setdefault(name, positive("dt", _number(stated["dt"]) or 0.0, "s"))
             except InputError as error:
                 raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
     return None if columns is None else RecordTable(by_number, by_file, units, steps)
 
 
+def _number(text: str) -> float | None:
+    return real(text.replace(",", "."))
+
+
 def _info(stated: Mapping[str, str]) -> RecordInfo:
-    numbers = {name: known(real(stated.get(name, "").replace(",", "."))) for name in NUMBERS}
-    whole = {name: known(real(stated.get(name, ""))) for name in ("rsn", "year")}
+    numbers = {name: known(_number(stated.get(name, ""))) for name in NUMBERS}
+    whole = {name: known(_number(stated.get(name, ""))) for name in ("rsn", "year")}
     # PEER writes underscores for commas.
     words = {name: stated[name].replace("_ ", ", ") for name in WORDS if stated.get(name, "-") not in ("-", "-999")}
     return RecordInfo(
