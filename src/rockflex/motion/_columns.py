@@ -40,9 +40,10 @@ def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None
     chosen = _choose(file, table.labels, len(table.rows[0][1]))
     places = [*chosen.along, *([] if chosen.upwards is None else [chosen.upwards])]
     stated = {k: _stated_unit(file, table, k, units) for k in places}
+    values = {k: _column(file, table, k) for k in places}
     step = _time_step(file, table, chosen.time, dt)
     if len(chosen.along) == 1:
-        return [_single(file, table, chosen, stated, step, name)]
+        return [_single(file, table.labels, chosen, stated, values, step, name)]
     names = [_component(table.labels[k]) or str(k + 1) for k in places]
     motions: list[GroundMotion] = []
     for k, component, apart in zip(places, names, told_apart(names), strict=True):
@@ -53,20 +54,27 @@ def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None
             azimuth=None if k == chosen.upwards else azimuth_of(component),
             source_format="columns",
         )
-        motions.append(build_motion(file, _column(file, table, k), stated[k], step, info, REMEDY, f"{name}-{apart}"))
+        motions.append(build_motion(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
     return motions
 
 
-def _single(file: Path, table: Table, chosen: Chosen, stated: dict[int, Unit], step: float, name: str) -> GroundMotion:
+def _single(
+    file: Path,
+    labels: list[str],
+    chosen: Chosen,
+    stated: dict[int, Unit],
+    values: dict[int, Array],
+    step: float,
+    name: str,
+) -> GroundMotion:
     """Build the motion from the only horizontal column, with the vertical one."""
-    column = chosen.along[0]
-    alone = bool(table.labels) and UPWARDS.match(table.labels[column])
+    column, upwards = chosen.along[0], chosen.upwards
+    alone = bool(labels) and UPWARDS.match(labels[column])
     info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file), source_format="columns")
-    motion = build_motion(file, _column(file, table, column), stated[column], step, info, REMEDY, name)
-    if chosen.upwards is None:
+    motion = build_motion(file, values[column], stated[column], step, info, REMEDY, name)
+    if upwards is None:
         return motion
-    values = _column(file, table, chosen.upwards)
-    return motion.with_vertical(acceleration_of(file, values, stated[chosen.upwards], REMEDY))
+    return motion.with_vertical(acceleration_of(file, values[upwards], stated[upwards], REMEDY))
 
 
 def _column(file: Path, table: Table, k: int) -> Array:

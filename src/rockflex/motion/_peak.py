@@ -5,6 +5,7 @@ import numpy as np
 from rockflex.motion._ground_motion import GroundMotion
 
 CLOSE = 0.01  # relative difference that the printing of a header explains
+PRINTED = 1e-5  # m/s², the last digit of peaks in K-NET headers, 0.001 gal
 FAR = 0.2  # relative difference that only a wrong scale or another record explains
 
 
@@ -34,4 +35,4 @@ def disagreement(motion: GroundMotion) -> tuple[float, str]:
 
 
 def _apart(one: float, other: float) -> float:
-    return abs(one - other) / max(one, other)
+    return 0.0 if abs(one - other) <= PRINTED else abs(one - other) / max(one, other)
