@@ -282,3 +282,10 @@ def test_components_in_columns(tmp_path):
         read_components(tmp_path / "record.txt")
     with pytest.raises(InputError, match="has 4 columns, and its header does not name one as time"):
         read_components(write(tmp_path, "t,NS,EW,what\n" + "1,2,3,4\n" * 4))
+
+
+@pytest.mark.parametrize(
+    "head", ["Zeit [s];Weg [mm];Beschleunigung [gal]", "temps (s);u;accélération (gal)", "tiempo;d;aceleración (gal)"]
+)
+def test_labels_in_other_languages(tmp_path, head):
+    assert read_motion(write(tmp_path, f"{head}\n0;9;1\n0,1;9;2\n0,2;9;3\n")).pga == pytest.approx(0.03)

@@ -50,7 +50,8 @@ def survey(
             f"One folder or several files are expected, but {folders[0]} is a folder among {len(paths)} paths. Survey "
             "one folder at a time."
         )
-    found = survey_records(paths[0] if folders else paths, units, dt, vertical, None)  # pyright: ignore[reportArgumentType]
+    single = len(paths) == 1 and not paths[0].is_file()
+    found = survey_records(paths[0] if single else paths, units, dt, vertical, None)  # pyright: ignore[reportArgumentType]
     if json:
         stations = [
             {

@@ -20,7 +20,7 @@ SECONDS = ("s", "sec", "secs", "second", "seconds")
 UPWARDS = re.compile(
     r"(?:acc[a-z]*+[\s_-]++)?(?:ver|vert|vertical|up|ud|u-d)(?![a-z])|acc[a-z]*+[\s_-]++[vz](?![a-z])", re.I
 )
-ACCELERATION = re.compile(r"acc[a-z]*+\.?", re.IGNORECASE)
+ACCELERATION = re.compile(r"(?:acc|acel|beschl)[^\W\d_]*+\.?", re.IGNORECASE)
 STATED = re.compile(r"\bunits?\s*+[:=]\s*+\(?([^\s,;()]++)", re.IGNORECASE)
 STEP = re.compile(rf"\bdt\s*+[:=]\s*+({DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
 REMEDY = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'

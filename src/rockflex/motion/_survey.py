@@ -48,6 +48,13 @@ class SurveyEntry:
         Peak of the samples, and that in the header, in m/s².
     magnitude, distance_km, vs30 : float, optional
         As in `RecordInfo`, from the header or a table about the records.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> entry = rf.SurveyEntry(file="A-UP.AT2", taken=False, reason="vertical component", name="A-UP")
+    >>> entry.taken, entry.reason
+    (False, 'vertical component')
     """
 
     file: str
@@ -69,7 +76,7 @@ class SurveyEntry:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RecordSurvey(Value):
-    """What is taken from a folder of records, and what is not; the result of `survey_records`.
+    r"""What is taken from a folder of records, and what is not; the result of `survey_records`.
 
     Parameters
     ----------
@@ -81,6 +88,15 @@ class RecordSurvey(Value):
         The horizontal motions that are taken.
     stations : tuple of StationRecord
         All components that can be read, by recording; see `group_stations`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> _ = Path("lab.csv").write_text("time (s), acc (g)\n0.00, 0.0\n0.01, 0.2\n0.02, 0.0\n")
+    >>> survey = rf.survey_records(["lab.csv"])
+    >>> survey.suite().names, survey.left_out
+    (('lab',), ())
     """
 
     name: str

@@ -9,7 +9,7 @@ from rockflex._errors import InputError
 from rockflex.motion._text import DECIMAL, number
 
 COMMA = re.compile(r"([+-]?+\d*+),\d++(?:[EeDd][+-]?+\d++)?+")  # a number with a decimal comma
-TIME = re.compile(r"t(ime)?\b", re.IGNORECASE)
+TIME = re.compile(r"(?:t|time|zeit|temps|tempo|tiempo)\b", re.IGNORECASE)
 BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 
 

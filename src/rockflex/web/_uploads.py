@@ -116,7 +116,10 @@ def _read(name: str, content: bytes, units: str | None, dt: float | None, field:
             try:
                 motion = read_plain(file, units=units, dt=dt)
             except InputError as error:
-                raise Refusal({field: str(error).replace(str(file), shown)}) from error
+                said = str(error).replace(str(file), shown)
+                if error.field == "component":
+                    said = f"{said.partition(' Name one:')[0]} Choose a file with a single one."
+                raise Refusal({field: said}) from error
     except OSError as error:
         message = "the server could not store the file temporarily. Try again."
         raise Refusal({field: message}, 503) from error
