@@ -23,7 +23,12 @@ def test_one_channel(tmp_path):
 
 def test_header(tmp_path):
     info = rf.read_motion(write(tmp_path, cosmos())).metadata
-    assert (info.event, info.year, info.magnitude, info.magnitude_type) == ("Fontana", 2014, 4.4, "Mw")
+    assert (info.event, info.year, info.magnitude, info.magnitude_type) == (
+        "Fontana, Wed Jan 15, 2014 01:35 PST",
+        2014,
+        4.4,
+        "Mw",
+    )
     assert (info.network, info.station, info.epicentral_km, info.vs30) == ("CE", "13921", 21.5, 360.0)
     assert (info.component, info.direction, info.azimuth) == ("090", "horizontal", 90.0)
     assert (info.start_time, info.source_format) == ("2014-01-15T09:35:12.250+00:00", "COSMOS")
@@ -87,6 +92,15 @@ def test_three_channels_with_velocities_between_them(tmp_path):
     with pytest.warns(rf.RecordWarning, match=r"Left out: 1 vertical component, CE13921-UP\.V2c"):
         rf.read_suite([file])
     assert len(rf.group_stations(found)) == 1
+
+
+def test_sensors_at_several_places_of_a_structure(tmp_path):
+    text = "".join(
+        cosmos(code, channel=k).replace(f"(Rcrdr Chan  {k})", f"(Rcrdr Chan  {k}) Location: {place}")
+        for k, (code, place) in enumerate([(90, "Base"), (360, "Base"), (90, "Roof"), (360, "Roof")], 1)
+    )
+    found = rf.group_stations(rf.read_components(write(tmp_path, text)))
+    assert [(each.name.split()[2], len(each.pair)) for each in found] == [("Base", 2), ("Roof", 2)]
 
 
 def test_a_velocity_block_without_headers_of_its_own(tmp_path):

@@ -20,7 +20,12 @@ def test_samples_and_peak(tmp_path):
 
 def test_header(tmp_path):
     info = rf.read_motion(write(tmp_path, esm())).metadata
-    assert (info.event, info.year, info.magnitude, info.magnitude_type) == ("CENTRAL_ITALY", 2016, 6.5, "Mw")
+    assert (info.event, info.year, info.magnitude, info.magnitude_type) == (
+        "CENTRAL_ITALY 2016-10-30 06:40",
+        2016,
+        6.5,
+        "Mw",
+    )
     assert (info.network, info.station, info.location, info.vs30) == ("IT", "NRC", "00", 498.0)
     assert (info.component, info.direction, info.azimuth) == ("HNE", "horizontal", 90.0)
     assert (info.epicentral_km, info.start_time) == (4.6, "2016-10-30T06:40:13.250+00:00")
@@ -45,7 +50,7 @@ def test_a_station(tmp_path):
     assert [motion.metadata.azimuth for motion in suite] == [90.0, 0.0]
     assert all(motion.vertical is not None for motion in suite)
     (station,) = rf.group_stations(suite)
-    assert (station.name, len(station.pair)) == ("IT NRC 00 CENTRAL_ITALY", 2)
+    assert (station.name, len(station.pair)) == ("IT NRC 00 CENTRAL_ITALY 2016-10-30 06:40", 2)
 
 
 @pytest.mark.parametrize(

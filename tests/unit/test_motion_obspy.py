@@ -116,3 +116,10 @@ def test_the_page_reads_no_foreign_formats(obspy, tmp_path):
     with pytest.raises(Refusal) as caught:
         read_record("a.mseed", content, "g", None)
     assert "a.mseed is a binary file" in caught.value.errors["record.upload"]
+
+
+def test_a_text_that_obspy_takes_for_its_own_but_cannot_read(obspy, tmp_path):
+    (tmp_path / "a.txt").write_text("WID2 of no file\nabc\n")
+    assert format_of((tmp_path / "a.txt").read_bytes()) is not None
+    with pytest.raises(rf.InputError, match=r"a\.txt holds no numbers: a record is expected as AT2, CSV or columns"):
+        rf.read_motion(tmp_path / "a.txt", units="g")

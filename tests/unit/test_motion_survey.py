@@ -84,8 +84,8 @@ def test_pairs(folder):
     assert next(e.reason for e in survey.entries if e.name == "lab") == "without a vertical component"
     stations = {each.name: (len(each.horizontal), each.vertical is not None) for each in survey.stations}
     assert stations == {
-        "CE 13921 Fontana": (2, True),
-        "IT NRC 00 CENTRAL_ITALY": (1, False),
+        "CE 13921 Fontana, Wed Jan 15, 2014 01:35 PST": (2, True),
+        "IT NRC 00 CENTRAL_ITALY 2016-10-30 06:40": (1, False),
         "NIED MYG002 2006-01-18 23:25": (1, True),
         "RSN9001": (2, True),
         "lab": (1, False),

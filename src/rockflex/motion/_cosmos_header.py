@@ -119,6 +119,7 @@ def info_of(file: Path, channel: Channel) -> RecordInfo:
         azimuth=azimuth,
         station=code and code[2],
         network=code and code[1],
+        location=lines[8].partition("Location:")[2].strip() or None,
         start_time=_start(channel, lines[7]),
         source=file.name,
         source_format="COSMOS",
@@ -147,7 +148,8 @@ def _event(line: str) -> tuple[str | None, int | None]:
     about = re.match(r"\s*+Re?co?rd of\s*+(.*)", line, re.IGNORECASE)
     name, _, date = (about[1] if about else "").partition("Earthquake of")
     year = re.search(r"\b(?:19|20)\d\d\b", date or name)
-    return (name.strip() or date.strip() or None), year and int(year[0])
+    # Aftershocks have the name of their main shock.
+    return ", ".join(filter(None, (name.strip(), date.strip()))) or None, year and int(year[0])
 
 
 def _magnitude(channel: Channel) -> tuple[float | None, str | None]:

@@ -19,6 +19,7 @@ from rockflex.motion._units import Unit, spelled
 
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^ -]*+):(.*)")
 BEGINNINGS = ("EVENT_NAME:", "EVENT_ID:")
+WHEN = re.compile(r"(\d{4})(\d{2})(\d{2})(\d{2})(\d{2})\d{2}")
 STAMP = re.compile(r"(\d{4})(\d{2})(\d{2})_(\d{2})(\d{2})(\d{2}(?:\.\d{1,6})?)")
 
 
@@ -70,9 +71,12 @@ def _info(file: Path, header: dict[str, str]) -> RecordInfo:
     year = header.get("EVENT_DATE_YYYYMMDD", "")[:4]
     stamp = STAMP.match(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", ""))
     peak = real(header.get("PGA_CM/S^2", ""))
-    name = header.get("EVENT_NAME", "")
+    event = [header.get("EVENT_NAME", ""), header.get("EVENT_ID", "")]
+    name = next((each for each in event if each not in ("", "None")), None)
+    when = WHEN.fullmatch(header.get("EVENT_DATE_YYYYMMDD", "") + header.get("EVENT_TIME_HHMMSS", ""))
     return RecordInfo(
-        event=(name if name not in ("", "None") else header.get("EVENT_ID")) or None,
+        # Many earthquakes have the same name, that of their region.
+        event=name if name is None or when is None else "{} {}-{}-{} {}:{}".format(name, *when.groups()),
         year=int(year) if year.isdecimal() and year.isascii() else None,
         magnitude=local if moment is None else moment,
         magnitude_type=None if moment is None and local is None else "ML" if moment is None else "Mw",

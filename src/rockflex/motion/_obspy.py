@@ -22,6 +22,10 @@ CALIBRATED = ("KINEMETRICS_EVT", "KNET")
 VELOCITY = "HMP"  # the second letter of a channel of a velocity sensor
 
 
+class ForeignError(InputError):
+    """ObsPy takes a file for one of its formats, but cannot read it."""
+
+
 def format_of(content: bytes) -> str | None:
     """Return the name that ObsPy has for the format of a file, or None if it knows none or is not installed."""
     if not is_installed():
@@ -59,7 +63,7 @@ def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> li
             stream: Any = obspy.read(io.BytesIO(content), format=form)
             stream.merge(method=0)
     except Exception as error:  # damaged files raise many kinds of errors
-        raise InputError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
+        raise ForeignError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
     traces = list(stream)
     names = told_apart([str(trace.stats.channel).strip() or "channel" for trace in traces])
     motions: list[GroundMotion] = []

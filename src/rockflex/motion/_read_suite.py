@@ -58,9 +58,9 @@ def read_suite(
     vertical : {"pair"}, optional
         Pair the components of a station. They belong together if their file names, in one folder, differ only in the
         component (ABC090 or ABC-NS, and ABC-UP); else if they have the same record sequence number; else if their
-        headers name the same event, year and station. Lengths and signs are as in `GroundMotion.with_vertical`. Records
-        without a vertical component remain in the suite, and a warning lists them; leave them out with
-        ``Suite(motion for motion in suite if motion.vertical is not None)``.
+        headers name the same event, year, network, station and location. Lengths and signs are as in
+        `GroundMotion.with_vertical`. Records without a vertical component remain in the suite, and a warning lists
+        them; leave them out with ``Suite(motion for motion in suite if motion.vertical is not None)``.
     table : path, optional
         A table about the records that is not among the files.
 

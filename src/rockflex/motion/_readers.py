@@ -10,8 +10,8 @@ from rockflex._shown import shown
 from rockflex.motion import _obspy
 from rockflex.motion._at2 import find_header, parse_at2
 from rockflex.motion._columns import parse_columns
+from rockflex.motion._components import chosen
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
-from rockflex.motion._direction import is_vertical
 from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._excel import is_excel, parse_excel
 from rockflex.motion._ground_motion import GroundMotion
@@ -103,12 +103,12 @@ def read_motion(
     if component is not None:
         instance("component", component, str)
     file = path_of("path", path)
-    motion = _one(file, parts_of(file, unit, step), component, upright=False)
+    motion = chosen(file, parts_of(file, unit, step), component, upright=False)
     _warn(file, motion)
     if vertical is None:
         return motion
     other = path_of("vertical", vertical)
-    upwards = _one(other, parts_of(other, unit, step), None, upright=True)
+    upwards = chosen(other, parts_of(other, unit, step), None, upright=True)
     _warn(other, upwards)
     return motion.with_vertical(upwards)
 
@@ -164,7 +164,7 @@ def read_plain(path: str | Path, units: str | None = None, dt: float | None = No
         As for `read_motion`.
     """
     file = path_of("path", path)
-    return _one(file, parts_of(file, *_options(units, dt), foreign=False), None, upright=False)
+    return chosen(file, parts_of(file, *_options(units, dt), foreign=False), None, upright=False)
 
 
 def parts_of(
@@ -223,7 +223,10 @@ def _parts(file: Path, units: Unit | None, dt: float | None, *, foreign: bool, c
             form = _obspy.format_of(content) if foreign and error.field is None else None
             if form is None:
                 raise
-            return _foreign(file, content, form, units, dt)
+            try:
+                return _foreign(file, content, form, units, dt)
+            except _obspy.ForeignError:
+                raise error from None
     motion = parse_at2(file, lines)
     if units not in (None, Unit("g")):
         raise InputError(
@@ -256,43 +259,6 @@ def _check_step(file: Path, motion: GroundMotion, dt: float | None) -> None:
 
 def _options(units: str | None, dt: float | None) -> tuple[Unit | None, float | None]:
     return None if units is None else declared(units), None if dt is None else positive("dt", dt, "s")
-
-
-def _one(file: Path, found: list[GroundMotion], component: str | None, *, upright: bool) -> GroundMotion:
-    """Return the component with a name; without one, the only horizontal or, if `upright`, the only vertical one."""
-    if component is not None:
-        named = [motion for motion in found if _called(motion, component)]
-        if len(named) == 1:
-            return named[0]
-        raise InputError(
-            f"{file} holds {len(named) or 'no'} components named {shown(component)}. It holds {_listed(found)}.",
-            field="component",
-        )
-    fitting = [motion for motion in found if is_vertical(motion) == upright] or found
-    if len(fitting) == 1:
-        return fitting[0]
-    raise InputError(
-        f"{file} holds {len(found)} components: {_listed(found)}. Name one: "
-        f"read_motion(path, component={_name(fitting[0])!r}); read_components reads all, and so does read_suite.",
-        field="component",
-    )
-
-
-def _called(motion: GroundMotion, component: str) -> bool:
-    azimuth = None if motion.metadata is None else motion.metadata.azimuth
-    wanted = component.strip().casefold()
-    if azimuth is not None and wanted.isdecimal() and wanted.isascii() and len(wanted) <= 3:
-        return float(wanted) % 360.0 == azimuth % 360.0
-    return wanted in (_name(motion).casefold(), motion.name.casefold())
-
-
-def _name(motion: GroundMotion) -> str:
-    stated = None if motion.metadata is None else motion.metadata.component
-    return stated or motion.name
-
-
-def _listed(found: list[GroundMotion]) -> str:
-    return ", ".join(f"{shown(_name(motion))}{' (vertical)' * is_vertical(motion)}" for motion in found)
 
 
 def _warn(file: Path, motion: GroundMotion) -> None:
