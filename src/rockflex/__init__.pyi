@@ -164,3 +164,9 @@ from .study.stripes import StripeStudy as StripeStudy
 from .study.stripes import stripe_counts as stripe_counts
 
 __version__: str
+from .motion import RecordSurvey as RecordSurvey
+from .motion import StationRecord as StationRecord
+from .motion import SurveyEntry as SurveyEntry
+from .motion import group_stations as group_stations
+from .motion import read_components as read_components
+from .motion import survey_records as survey_records

@@ -32,4 +32,4 @@ class SolverError(RuntimeError):
 
 
 class RecordWarning(UserWarning):
-    """Record files were left out of a suite; the message lists them with the reasons."""
+    """Records were left out of a suite, or a header contradicts its samples; the message says which, and why."""

@@ -81,11 +81,13 @@ HOME = {
     "starlette": {"web"},
     "uvicorn": {"web"},
     "tomli_w": {"web"},
+    "obspy": {"motion"},
+    "openpyxl": {"motion"},
 }
-NEVER_AT_IMPORT = {"pandas"}  # only inside functions, or for the type checker
+NEVER_AT_IMPORT = {"pandas", "obspy", "openpyxl"}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
-    *("distributed", "jinja2", "starlette", "uvicorn"),
+    *("distributed", "jinja2", "starlette", "uvicorn", "obspy", "openpyxl"),
 }  # by `import rockflex`
 LONGEST = 300  # lines
 

@@ -3,7 +3,7 @@ import pytest
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.motion import read_motion
+from rockflex.motion import read_components, read_motion
 
 VALUES = np.array([0.001, -0.02, 0.3, 0.0, 0.125])
 
@@ -114,7 +114,7 @@ def rows(*lines):
         (rows("0,1", "0.1,", "0.2,3"), "line 2: expected 2 columns as in line 1, but found 1"),
         (rows("0 1", "0.1 2 3", "0.2 3"), "line 2: expected 2 columns as in line 1, but found 3"),
         (rows("0 1", "0.1 2", "", "end"), "line 4: expected 2 columns"),
-        (rows("0;0,1", "0,1;0,2", "0,2;1"), "line 1: expected .* found '0,1'. Write decimals with a point"),
+        (rows("0 0.1", "0,1 0.2", "0.2 1"), "line 1: '0.1' has a decimal point, but other numbers have decimal commas"),
         (rows("0.O 1", "0.1 2", "0.2 3", "0.3 4"), "line 1: expected a finite number, but found '0.O'"),
         (rows("1x", "2", "3", "4"), "line 1: expected a finite number, but found '1x'"),
         (
@@ -125,7 +125,8 @@ def rows(*lines):
         (rows("0 1", "0.1 2", "0.05 3"), "line 3: time must increase"),
         (rows("0 1", "0.1 2"), "has 2 samples, but a record needs at least 3"),
         (rows("0 1 2", "1 1 2", "2 1 2"), "has 3 columns, and its header does not name one as time"),
-        (rows("t,acc x,acc y", "0,1,2", "1,1,2", "2,1,2"), "exactly one as acceleration"),
+        (rows("t,acc,acc", "0,1,2", "1,1,2", "2,1,2"), 'at least one as acceleration .* "acc NS \\(g\\), acc EW'),
+        (rows("t,acc x,acc y", "0,1,2", "1,1,2", "2,1,2"), r"holds 2 components: 'x', 'y'\. Name one: .*component='x'"),
         (rows("t,vel", "0,1", "1,1", "2,2"), "an acceleration is expected, but the column is labelled 'vel'"),
         (rows("t (ms),acc", "0,1", "1,1", "2,2"), "times are in 'ms', but seconds are expected"),
         (rows("no", "numbers"), "holds no numbers"),
@@ -146,8 +147,8 @@ def test_the_unit_is_never_guessed(tmp_path):
         read_motion(write(tmp_path, table(",", "time,acc (ft/s2)\n")), units="g")
     with pytest.raises(InputError, match="column header says g, but units='m/s2' was given"):
         read_motion(write(tmp_path, table(",", "time,acc (g)\n")), units="m/s2")
-    with pytest.raises(InputError, match="units must be one of 'g', 'm/s2', 'cm/s2', but 'gal' was given"):
-        read_motion(write(tmp_path, table()), units="gal")
+    with pytest.raises(InputError, match=r"units must be one of 'g', .*'in/s2', but 'ft/s2' was given"):
+        read_motion(write(tmp_path, table()), units="ft/s2")
 
 
 @pytest.mark.parametrize("dt", [0, -0.01, float("nan")])
@@ -177,3 +178,114 @@ def test_binary_file(tmp_path):
     path.write_bytes(bytes(range(256)))
     with pytest.raises(InputError, match="is a binary file; a record is expected as text"):
         read_motion(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0,00;0,001\n0,01;-0,02\n0,02;0,3\n0,03;0\n0,04;1,25E-1\n",
+        "Zeit (s);Beschleunigung\n0,00;0,001\n0,01;-0,02\n0,02;0,3\n0,03;0\n0,04;0,125\n",
+        "0,00\t0,001\n0,01\t-0,02\n0,02\t0,3\n0,03\t0\n0,04\t0,125\n",
+        "0,00 0,001\n0,01 -0,02\n0,02 0,3\n0,03 0\n0,04 0,125\n",
+        "0 0,001\n0,01 -0,02\n0,02 0,3\n0,03 0\n0,04 0,125\n",
+        "0 0\n0,01 -0,02\n0,02 0,3\n0,03 0\n0,04 0,125\n".replace("0 0\n", "0 0,001\n"),
+    ],
+)
+def test_decimal_commas(tmp_path, text):
+    motion = read_motion(write(tmp_path, text), units="g")
+    assert motion.dt == 0.01
+    assert motion.acceleration == pytest.approx(VALUES * GRAVITY, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["0,001\n-0,02\n0,3\n0,0\n0,125\n", "0\n0,5\n-0,25\n"])
+def test_a_single_column_with_decimal_commas(tmp_path, text):
+    expected = [float(line.replace(",", ".")) for line in text.split()]
+    assert read_motion(write(tmp_path, text), units="m/s2", dt=0.01).acceleration.tolist() == expected
+
+
+def test_whole_times_that_increase_are_a_column_of_their_own(tmp_path):
+    motion = read_motion(write(tmp_path, "0,12\n1,25\n2,9\n3,0\n"), units="m/s2")
+    assert (motion.dt, motion.acceleration.tolist()) == (1.0, [12.0, 25.0, 9.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("0,00;0.001\n0,01;-0,02\n0,02;0,3\n", r"line 1: '0\.001' has a decimal point, but other numbers have decimal"),
+        ("0,00;1.000,5\n0,01;-0,02\n0,02;0,3\n", r"line 1: expected a finite number, but found '1\.000,5'"),
+        ("0,00;1,0,5\n0,01;-0,02\n0,02;0,3\n", r"line 1: expected a finite number, but found '1,0,5'"),
+    ],
+)
+def test_decimal_marks_are_not_mixed(tmp_path, text, message):
+    with pytest.raises(InputError, match=message):
+        read_motion(write(tmp_path, text), units="m/s2")
+
+
+def test_labels_between_tabs_may_hold_blanks(tmp_path):
+    motion = read_motion(write(tmp_path, "Time of day (s)\tacceleration of table [g]\n0\t0\n0.1\t0.5\n0.2\t0\n"))
+    assert (motion.pga, motion.dt) == (0.5 * GRAVITY, 0.1)
+
+
+@pytest.mark.parametrize("line", ["units: cm/s^2", "# Units = gal", "% made by hand; unit: (cm/s/s)"])
+def test_units_from_a_line_above(tmp_path, line):
+    assert read_motion(write(tmp_path, table(",", f"{line}\ntime,acc\n"))).pga == pytest.approx(0.003)
+    with pytest.raises(InputError, match="the header says cm/s2, but units='g' was given"):
+        read_motion(write(tmp_path, table(",", f"{line}\n")), units="g")
+    with pytest.raises(InputError, match="the header gives the unit 'counts', which is not known"):
+        read_motion(write(tmp_path, table(",", "units: counts\n")))
+    assert read_motion(write(tmp_path, table(",", f"{line}\ntime,acc (g)\n"))).pga == 0.3 * GRAVITY
+
+
+def test_the_step_from_a_line_above(tmp_path):
+    file = write(tmp_path, "# dt = 0.005 s\nacc (g)\n0\n0.1\n0\n")
+    assert read_motion(file).dt == 0.005
+    assert read_motion(file, dt=0.005).dt == 0.005
+    with pytest.raises(InputError, match=r"states DT = 0\.005 s, but dt=0\.01 was given\. Leave dt out"):
+        read_motion(file, dt=0.01)
+
+
+@pytest.mark.parametrize(
+    ("units", "factor"),
+    [
+        ("gal", 0.01),
+        ("mg", 1e-3 * GRAVITY),
+        ("mm/s^2", 1e-3),
+        ("in/s2", 0.0254),
+        ("2.5e-1 cm/s2", 0.0025),
+        (" 0.5 * g ", 0.5 * GRAVITY),
+        ("1 m/s/s", 1.0),
+    ],
+)
+def test_units_of_the_caller(tmp_path, units, factor):
+    motion = read_motion(write(tmp_path, table()), units=units)
+    assert motion.acceleration == pytest.approx(VALUES * factor, rel=1e-14)
+
+
+@pytest.mark.parametrize("units", ["", "counts", "0 g", "-1 g", "1e999 g", "g g", "2", 2, None.__class__, "x" * 10_000])
+def test_units_that_are_none(tmp_path, units):
+    with pytest.raises(InputError, match=r'units must be one of .* one count is: units="2\.4e-4 cm/s2"'):
+        read_motion(write(tmp_path, table()), units=units)
+
+
+def test_components_in_columns(tmp_path):
+    text = "time (s),acc_N38E (g),acc S52E (g),vertical (g)\n" + "".join(f"{k},{k},{2 * k},3\n" for k in range(3))
+    found = read_components(write(tmp_path, text))
+    assert [motion.name for motion in found] == ["record-N38E", "record-S52E", "record-vertical"]
+    assert [motion.metadata.azimuth for motion in found] == [38.0, 128.0, None]
+    assert [motion.metadata.direction for motion in found] == ["horizontal", "horizontal", "vertical"]
+    assert read_motion(tmp_path / "record.txt", component="128").pga == 4 * GRAVITY
+    plain = "NS (gal);EW (gal);Z (gal)\n" + "1;2;3\n" * 4
+    found = read_components(write(tmp_path, plain), dt=0.01)
+    assert [motion.pga for motion in found] == pytest.approx([0.01, 0.02, 0.03])
+    assert found[2].metadata.direction == "vertical"
+    with pytest.raises(InputError, match="has 3 columns and no times: give the sampling step"):
+        read_components(tmp_path / "record.txt")
+    with pytest.raises(InputError, match="has 4 columns, and its header does not name one as time"):
+        read_components(write(tmp_path, "t,NS,EW,what\n" + "1,2,3,4\n" * 4))
+
+
+@pytest.mark.parametrize(
+    "head", ["Zeit [s];Weg [mm];Beschleunigung [gal]", "temps (s);u;accélération (gal)", "tiempo;d;aceleración (gal)"]
+)
+def test_labels_in_other_languages(tmp_path, head):
+    assert read_motion(write(tmp_path, f"{head}\n0;9;1\n0,1;9;2\n0,2;9;3\n")).pga == pytest.approx(0.03)

@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+from record_samples import cosmos, knet
+
 SIZE = 400_000  # characters; a quadratic pattern takes many minutes
 PATIENCE = 60.0  # s for all, where some are needed
 READ = """
@@ -24,6 +26,8 @@ for kind, text in texts.items():
 """
 ROWS = "\\n0 .1\\n0.01 .2\\n0.02 .3\\n"
 SERIES = "\\n0.1\\n0.2\\n0.3\\n"
+KNET = knet().splitlines()[:17]
+COSMOS = cosmos()
 HEADER = "NPTS= 3, DT= .01 SEC"
 CRAFTED = {
     "digits": f"'1' * {SIZE} + 'x'",
@@ -56,6 +60,21 @@ CRAFTED = {
     "component of brackets": f"'E, 1/2/1999, A ' + '(' * {SIZE} + '\\n{HEADER}{SERIES}'",
     "values of many digits": f"'{HEADER}\\n0.1\\n0.2\\n0.3' + '1' * {SIZE} + 'x\\n'",
     "values run together": f"'{HEADER}\\n' + '1-' * {SIZE // 2} + 'x\\n'",
+    "decimal commas": f"'0,1;' * {SIZE // 4} + '\\n'",
+    "commas of one column": f"'0,' + '1' * {SIZE} + '\\n0,1\\n0,' + '2' * {SIZE} + 'x'",
+    "unit of blanks": f"'units: ' + ' ' * {SIZE} + '{ROWS}'",
+    "units again and again": f"'unit: ( ' * {SIZE // 8} + '{ROWS}'",
+    "step of digits": f"'dt = ' + '1' * {SIZE} + ' x{SERIES}'",
+    "steps again and again": f"'dt = 1' * {SIZE // 6} + '{SERIES}'",
+    "scale of digits": f"{KNET!r}[0] + '\\n' + ('Scale Factor      ' + '1' * {SIZE} + '(gal)/1\\n') * 16 + '1 2 3'",
+    "scale of blanks": f"'\\n'.join({KNET!r}).replace('(gal)/', ' ' * {SIZE}) + '\\n1 2 3'",
+    "keys": f"'EVENT_NAME:\\n' + 'A' * {SIZE} + '\\n' + 'A:' * {SIZE // 2} + '\\n1'",
+    "lines of text": f"{COSMOS!r}.replace('v01.20', 'v' + '1' * {SIZE})",
+    "blanks of a format": f"{COSMOS!r}.replace('Format=', 'Format' + ' ' * {SIZE})",
+    "numbers of a block": f"{COSMOS!r} + '\\n' + '9' * {SIZE} + ' acceleration\\n' + ' ' * {SIZE} + '1 '",
+    "columns of a format": f"{COSMOS!r} + '\\n999999999 velocity pts, Format=(999F999.1)\\n'",
+    "codes": f"{COSMOS!r}.replace('Code:', 'Code:' * {SIZE // 5})",
+    "labels of a table": f"'file,units' + ',m' * {SIZE // 2} + '{ROWS}'",
     "numbers with a comma": f"'{HEADER}\\n' + '1' * {SIZE // 2} + ',x' + '1' * {SIZE // 2} + '\\n'",
 }
 

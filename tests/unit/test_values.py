@@ -70,6 +70,11 @@ def law_of_two() -> rf.AnnualRate:
     return rf.annual_rate(rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]), rf.LognormalFragility(0.5, 0.4))
 
 
+def survey() -> rf.RecordSurvey:
+    entry = rf.SurveyEntry(file="a.csv", taken=True, reason="", name="a", pga=2.5)
+    return rf.RecordSurvey("folder", (entry,), (motion(),), rf.group_stations([motion()]))
+
+
 def best() -> rf.BestDesign:
     search, targets, cost = (
         rf.DesignSearch([0.5, 1.0], refinements=0),
@@ -128,7 +133,8 @@ VALUES = {
     rf.Pivot: lambda: rf.Eccentric(frame(), 0.1).rocking().pivot(-1),
     rf.PopulationStatistics: statistics,
     rf.Progress: lambda: rf.Progress(3, 2, 1, 64),
-    rf.RecordInfo: lambda: rf.RecordInfo(event="none"),
+    rf.RecordInfo: lambda: rf.RecordInfo(event="none", azimuth=90.0),
+    rf.RecordSurvey: survey,
     rf.Requirement: lambda: rf.Requirement(0.02, 0.1, hazard=rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4])),
     rf.Response: response,
     rf.Restitution: lambda: rf.Restitution(0.5),
@@ -137,7 +143,9 @@ VALUES = {
     rf.RockingProperties: lambda: rf.Restrained(frame(), tendons()).rocking(),
     rf.SecondMode: lambda: rf.modal_combination(frame(), motion()).second,
     rf.Springs: lambda: rf.winkler_bed(2.0, 3.0, 4e7, n=5),
+    rf.StationRecord: lambda: rf.StationRecord("A", (motion(),), motion().vertical_motion),
     rf.Suite: lambda: rf.Suite([motion(), dataclasses.replace(motion(), name="other")], "two"),
+    rf.SurveyEntry: lambda: survey().entries[0],
     rf.TaperedTower: lambda: rf.TaperedTower(200, 8, 4, 1, 2400, 25e9, 0.02),
     rf.Tendon: lambda: tendons()[0],
     rf.TendonLevel: lambda: rf.TendonLevel(0.5, 0.5),

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
+from record_samples import cosmos, esm, knet
 from rockflex.web._download import download
 from rockflex.web._records import record_view
 from rockflex.web._refusal import Refusal
@@ -65,6 +66,20 @@ def test_a_column_may_be_vertical_and_comes_back(client, tmp_path) -> None:
     assert rf.read_motion(tmp_path / name).vertical.tolist() == [0.0, 0.5, 0.0]
     told = record_view(state, None, uploads)["measures"]
     assert [each["value"] for each in told if each["name"] in ("PVA", "PVA/PGA")] == [0.5, 0.5]
+
+
+def test_files_of_networks() -> None:
+    east = read_record("MYG0020601182325.EW", knet("E-W").encode(), None, None)
+    assert (east.name, east.metadata.source_format, east.metadata.direction) == (
+        "MYG0020601182325",
+        "K-NET",
+        "horizontal",
+    )
+    up = read_vertical("MYG0020601182325.UD", knet("U-D").encode(), None, None, east)
+    assert np.array_equal(up.vertical, east.acceleration)
+    assert read_record("a.asc", esm().encode(), None, None).pga == 0.12125
+    said = refusal(read_record, "a.v2c", (cosmos(90) + cosmos(180)).encode(), None, None)
+    assert said == "a.v2c holds 2 components: '090', '180'. Choose a file with a single one."
 
 
 def test_a_name_with_folders_is_no_path(tmp_path) -> None:

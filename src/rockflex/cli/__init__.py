@@ -1,4 +1,4 @@
-"""The command line: ``rockflex run``, ``rockflex modes`` and ``rockflex motion``.
+"""The command line: ``rockflex run``, ``rockflex motion``, ``rockflex survey`` and others.
 
 Importing this package imports no numerical library; every command imports what it needs when it runs.
 """

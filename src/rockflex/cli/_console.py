@@ -32,13 +32,19 @@ def note(message: str) -> None:
 
 @contextmanager
 def remarks() -> Generator[None]:
-    """Print each warning about skipped records once, as a remark."""
+    """Print each warning about records once, as a remark."""
+    told: set[str] = set()
     with warnings.catch_warnings():
         warnings.simplefilter("default", RecordWarning)
         elsewhere = warnings.showwarning
 
         def tell(message: Warning | str, category: type[Warning], *where: Any) -> None:
-            note(str(message)) if issubclass(category, RecordWarning) else elsewhere(message, category, *where)
+            if not issubclass(category, RecordWarning):
+                elsewhere(message, category, *where)
+            elif str(message) not in told:
+                # Python itself forgets what it told whenever its filters change.
+                told.add(str(message))
+                note(str(message))
 
         warnings.showwarning = tell
         yield

@@ -99,7 +99,11 @@ def _units() -> dict[str, str]:
         "sa_vertical_*": "m/s², at the period in s",
         "v_h_*": "",
         "metadata.distance_km": "km",
+        "metadata.distance_jb_km": "km",
+        "metadata.epicentral_km": "km",
         "metadata.vs30": "m/s",
+        "metadata.azimuth": "degrees from north",
+        "metadata.stated_pga": "m/s²",
     }
 
 

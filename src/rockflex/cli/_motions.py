@@ -108,7 +108,7 @@ def find_motions(
     for name in names:
         suite, _, record = name.partition("/")
         if name in files:
-            motions = [read[file] for file in files[name] if file in read]
+            motions = [motion for file in files[name] for motion in read.get(file, [])]
         else:
             motions = list(load_suite(suite)) if name == suite else [load_suite(suite)[record]]
         for motion in motions:
@@ -181,7 +181,7 @@ def _files(name: str) -> list[Path]:
 
 def _read(
     files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError, pair: Vertical | None
-) -> dict[Path, GroundMotion]:
+) -> dict[Path, list[GroundMotion]]:
     with _naming_flags():
         return read_files(files, units, dt, on_error, pair, skip="--on-error skip")
 

@@ -35,7 +35,7 @@ Units = Annotated[
     typer.Option(
         "--units",
         metavar="g|m/s2|cm/s2",
-        help="Unit of the acceleration, if a file has none.",
+        help="Unit of the acceleration, if a file has none; or what one count is, such as '2.4e-4 cm/s2'.",
         rich_help_panel=RECORD_FILES,
     ),
 ]

@@ -3,6 +3,7 @@
 from rockflex.motion._at2 import read_at2
 from rockflex.motion._direction import check_horizontal, direction_of, is_vertical
 from rockflex.motion._embedded import load_suite, suite_names
+from rockflex.motion._folder import folder_files
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._measure import Measure
 from rockflex.motion._measures import MEASURES, intensities, intensity, record_measures, vertical_measures
@@ -14,11 +15,13 @@ from rockflex.motion._pulses import (
     rectangular_pulse,
     ricker_pulse,
 )
-from rockflex.motion._read_suite import OnError, Vertical, folder_files, read_files, read_suite
-from rockflex.motion._readers import read_motion
+from rockflex.motion._read_suite import OnError, Vertical, read_files, read_suite
+from rockflex.motion._readers import read_components, read_motion, read_plain
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._shaking import Shaking
+from rockflex.motion._stations import StationRecord, group_stations
 from rockflex.motion._suite import Suite
+from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_records
 from rockflex.motion._velocity_pulse import mavroeidis_papageorgiou_pulse
 
 __all__ = [
@@ -27,12 +30,16 @@ __all__ = [
     "Measure",
     "OnError",
     "RecordInfo",
+    "RecordSurvey",
     "Shaking",
+    "StationRecord",
     "Suite",
+    "SurveyEntry",
     "Vertical",
     "check_horizontal",
     "direction_of",
     "folder_files",
+    "group_stations",
     "half_sine_pulse",
     "intensities",
     "intensity",
@@ -43,12 +50,15 @@ __all__ = [
     "one_sine_pulse",
     "quiet_motion",
     "read_at2",
+    "read_components",
     "read_files",
     "read_motion",
+    "read_plain",
     "read_suite",
     "record_measures",
     "rectangular_pulse",
     "ricker_pulse",
     "suite_names",
+    "survey_records",
     "vertical_measures",
 ]

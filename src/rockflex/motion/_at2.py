@@ -7,10 +7,11 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import path_of
-from rockflex.motion._direction import direction_of
+from rockflex.motion._direction import azimuth_of, direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._text import DECIMAL, build_motion, number, read_lines
+from rockflex.motion._units import Unit
 
 HEADER_LINES = 12
 _DIGITS = 18  # of NPTS that are read; no file has more samples
@@ -108,7 +109,7 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
         "AT2 files are in g by definition: save only the values as a text file and declare their unit, "
         f'read_motion(path, units="m/s2", dt={dt:g}).'
     )
-    return build_motion(file, values, "g", dt, _info(file, lines[: start - 1]), remedy)
+    return build_motion(file, values, Unit("g"), dt, _info(file, lines[: start - 1]), remedy)
 
 
 def _values(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
@@ -152,7 +153,9 @@ def _info(file: Path, header: list[str]) -> RecordInfo:
                 station=", ".join(rest[:-1]) or None,
                 component=component or None,
                 direction=direction_of(file, component),
+                azimuth=azimuth_of(component),
                 source=line.strip(),
                 rsn=rsn,
+                source_format="AT2",
             )
-    return RecordInfo(source=file.name, rsn=rsn, direction=direction_of(file))
+    return RecordInfo(source=file.name, rsn=rsn, direction=direction_of(file), source_format="AT2")

@@ -1,6 +1,7 @@
-"""Records as columns of numbers: CSV and plain text."""
+"""Records as columns of numbers: which is the time, which are accelerations, and in what unit."""
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -8,110 +9,100 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion._direction import direction_of
+from rockflex.motion._direction import azimuth_of, direction_of, is_horizontal_name, told_apart
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._table import BRACKET, TIME, Table, after_brackets
 from rockflex.motion._text import DECIMAL, acceleration_of, build_motion, number
+from rockflex.motion._units import Unit, spelled
 
-SPELLING = re.compile(r"g|gals?|(c?m)(?:s-2|/(s|sec)(?:2|/\2))")  # with g, m or cm, and gal for cm/s²
 SECONDS = ("s", "sec", "secs", "second", "seconds")
 UPWARDS = re.compile(
-    r"(?:acc[a-z]*+[\s_-]++)?(?:ver|vert|vertical|up|ud)(?![a-z])|acc[a-z]*+[\s_-]++[vz](?![a-z])", re.I
+    r"(?:acc[a-z]*+[\s_-]++)?(?:ver|vert|vertical|up|ud|u-d)(?![a-z])|acc[a-z]*+[\s_-]++[vz](?![a-z])", re.I
 )
-BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
+ACCELERATION = re.compile(r"(?:acc|acel|beschl)[^\W\d_]*+\.?", re.IGNORECASE)
+STATED = re.compile(r"\bunits?\s*+[:=]\s*+\(?([^\s,;()]++)", re.IGNORECASE)
+STEP = re.compile(rf"\bdt\s*+[:=]\s*+({DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
+REMEDY = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
 
 
-def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | None) -> GroundMotion:
-    """Build the motion from rows of numbers."""
-    labels, rows = _split(file, lines)
-    n_columns = len(rows[0][1])
-    time_column, column = _choose(file, labels, n_columns)
-    stated = _stated_unit(file, labels[column] if labels else "", units)
-    values = np.array([number(cells[column], file, line) for line, cells in rows])
-    if time_column is None:
-        if dt is None:
-            raise InputError(
-                f"{file} has one column and no times: give the sampling step, read_motion(path, dt=0.01).", field="dt"
-            )
-        step = dt
-    else:
-        if labels:
-            _check_seconds(file, labels[time_column])
-        times = np.array([number(cells[time_column], file, line) for line, cells in rows])
-        step = _step(file, times, [line for line, _ in rows], dt)
-    remedy = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
+@dataclass(frozen=True)
+class Chosen:
+    """The columns of a table: of times (None if there is none), of accelerations, of the vertical one beside them."""
+
+    time: int | None
+    along: tuple[int, ...]
+    upwards: int | None
+
+
+def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None, name: str) -> list[GroundMotion]:
+    """Build the motions from rows of numbers; of several accelerations, each is a motion, the vertical one too."""
+    chosen = _choose(file, table.labels, len(table.rows[0][1]))
+    places = [*chosen.along, *([] if chosen.upwards is None else [chosen.upwards])]
+    stated = {k: _stated_unit(file, table, k, units) for k in places}
+    values = {k: _column(file, table, k) for k in places}
+    step = _time_step(file, table, chosen.time, dt)
+    if len(chosen.along) == 1:
+        return [_single(file, table.labels, chosen, stated, values, step, name)]
+    names = [_component(table.labels[k]) or str(k + 1) for k in places]
+    motions: list[GroundMotion] = []
+    for k, component, apart in zip(places, names, told_apart(names), strict=True):
+        info = RecordInfo(
+            source=file.name,
+            component=component,
+            direction="vertical" if k == chosen.upwards else "horizontal",
+            azimuth=None if k == chosen.upwards else azimuth_of(component),
+            source_format="columns",
+        )
+        motions.append(build_motion(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
+    return motions
+
+
+def _single(
+    file: Path,
+    labels: list[str],
+    chosen: Chosen,
+    stated: dict[int, Unit],
+    values: dict[int, Array],
+    step: float,
+    name: str,
+) -> GroundMotion:
+    """Build the motion from the only horizontal column, with the vertical one."""
+    column, upwards = chosen.along[0], chosen.upwards
     alone = bool(labels) and UPWARDS.match(labels[column])
-    info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file))
-    motion = build_motion(file, values, stated, step, info, remedy)
-    upwards = _vertical_column(file, labels)
+    info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file), source_format="columns")
+    motion = build_motion(file, values[column], stated[column], step, info, REMEDY, name)
     if upwards is None:
         return motion
-    stated = _stated_unit(file, labels[upwards], units)
-    values = np.array([number(cells[upwards], file, line) for line, cells in rows])
-    return motion.with_vertical(acceleration_of(file, values, stated, remedy))
+    return motion.with_vertical(acceleration_of(file, values[upwards], stated[upwards], REMEDY))
 
 
-def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return the column labels (empty if there are none) and the numbered rows of cells."""
-    rows: list[tuple[int, list[str]]] = []
-    heads: list[str] = []
-    plain: list[tuple[int, str]] = []  # header lines that are not comments
-    separator: str | None = None
-    for i, line in enumerate(lines, 1):
-        content = re.split("[#%!]", line, maxsplit=1)[0].strip()
-        if not rows:
-            if not content or not _is_number(re.split(r"[;,\s]", content, maxsplit=1)[0]):
-                heads.append(line.strip().lstrip("#%! \t"))
-                plain.append((i, content))
-                continue
-            separator = next((mark for mark in (";", ",") if mark in content), None)
-        if not content:
-            continue
-        cells = [cell.strip() for cell in content.split(separator)]
-        if separator and cells[-1] == "":
-            cells.pop()
-        if rows and len(cells) != len(rows[0][1]):
-            raise InputError(
-                f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, but found {len(cells)}."
-            )
-        rows.append((i, cells))
-    if not rows:
-        raise InputError(f"{file} holds no numbers: a record is expected as AT2, CSV or columns of text.")
-    for i, content in plain:
-        cells = _labels(content, separator)
-        # A row of numbers with a typing error is not a header, and must not be skipped.
-        if len(cells) == len(rows[0][1]) and any(re.match(r"[+-]?\.?\d", cell) for cell in cells):
-            number(next(cell for cell in cells if not _is_number(cell)), file, i)
-    for head in reversed(heads):
-        labels = _labels(head, separator)
-        if len(labels) == len(rows[0][1]) and any(re.search("[a-zA-Z]", label) for label in labels):
-            return labels, rows
-    return [], rows
+def _column(file: Path, table: Table, k: int) -> Array:
+    return np.array([number(cells[k], file, line) for line, cells in table.rows])
 
 
-def _labels(head: str, separator: str | None) -> list[str]:
-    if separator is None:
-        # There may be a blank between a label and its unit in brackets, and inside the unit.
-        end = _after_brackets(head)
-        head = BRACKET.sub(lambda unit: unit[0].replace(" ", ""), head[:end]) + head[end:]
-        head = re.sub(r"(?<!\s)\s++(?=[(\[])", "", head)
-        return re.split(r"[;,\s]\s*", head)
-    cells = [cell.strip().strip('"') for cell in head.split(separator)]
-    return cells[:-1] if cells[-1] == "" else cells
+def _component(label: str) -> str:
+    """Return what a label says besides acceleration and unit."""
+    return ACCELERATION.sub(
+        "", BRACKET.sub("", label[: after_brackets(label)]) + label[after_brackets(label) :], 1
+    ).strip(" _-.")
 
 
-def _after_brackets(text: str) -> int:
-    """Return the end of the last closing bracket, so that no regular expression searches beyond it in vain."""
-    return max(text.rfind(")"), text.rfind("]")) + 1
-
-
-def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, int]:
-    """Return the columns of time (None if there is none) and acceleration."""
-    times = [i for i, label in enumerate(labels) if re.match(r"t(ime)?\b", label, re.IGNORECASE)]
+def _choose(file: Path, labels: list[str], n_columns: int) -> Chosen:
+    """Return which columns are which."""
+    times = [i for i, label in enumerate(labels) if TIME.match(label)]
     upwards = _vertical_columns(labels)
-    accelerations = [i for i, label in enumerate(labels) if re.match("acc", label, re.I) and i not in upwards]
-    if len(accelerations) == 1 and len(times) == 1:
-        return times[0], accelerations[0]
+    others = [i for i in range(len(labels)) if i not in (*times, *upwards)]
+    along = [i for i in others if ACCELERATION.match(labels[i])]
+    if not along and len(labels) > 2:
+        along, alone = _by_names(labels, others)
+        upwards = [*upwards, *alone]
+    vertical = _vertical_column(file, labels, upwards)
+    if len(along) == 1 and len(times) == 1:
+        return Chosen(times[0], (along[0],), vertical)
+    names = {_component(labels[i]) for i in along} - {""}
+    if len(along) > 1 and len(times) <= 1 and len(names) == len(along):
+        return Chosen(times[0] if times else None, tuple(along), vertical)
     if n_columns <= 2:
         time = None if n_columns == 1 else 1 if times == [1] else 0
         column = 1 if time == 0 else 0
@@ -119,12 +110,19 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> tuple[int | None, 
             raise InputError(
                 f"{file}: an acceleration is expected, but the column is labelled {shown(labels[column])}."
             )
-        return time, column
+        return Chosen(time, (column,), None)
     raise InputError(
-        f"{file} has {n_columns} columns, and its header does not name one as time and exactly one as "
+        f"{file} has {n_columns} columns, and its header does not name one as time and at least one as "
         'acceleration ("time (s), acc (g), ..."). Keep the columns time and acceleration; a vertical one may be '
-        'added as "vertical (g)".'
+        'added as "vertical (g)", and further horizontal ones with names of their own, "acc NS (g), acc EW (g)".'
     )
+
+
+def _by_names(labels: list[str], others: list[int]) -> tuple[list[int], list[int]]:
+    """Return the horizontal and the vertical columns if the labels only name components: NS (gal), Z (gal)."""
+    upwards = [i for i in others if _component(labels[i]).upper() in ("Z", "V")]
+    along = [i for i in others if i not in upwards]
+    return (along, upwards) if all(is_horizontal_name(_component(labels[i])) for i in along) else ([], [])
 
 
 def _vertical_columns(labels: list[str]) -> list[int]:
@@ -132,33 +130,37 @@ def _vertical_columns(labels: list[str]) -> list[int]:
     return [i for i, label in enumerate(labels) if UPWARDS.match(label)] if len(labels) > 2 else []
 
 
-def _vertical_column(file: Path, labels: list[str]) -> int | None:
-    found = _vertical_columns(labels)
+def _vertical_column(file: Path, labels: list[str], found: list[int]) -> int | None:
     if len(found) > 1:
         names = ", ".join(shown(labels[i]) for i in found)
         raise InputError(f"{file}: the header names {len(found)} columns as vertical, {names}. Keep one of them.")
     return found[0] if found else None
 
 
-def _stated_unit(file: Path, label: str, units: str | None) -> str:
-    """Return the unit stated by the label or the caller; both must agree."""
-    bracket = BRACKET.search(label, 0, _after_brackets(label))
+def _stated_unit(file: Path, table: Table, k: int, units: Unit | None) -> Unit:
+    """Return the unit stated by the label, a line above it, or the caller; they must agree."""
+    label = table.labels[k] if table.labels else ""
+    bracket = BRACKET.search(label, 0, after_brackets(label))
     written = bracket[1] if bracket else ""
-    plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-"))
-    spelling = SPELLING.fullmatch(plain)
-    stated = spelling and ("g" if plain == "g" else f"{spelling[1] or 'cm'}/s2")
+    where = "column header"
+    if not written:
+        found = next((each for head in table.heads if (each := STATED.search(head[:500]))), None)
+        written, where = (found[1] if found else ""), "header"
+    stated = spelled(written)
     if written and stated is None:
         raise InputError(
-            f"{file}: the column header gives the unit {shown(written)}, which is not known. "
+            f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
             "Write it as g, m/s2 or cm/s2, and convert the values if necessary."
         )
-    if stated and units and stated != units:
+    if stated and units and Unit(stated) != units:
         raise InputError(
-            f"{file}: the column header says {stated}, but units={shown(units)} was given. Leave units out.",
+            f"{file}: the {where} says {stated}, but units={shown(str(units))} was given. Leave units out.",
             field="units",
         )
-    if stated or units:
-        return stated or str(units)
+    if stated:
+        return Unit(stated)
+    if units:
+        return units
     raise InputError(
         f"{file} does not state the unit of its acceleration. Declare it: "
         'read_motion(path, units="g"), "m/s2" or "cm/s2"; or label the column "acc (g)".',
@@ -166,8 +168,30 @@ def _stated_unit(file: Path, label: str, units: str | None) -> str:
     )
 
 
+def _time_step(file: Path, table: Table, column: int | None, dt: float | None) -> float:
+    """Return the time step in s, from the column of times, the caller or the header."""
+    if column is None:
+        found = next((each for head in table.heads if (each := STEP.search(head[:500]))), None)
+        stated = None if found is None else number(found[1], file, 1)
+        if stated and stated > 0.0 and dt in (None, stated):
+            return stated
+        if stated and stated > 0.0:
+            raise InputError(
+                f"{file} states DT = {stated:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt"
+            )
+        if dt is None:
+            columns = "one column" if len(table.rows[0][1]) == 1 else f"{len(table.rows[0][1])} columns"
+            raise InputError(
+                f"{file} has {columns} and no times: give the sampling step, read_motion(path, dt=0.01).", field="dt"
+            )
+        return dt
+    if table.labels:
+        _check_seconds(file, table.labels[column])
+    return _step(file, _column(file, table, column), [line for line, _ in table.rows], dt)
+
+
 def _check_seconds(file: Path, label: str) -> None:
-    bracket = BRACKET.search(label, 0, _after_brackets(label))
+    bracket = BRACKET.search(label, 0, after_brackets(label))
     if bracket and bracket[1].strip().lower() not in SECONDS:
         raise InputError(
             f"{file}: the times are in {shown(bracket[1])}, but seconds are expected. Convert the column to s."
@@ -206,7 +230,3 @@ def _step(file: Path, times: Array, lines: list[int], dt: float | None) -> float
         )
     # The mean is better than one printed difference; twelve digits remove the rounding of the subtraction.
     return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
-
-
-def _is_number(token: str) -> bool:
-    return bool(DECIMAL.fullmatch(token)) or token.lower() in ("nan", "inf", "-inf")

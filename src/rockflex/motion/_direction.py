@@ -12,8 +12,16 @@ Direction = Literal["horizontal", "vertical", "down"]
 CHANNEL = "[A-Z][HLNG]"  # band and instrument codes of a seismological channel; the third letter is the direction
 APART = "-_. "  # between the station and the component in the name of a file
 DOWN = "DN|DWN|DOWN"  # positive downwards
-UPRIGHT = f"UP|UD|VER|VRT|VERT|VERTICAL|{CHANNEL}Z|{DOWN}"
-COMPASS = "[NSEW]|NS|EW|NORTH|SOUTH|EAST|WEST|SOU|EAS"
+UPRIGHT = f"UP|UD|U-D|VER|VRT|VERT|VERTICAL|{CHANNEL}Z|{DOWN}"
+COMPASS = "[NSEW]|NS|EW|N-S|E-W|NORTH|SOUTH|EAST|WEST|SOU|EAS"
+# Directions in which a component is positive, in degrees from north.
+AZIMUTHS = {
+    **dict.fromkeys(("N", "NS", "N-S", "NORTH"), 0.0),
+    **dict.fromkeys(("E", "EW", "E-W", "EAST"), 90.0),
+    **dict.fromkeys(("S", "SOUTH"), 180.0),
+    **dict.fromkeys(("W", "WEST"), 270.0),
+}
+BEARING = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d+)?)\s*([EW])", re.IGNORECASE)
 VERTICAL = re.compile(rf"{UPRIGHT}|U|V|Z|V[12]", re.IGNORECASE)
 HORIZONTAL = re.compile(
     rf"[NS]?\s*\d+(?:\.\d+)?\s*[EW]?|{COMPASS}|[LTH][12]?|LONG?|TRAN?S?|{CHANNEL}[NE12]", re.IGNORECASE
@@ -48,6 +56,21 @@ def direction_of(file: Path, component: str | None = None) -> Direction | None:
     return _upright(file.stem) if from_peer and RUN_TOGETHER.fullmatch(file.stem) else None
 
 
+def azimuth_of(component: str | None) -> float | None:
+    """Return the direction, in degrees clockwise from north, that the name of a component states, or None.
+
+    Such names are 90, N38E, NS, and the codes of seismological channels that end in N or E, such as HNE.
+    """
+    name = (component or "").strip().upper()
+    if re.fullmatch(r"\d{1,3}(?:\.\d{1,3})?", name):
+        return float(name) if float(name) <= 360.0 else None
+    bearing = BEARING.fullmatch(name)
+    if bearing:
+        angle = float(bearing[2]) if bearing[3] == "E" else -float(bearing[2])
+        return (angle if bearing[1] == "N" else 180.0 - angle) % 360.0
+    return AZIMUTHS.get(name[2:] if re.fullmatch(f"{CHANNEL}[NE]", name) else name)
+
+
 def _upright(text: str) -> Direction:
     return "down" if DOWNWARDS.fullmatch(text) else "vertical"
 
@@ -79,3 +102,8 @@ def check_horizontal(*motions: GroundMotion) -> None:
             "or name of the file. Give a horizontal component. If it is one, declare it: dataclasses.replace(motion, "
             'metadata=RecordInfo(direction="horizontal")), or rename the file.'
         )
+
+
+def told_apart(names: list[str]) -> list[str]:
+    """Return names that differ, those that occur twice with their place among the equal ones."""
+    return [name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}" for i, name in enumerate(names)]

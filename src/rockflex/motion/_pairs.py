@@ -1,8 +1,8 @@
 """Which vertical record belongs to which horizontal one."""
 
 import re
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
@@ -49,6 +49,39 @@ def paired(
     return both, without, [file for file in vertical if file not in used]
 
 
+def station_names(motions: Sequence[tuple[Path, GroundMotion]]) -> list[str]:
+    """Return the name of the recording of each component, the same for those that belong together.
+
+    `motions` are the components with paths whose stems are their names; see `group_stations`.
+    """
+    known = [_header_name(motion.metadata) for _, motion in motions]
+    stems = [_stems(Path(f"{file}.x"), motion) for file, motion in motions]
+    counts = Counter(stem.casefold() for options in stems for stem in options)
+    first: dict[str, str] = {}
+    found: list[str] = []
+    for name, options, (file, _) in zip(known, stems, motions, strict=True):
+        shared = next((stem for stem in options if counts[stem.casefold()] > 1), None)
+        found.append(name or (first.setdefault(shared.casefold(), shared) if shared else file.name))
+    return found
+
+
+def _header_name(info: RecordInfo | None) -> str | None:
+    for key in _by_header(info):
+        if len(key) == 1:
+            return f"RSN{key[0]}"
+        event, _, station, network, location = key
+        return " ".join(str(part) for part in (network, station, location, event) if part is not None)
+    return None
+
+
+def _stems(file: Path, motion: GroundMotion) -> list[str]:
+    """Return what a name may be without its component, the surest first."""
+    upright = station_of_vertical(file)
+    if motion.metadata is not None and motion.metadata.is_vertical:
+        return [] if upright is None else [upright]
+    return [file.stem[: len(str(key[1]))] for key in _keys(file, None) if key[1]]
+
+
 def named(files: Iterable[Path]) -> str:
     """Return the names of files, of the first ones if they are many."""
     names = [file.name for file in files]
@@ -88,4 +121,6 @@ def _by_header(info: RecordInfo | None) -> list[Key]:
         return []
     if info.rsn is not None:
         return [(info.rsn,)]
-    return [(info.event, info.year, info.station)] if None not in (info.event, info.year, info.station) else []
+    if None in (info.event, info.year, info.station):
+        return []
+    return [(info.event, info.year, info.station, info.network, info.location)]

@@ -1,35 +1,43 @@
 """Reading many record files into a suite."""
 
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Literal, get_args
 
 from rockflex._errors import InputError, RecordWarning
-from rockflex._files import path_of
 from rockflex._shown import shown
-from rockflex.motion._direction import is_vertical
+from rockflex.motion._collect import Units, collect
+from rockflex.motion._folder import files_of
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._pairs import named, paired
-from rockflex.motion._readers import read_motion
+from rockflex.motion._pairs import named
+from rockflex.motion._sorting import Sorted, sort_out
 from rockflex.motion._suite import Suite
 
 OnError = Literal["raise", "skip"]
 Vertical = Literal["pair"]
 
-SUFFIXES = (".at2", ".csv", ".dat", ".tsv", ".txt")
 REPORTED = 10  # files whose errors are reported in full; beyond these only the names are listed
 NAMES = 50_000  # most characters of a message that lists every file
 
 
 def read_suite(
     paths: str | Path | Iterable[str | Path],
-    units: str | None = None,
+    units: str | Mapping[str, str] | None = None,
     dt: float | None = None,
     on_error: OnError = "raise",
     vertical: Vertical | None = None,
+    table: str | Path | None = None,
 ) -> Suite:
     """Read the horizontal components among record files into a suite, sorted by file name.
+
+    The formats are those of `read_motion`. Of a file with several horizontal components, each becomes a motion. For a
+    report of what is taken, and what is not, see `survey_records`.
+
+    Tables about the records among the files fill in what headers do not say: PEER's ``_SearchResults.csv``, a flatfile
+    of NGA, or a CSV file or workbook of one's own with a column ``file`` or ``RSN`` and any of ``units``, ``dt``,
+    ``magnitude``, ``Rrup (km)``, ``Rjb (km)``, ``Vs30 (m/s)``, ``event``, ``year``, ``station``. In the column
+    ``file``, ``*`` and ``?`` stand for other characters, for units and steps.
 
     Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out, and a warning lists them; with
     ``vertical="pair"`` each horizontal component gets the vertical one of its station. The direction of a record is
@@ -38,19 +46,23 @@ def read_suite(
     Parameters
     ----------
     paths : path or iterable of paths
-        A directory, in which every file with the suffix .at2, .csv, .dat, .tsv or .txt (in any case) is read,
-        or the files themselves.
+        A directory, in which every file is read whose suffix is that of a record (.at2, .csv, .dat, .tsv, .txt, .xlsx,
+        .mseed and the like, in any case) or whose content begins as a K-NET, ESM or COSMOS file; or the files
+        themselves.
     units, dt : optional
-        As in `read_motion`, for files that do not state them.
+        As in `read_motion`, for files that do not state them. A dictionary gives the units of files by their names, in
+        which ``*`` and ``?`` stand for other characters: ``{"lab-*.txt": "g", "old.csv": "cm/s2"}``.
     on_error : {"raise", "skip"}
         If files cannot be read: raise an error that lists all of them, or continue with the others and list them in a
         warning.
     vertical : {"pair"}, optional
         Pair the components of a station. They belong together if their file names, in one folder, differ only in the
         component (ABC090 or ABC-NS, and ABC-UP); else if they have the same record sequence number; else if their
-        headers name the same event, year and station. Lengths and signs are as in `GroundMotion.with_vertical`. Records
-        without a vertical component remain in the suite, and a warning lists them; leave them out with
-        ``Suite(motion for motion in suite if motion.vertical is not None)``.
+        headers name the same event, year, network, station and location. Lengths and signs are as in
+        `GroundMotion.with_vertical`. Records without a vertical component remain in the suite, and a warning lists
+        them; leave them out with ``Suite(motion for motion in suite if motion.vertical is not None)``.
+    table : path, optional
+        A table about the records that is not among the files.
 
     Returns
     -------
@@ -67,8 +79,9 @@ def read_suite(
     Warns
     -----
     RecordWarning
-        If a vertical component, or a file that cannot be read, is left out, or a record has no vertical component
-        although `vertical` is "pair".
+        If a vertical component, a borehole component beneath one at the surface (KiK-net), or a file that cannot be
+        read is left out, a record has no vertical component although `vertical` is "pair", or a peak differs by 1 to
+        20 % from that in the header.
 
     Examples
     --------
@@ -79,74 +92,97 @@ def read_suite(
     >>> rf.read_suite(["a.txt", "b.txt"], units="g", dt=0.01).names
     ('a', 'b')
     """
-    if isinstance(paths, str | Path):
-        name, files = _folder(path_of("paths", paths))
-    elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        name, files = "", [path_of("paths", path) for path in paths]
-    else:
-        raise InputError(f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given.")
-    files.sort(key=lambda file: (file.name, str(file)))
-    return Suite(read_files(files, units, dt, on_error, vertical).values(), name)
+    name, files = files_of(paths)
+    found = read_files(files, units, dt, on_error, vertical, table=table)
+    return Suite((motion for motions in found.values() for motion in motions), name)
 
 
 def read_files(
     files: Sequence[Path],
-    units: str | None,
+    units: Units | None,
     dt: float | None,
     on_error: OnError,
     vertical: Vertical | None = None,
     skip: str = 'on_error="skip"',
-) -> dict[Path, GroundMotion]:
+    table: str | Path | None = None,
+) -> dict[Path, list[GroundMotion]]:
     """Return the horizontal components among record files by file; see `read_suite`.
 
     `skip` is the option that an error message suggests to continue with the other files.
     """
     if on_error not in get_args(OnError):
         raise InputError(f'on_error must be "raise" or "skip", but {shown(on_error)} was given.')
+    check_vertical(vertical)
+    found = collect(files, units, dt, table)
+    records = [each for each in found if each.table is None]
+    if not records and found:
+        raise InputError(f"{named(files)}: only tables about records were given, but no record. Give the records too.")
+    faults = {each.file: each.fault for each in records if each.fault is not None}
+    if faults:
+        message = _fault_message({file: str(error) for file, error in faults.items()}, len(records))
+        if on_error == "raise" or len(faults) == len(records):
+            message += f" {skip} continues with the other files." if len(faults) < len(records) else ""
+            fields = [error.field for error in faults.values()]
+            field = next((name for name in fields[:REPORTED] if name in ("units", "dt")), None)
+            raise InputError(message, longest=NAMES, field=field)
+        warnings.warn(f"Left out: {message}", RecordWarning, stacklevel=3)
+    for note in (f"{path}: {note}." for each in records for path, note in each.notes.items() if note):
+        warnings.warn(note, RecordWarning, stacklevel=3)
+    result = sort_out(records, pair=vertical is not None)
+    _tell_pairs(result, on_error, skip)
+    _tell_left_out(result)
+    taken: dict[Path, list[GroundMotion]] = {}
+    for each in records:
+        chosen = [result.taken[path] for path in each.motions if path in result.taken]
+        if chosen:
+            taken[each.file] = chosen
+    return taken
+
+
+def check_vertical(vertical: object) -> None:
+    """Raise an InputError if `vertical` is not what `read_suite` takes."""
     if vertical not in (None, *get_args(Vertical)):
         raise InputError(
             f'vertical must be "pair" or None, but {shown(vertical)} was given. A file of its own is for one record: '
             "read_motion(path, vertical=...).",
             field="vertical",
         )
-    motions: dict[Path, GroundMotion] = {}
-    faults: dict[Path, str] = {}
-    fields: list[str | None] = []
-    for file in files:
-        try:
-            motions[file] = read_motion(file, units=units, dt=dt)
-        except InputError as error:
-            faults[file] = str(error)
-            fields.append(error.field)
-    upright = {file: motion for file, motion in motions.items() if is_vertical(motion)}
-    horizontal = {file: motion for file, motion in motions.items() if not is_vertical(motion)}
-    if faults:
-        message = _fault_message(faults, len(files))
-        if on_error == "raise" or not motions:
-            message += f" {skip} continues with the other files." if motions else ""
-            field = next((name for name in fields[:REPORTED] if name in ("units", "dt")), None)
-            raise InputError(message, longest=NAMES, field=field)
-        warnings.warn(f"Left out: {message}", RecordWarning, stacklevel=3)
-    left = list(upright)
-    if vertical is not None and horizontal:
-        horizontal, left = _pair(horizontal, upright, on_error, skip)
-    if left:
-        names = ", ".join(file.name for file in left)
-        components = f"{len(left)} vertical component{'s' * (len(left) > 1)}"
-        if not horizontal:
-            raise InputError(
-                f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "
-                "header or file name is wrong, correct it."
-            )
-        warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=3)
-    return horizontal
 
 
-def _pair(
-    horizontal: dict[Path, GroundMotion], upright: dict[Path, GroundMotion], on_error: OnError, skip: str
-) -> tuple[dict[Path, GroundMotion], list[Path]]:
-    """Return the records with their vertical components, and the vertical records that belong to none."""
-    both, without, left = paired(horizontal, upright)
+def _tell_left_out(result: Sorted) -> None:
+    """Warn of components that are left out.
+
+    Raises
+    ------
+    InputError
+        If none is left.
+    """
+    if result.below:
+        count = f"{len(result.below)} borehole component{'s' * (len(result.below) > 1)}"
+        warnings.warn(
+            f"Left out: {count} beneath records at the surface, {named(result.below)}.", RecordWarning, stacklevel=4
+        )
+    if not result.vertical:
+        return
+    names = ", ".join(path.name for path in result.vertical)
+    components = f"{len(result.vertical)} vertical component{'s' * (len(result.vertical) > 1)}"
+    if not result.taken:
+        raise InputError(
+            f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "
+            "header or file name is wrong, correct it."
+        )
+    warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=4)
+
+
+def _tell_pairs(result: Sorted, on_error: OnError, skip: str) -> None:
+    """Warn of records without a vertical component.
+
+    Raises
+    ------
+    InputError
+        If a vertical component does not fit and `on_error` is "raise", or there is none for any record.
+    """
+    both, without = result.taken, result.without
     faults = {file: reason for file, reason in without.items() if reason}
     if faults:
         reasons = " ".join(f"{file.name}: {reason}" for file, reason in list(faults.items())[:REPORTED])
@@ -154,7 +190,7 @@ def _pair(
         if on_error == "raise":
             raise InputError(f"{message} {skip} keeps them without it.", longest=NAMES, field="vertical")
         warnings.warn(message, RecordWarning, stacklevel=4)
-    if len(without) == len(both) and not faults:
+    if without and len(without) == len(both) and not faults:
         first = next(iter(both)).name
         which = first if len(both) == 1 else f"any of the {len(both)} records, such as {first}"
         raise InputError(
@@ -167,29 +203,6 @@ def _pair(
     if missing:
         count = f"{len(missing)} of {len(both)} records"
         warnings.warn(f"Without a vertical component: {count}, {named(missing)}.", RecordWarning, stacklevel=4)
-    return both, left
-
-
-def folder_files(folder: Path) -> list[Path]:
-    """Return the record files of a directory, by suffix, sorted by name.
-
-    Raises
-    ------
-    InputError
-        If there are none.
-    """
-    files = [file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES and file.is_file()]
-    if not files:
-        raise InputError(f"{folder} holds no record: no file ends in {', '.join(SUFFIXES)}.")
-    return sorted(files)
-
-
-def _folder(folder: Path) -> tuple[str, list[Path]]:
-    if not folder.is_dir():
-        raise InputError(
-            f"{folder} is not a directory. Give a directory or a list of files; use read_motion for a single file."
-        )
-    return folder.resolve().name, folder_files(folder)
 
 
 def _fault_message(faults: dict[Path, str], n_files: int) -> str:

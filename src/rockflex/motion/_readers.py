@@ -1,55 +1,95 @@
 """Choice of the reader by the content of a file."""
 
+import warnings
 from pathlib import Path
 
-from rockflex._checks import one_of, positive
-from rockflex._errors import InputError
+from rockflex._checks import instance, positive
+from rockflex._errors import InputError, RecordWarning
 from rockflex._files import path_of
 from rockflex._shown import shown
+from rockflex.motion import _obspy
 from rockflex.motion._at2 import find_header, parse_at2
 from rockflex.motion._columns import parse_columns
+from rockflex.motion._components import chosen
+from rockflex.motion._cosmos import is_cosmos, parse_cosmos
+from rockflex.motion._esm import is_esm, parse_esm
+from rockflex.motion._excel import is_excel, parse_excel
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._text import UNITS, read_lines
+from rockflex.motion._knet import is_knet, parse_knet
+from rockflex.motion._peak import FAR, disagreement
+from rockflex.motion._table import table_of
+from rockflex.motion._text import decoded, lines_of, read_content
+from rockflex.motion._units import Unit, declared
+
+# Formats that state unit and step.
+STATED = (("K-NET", is_knet, parse_knet), ("ESM", is_esm, parse_esm), ("COSMOS", is_cosmos, parse_cosmos))
 
 
 def read_motion(
-    path: str | Path, units: str | None = None, dt: float | None = None, vertical: str | Path | None = None
+    path: str | Path,
+    units: str | None = None,
+    dt: float | None = None,
+    vertical: str | Path | None = None,
+    component: str | None = None,
 ) -> GroundMotion:
-    """Read a record from an AT2 file, a CSV file, or text in columns; the content decides.
+    """Read a record; the content of the file decides on its format.
 
-    Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A single
-    column is the acceleration, two columns are time (s) and acceleration. With more columns, a header line must
-    have exactly one label that begins with "t" or "time" and one that begins with "acc"; a label "vertical" or
-    "up", also after "acc", is the vertical acceleration, positive upwards. The motion starts at the first sample,
-    whatever its time.
+    - AT2 files of PEER, in g; see `read_at2`.
+    - K-NET and KiK-net ASCII: counts times the scale factor of the header. The mean of the record is subtracted, as
+      for the peak that the header states.
+    - ESM and ITACA ASCII (DYNA 1.2), in the unit that the header states.
+    - COSMOS (V1, V2; V0 if the header says what a count is), with one or more channels.
+    - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks; decimals may be marked by
+      commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A single column is the
+      acceleration, two columns are time (s) and acceleration. With more columns, a header line must have exactly one
+      label that begins with "t" or "time" and one that begins with "acc"; a label "vertical" or "up", also after
+      "acc", is the vertical acceleration, positive upwards. More than one horizontal acceleration needs names, as in
+      "acc NS (g), acc EW (g)" or "NS (gal), EW (gal), UD (gal)".
+    - Excel workbooks (.xlsx), with the same columns in one or more sheets; needs openpyxl, ``rockflex[excel]``.
+    - What ObsPy reads, such as MiniSEED, SAC, GSE2 and Kinemetrics EVT; needs ObsPy, ``rockflex[obspy]``.
+
+    The motion starts at the first sample, whatever its time.
 
     Parameters
     ----------
     path : str or Path
         The file.
-    units : {"g", "m/s2", "cm/s2"}, optional
-        Unit of the acceleration; needed unless a column header states it in brackets, as "acc (g)",
-        "a [m/s^2]" or "acceleration (gal)". AT2 files are in g by definition.
+    units : str, optional
+        Unit of the acceleration: "g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", or a number and one of these, such as
+        "2.4e-4 cm/s2" for what one count is. Needed unless a column header states it in brackets, as "acc (g)",
+        "a [m/s^2]" or "acceleration (gal)", or a line above the numbers says "units: g", or the format does.
     dt : float, optional
-        Sampling step in s; needed if the file has no times. For a file with a time column it replaces
-        times that were rounded in print: each must lie within half a step of its nominal time.
+        Sampling step in s; needed if the file has no times, and no line above the numbers says "dt = 0.01 s". For a
+        file with a time column it replaces times that were rounded in print: each must lie within half a step of its
+        nominal time.
     vertical : str or Path, optional
-        The file of the vertical component, with the same time step; `units` and `dt` apply to it as well. Zeros are
-        appended to the shorter record, and a component that is positive downwards is reversed; see
-        `GroundMotion.with_vertical`, which also joins two records that are read one by one.
+        The file of the vertical component, with the same time step; `units` and `dt` apply to it as well. It may be the
+        same file, if that holds several components. Zeros are appended to the shorter record, and a component that is
+        positive downwards is reversed; see `GroundMotion.with_vertical`, which also joins two records that are read one
+        by one.
+    component : str, optional
+        Name of the component, for a file with several horizontal ones; see `read_components`.
 
     Returns
     -------
     GroundMotion
-        The record in m/s², named after the file without its suffix.
+        The record in m/s², named after the file without its suffix; that of a file with several components also after
+        the component. `GroundMotion.metadata` contains what the header says.
 
     Raises
     ------
     InputError
-        If the file is missing, empty or binary; `units` or `dt` is missing, contradicts the file or is not
-        valid; a value is not a finite number; rows differ in length; time steps are not equal and positive;
-        or the peak exceeds 5 g, which indicates a wrong unit. A file is never read in part. With `vertical` also
+        If the file is missing, empty, of an unknown format, or needs a package that is not installed; `units` or `dt`
+        is missing, contradicts the file or is not valid; a value is not a finite number; there are fewer or more values
+        than the header states; rows differ in length; time steps are not equal and positive; the peak exceeds 5 g,
+        which indicates a wrong unit, or differs by more than 20 % from that in the header. A file is never read in
+        part. Also if there are several horizontal components and `component` names none of them. With `vertical` also
         if the time steps differ, or a component is known to have the other direction.
+
+    Warns
+    -----
+    RecordWarning
+        If the peak differs by 1 to 20 % from that in the header.
 
     Examples
     --------
@@ -59,26 +99,169 @@ def read_motion(
     >>> rf.read_motion("record.txt", units="g")
     GroundMotion('record', 3 samples, dt=0.01 s, duration=0.02 s, pga=0.981 m/s²)
     """
-    if units is not None and not one_of(units, UNITS):
-        raise InputError(
-            f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.", field="units"
-        )
-    if dt is not None:
-        dt = positive("dt", dt, "s")
-    motion = _read(path_of("path", path), units, dt)
-    return motion if vertical is None else motion.with_vertical(_read(path_of("vertical", vertical), units, dt))
+    unit, step = _options(units, dt)
+    if component is not None:
+        instance("component", component, str)
+    file = path_of("path", path)
+    motion = chosen(file, parts_of(file, unit, step), component, upright=False)
+    _warn(file, motion)
+    if vertical is None:
+        return motion
+    other = path_of("vertical", vertical)
+    upwards = chosen(other, parts_of(other, unit, step), None, upright=True)
+    _warn(other, upwards)
+    return motion.with_vertical(upwards)
 
 
-def _read(file: Path, units: str | None, dt: float | None) -> GroundMotion:
-    lines = read_lines(file)
+def read_components(path: str | Path, units: str | None = None, dt: float | None = None) -> tuple[GroundMotion, ...]:
+    r"""Read all components in a file: the channels of a COSMOS file, the columns of a table, the sheets of a workbook.
+
+    Parameters
+    ----------
+    path, units, dt
+        As in `read_motion`.
+
+    Returns
+    -------
+    tuple of GroundMotion
+        The components, in the order of the file. ``metadata.component``, ``metadata.direction`` and
+        ``metadata.azimuth`` tell them apart. A table with a single horizontal column is one motion with its vertical
+        component.
+
+    Raises
+    ------
+    InputError
+        As for `read_motion`, except that any number of components is read.
+
+    Warns
+    -----
+    RecordWarning
+        As for `read_motion`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> text = "time (s), NS (gal), EW (gal), UD (gal)\n0.00, 0, 0, 0\n0.01, 5, 3, 1\n0.02, -4, 6, 2\n"
+    >>> _ = Path("station.csv").write_text(text)
+    >>> [motion.name for motion in rf.read_components("station.csv")]
+    ['station-NS', 'station-EW', 'station-UD']
+    """
+    unit, step = _options(units, dt)
+    file = path_of("path", path)
+    found = parts_of(file, unit, step)
+    for motion in found:
+        _warn(file, motion)
+    return tuple(found)
+
+
+def read_plain(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
+    """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers.
+
+    Raises
+    ------
+    InputError
+        As for `read_motion`.
+    """
+    file = path_of("path", path)
+    return chosen(file, parts_of(file, *_options(units, dt), foreign=False), None, upright=False)
+
+
+def parts_of(
+    file: Path, units: Unit | None, dt: float | None, *, foreign: bool = True, common: bool = False
+) -> list[GroundMotion]:
+    """Return all components in a file.
+
+    Parameters
+    ----------
+    file, units, dt
+        As in `read_components`.
+    foreign
+        Whether the readers of ObsPy may be used.
+    common
+        Whether `units` and `dt` are for many files, so that those of a format that states them need not agree.
+
+    Raises
+    ------
+    InputError
+        As for `read_components`.
+    """
+    found = _parts(file, units, dt, foreign=foreign, common=common)
+    for motion in found:
+        difference, text = disagreement(motion)
+        if difference > FAR:
+            raise InputError(
+                f"{file}: {text}. A wrong scale or a changed file explains this: download the record again; or correct "
+                "the peak in the header, if the samples are right."
+            )
+    return found
+
+
+def _parts(file: Path, units: Unit | None, dt: float | None, *, foreign: bool, common: bool) -> list[GroundMotion]:
+    content = read_content(file)
+    if is_excel(content):
+        return parse_excel(file, content, units, dt)
+    text = decoded(content)
+    if text is None and foreign:
+        form = _obspy.format_of(content)
+        if form is not None:
+            return _foreign(file, content, form, units, dt)
+        if not _obspy.is_installed():
+            raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
+    lines = lines_of(file, content)
+    for form, known, parse in STATED:
+        if known(lines):
+            found = parse(file, lines)
+            if not common:
+                _check_free(file, form, units)
+                _check_step(file, found[0], dt)
+            return found
     if find_header(lines) is None and file.suffix.lower() != ".at2":
-        return parse_columns(file, lines, units, dt)
+        try:
+            return parse_columns(file, table_of(file, lines), units, dt, file.stem)
+        except InputError as error:
+            form = _obspy.format_of(content) if foreign and error.field is None else None
+            if form is None:
+                raise
+            try:
+                return _foreign(file, content, form, units, dt)
+            except _obspy.ForeignError:
+                raise error from None
     motion = parse_at2(file, lines)
-    if units not in (None, "g"):
+    if units not in (None, Unit("g")):
         raise InputError(
-            f"{file} is an AT2 file, in g by definition, but units={shown(units)} was given. Leave units out.",
+            f"{file} is an AT2 file, in g by definition, but units={shown(str(units))} was given. Leave units out.",
             field="units",
         )
+    _check_step(file, motion, dt)
+    return [motion]
+
+
+def _foreign(file: Path, content: bytes, form: str, units: Unit | None, dt: float | None) -> list[GroundMotion]:
+    found = _obspy.parse_obspy(file, content, form, units)
+    _check_step(file, found[0], dt)
+    return found
+
+
+def _check_free(file: Path, form: str, units: Unit | None) -> None:
+    if units is not None:
+        raise InputError(
+            f"{file} is a file in the {form} format, which states its unit, but units={shown(str(units))} was given. "
+            "Leave units out.",
+            field="units",
+        )
+
+
+def _check_step(file: Path, motion: GroundMotion, dt: float | None) -> None:
     if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
         raise InputError(f"{file} states DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
-    return motion
+
+
+def _options(units: str | None, dt: float | None) -> tuple[Unit | None, float | None]:
+    return None if units is None else declared(units), None if dt is None else positive("dt", dt, "s")
+
+
+def _warn(file: Path, motion: GroundMotion) -> None:
+    _, text = disagreement(motion)
+    if text:
+        warnings.warn(f"{file}: {text}.", RecordWarning, stacklevel=3)

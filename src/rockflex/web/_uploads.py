@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_motion
+from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_plain
 from rockflex.web._limits import FILE, FREEDOMS, check_motion
 from rockflex.web._refusal import Refusal, refusing
 
@@ -114,9 +114,12 @@ def _read(name: str, content: bytes, units: str | None, dt: float | None, field:
             file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
             file.write_bytes(content)
             try:
-                motion = read_motion(file, units=units, dt=dt)
+                motion = read_plain(file, units=units, dt=dt)
             except InputError as error:
-                raise Refusal({field: str(error).replace(str(file), shown)}) from error
+                said = str(error).replace(str(file), shown)
+                if error.field == "component":
+                    said = f"{said.partition(' Name one:')[0]} Choose a file with a single one."
+                raise Refusal({field: said}) from error
     except OSError as error:
         message = "the server could not store the file temporarily. Try again."
         raise Refusal({field: message}, 503) from error

@@ -13,7 +13,7 @@ export function uploading(app, complain) {
   let step = "";
   let along = ""; // the record without its vertical component
   const said = h("p", { class: "help", id: "uploaded", role: "status" });
-  const kinds = ".at2,.AT2,.csv,.txt,.dat,.tsv";
+  const kinds = ".at2,.AT2,.csv,.txt,.dat,.tsv,.asc,.ASC,.v1,.V1,.v2,.V2,.v2c,.V2c,.xlsx,.NS,.EW,.UD,.NS2,.EW2,.UD2";
   const input = fileBox(kinds, (file) => take(file, "record.upload"));
   const upwards = fileBox(kinds, (file) => take(file, "record.vertical"));
 
@@ -37,9 +37,9 @@ export function uploading(app, complain) {
   }
 
   return h("div", {},
-    field("record.upload", "File", input, { hint: `AT2, CSV or text columns; up to ${most / 1e6} MB and ${duration} s` }),
+    field("record.upload", "File", input, { hint: `AT2, CSV, text columns, Excel, K-NET, ESM or COSMOS; up to ${most / 1e6} MB and ${duration} s` }),
     field("record.vertical", "Vertical component", upwards, { hint: "optional; upwards positive, with the same step; or a column “vertical” in the file above" }),
-    select("upload.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "AT2 files are in g by definition" }),
+    select("upload.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "if the file does not state it" }),
     box("upload.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "only if the file has no times" }),
     said,
     h("p", { class: "help" }, "A link does not contain the file: whoever opens it needs the file, too."));

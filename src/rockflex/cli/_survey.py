@@ -1,0 +1,124 @@
+"""``rockflex survey``: what a folder of records holds, and what of it is taken."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rockflex._errors import InputError
+from rockflex.cli import _options as options
+
+if TYPE_CHECKING:
+    from rockflex.motion import RecordSurvey, SurveyEntry
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex survey records
+
+rockflex survey records --vertical pair --json
+
+rockflex survey *.AT2 flatfile.csv"""
+
+NAMED = 6  # files that share a reason and are named; of more, the number is told
+
+
+def survey(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="FOLDER|FILES", help="A folder of records, or files.", show_default=False)
+    ],
+    json: options.Json = False,
+    units: options.Units = None,
+    dt: options.Dt = None,
+    vertical: Annotated[
+        str | None,
+        typer.Option(
+            "--vertical",
+            metavar="pair",
+            help="pair: take the vertical component of each station too.",
+            rich_help_panel=options.RECORD_FILES,
+        ),
+    ] = None,
+) -> None:
+    """Say of each record file what it holds, whether it is taken, and why not."""
+    from rockflex.cli._output import to_json, versions
+    from rockflex.motion import survey_records
+
+    folders = [path for path in paths if path.is_dir()]
+    if folders and len(paths) > 1:
+        raise InputError(
+            f"One folder or several files are expected, but {folders[0]} is a folder among {len(paths)} paths. Survey "
+            "one folder at a time."
+        )
+    single = len(paths) == 1 and not paths[0].is_file()
+    found = survey_records(paths[0] if single else paths, units, dt, vertical, None)  # pyright: ignore[reportArgumentType]
+    if json:
+        stations = [
+            {
+                "name": each.name,
+                "horizontal": [motion.name for motion in each.horizontal],
+                "vertical": None if each.vertical is None else each.vertical.name,
+            }
+            for each in found.stations
+        ]
+        document: dict[str, Any] = {
+            "versions": versions(),
+            "units": {"dt": "s", "pga": "m/s²", "stated_pga": "m/s²", "distance_km": "km", "vs30": "m/s"},
+            "entries": found.entries,
+            "stations": stations,
+        }
+        typer.echo(to_json(document))
+    else:
+        _print(found)
+
+
+def _print(found: "RecordSurvey") -> None:
+    from rockflex._constants import GRAVITY
+    from rockflex.cli._console import grid, number, output, show
+
+    def cells(entry: "SurveyEntry") -> list[str]:
+        words = [entry.file, entry.format, entry.station, entry.component]
+        facts = [entry.magnitude, entry.distance_km, entry.vs30]
+        samples = ["-" if value is None else f"{value:g}" for value in (entry.dt, entry.n_samples)]
+        peak = "-" if entry.pga is None else number(entry.pga / GRAVITY)
+        return [
+            *(word or "-" for word in words),
+            "yes" if entry.taken else "no",
+            *samples,
+            peak,
+            *("-" if fact is None else f"{fact:g}" for fact in facts),
+        ]
+
+    console = output()
+    head = ("file", "format", "station", "component", "taken", "dt [s]", "npts", "PGA [g]", "M", "R [km]", "Vs30 [m/s]")
+    show(console, grid(head, map(cells, found.entries), 5))
+    taken, left = len(found.taken), len(found.left_out)
+    print_line = f"\n{taken} taken, {left} left out; {_stations(found)}"
+    console.print(print_line, markup=False, soft_wrap=True)
+    for title, entries in (("Left out", found.left_out), ("Taken, but", [each for each in found.taken if each.reason])):
+        if entries:
+            console.print(f"\n{title}:", markup=False)
+        for reason, names in _by_reason(entries).items():
+            console.print(f"  {_named(names)}: {reason}", markup=False, soft_wrap=True)
+
+
+def _stations(found: "RecordSurvey") -> str:
+    pairs = sum(len(each.horizontal) == 2 for each in found.stations)
+    whole = sum(len(each.horizontal) == 2 and each.vertical is not None for each in found.stations)
+    return (
+        f"{len(found.stations)} recordings, {pairs} with a horizontal pair, {whole} of them with a vertical component"
+    )
+
+
+def _by_reason(entries: "Iterable[SurveyEntry]") -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for entry in entries:
+        names = found.setdefault(entry.reason, [])
+        if entry.file not in names:
+            names.append(entry.file)
+    return found
+
+
+def _named(names: list[str]) -> str:
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + more

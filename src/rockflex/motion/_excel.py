@@ -1,0 +1,113 @@
+"""Records in the sheets of an Excel workbook (.xlsx)."""
+
+import io
+import warnings
+import zipfile
+from pathlib import Path
+from typing import Any
+
+from rockflex._errors import InputError
+from rockflex.motion._columns import parse_columns
+from rockflex.motion._direction import told_apart
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._table import Table, is_number
+from rockflex.motion._text import DECIMAL
+from rockflex.motion._units import Unit
+
+ZIPPED, OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+LARGEST = 100_000_000  # bytes of a workbook when unpacked
+INSTALL = "Install it: pip install 'rockflex[excel]', or save the sheet as CSV."
+
+
+def is_excel(content: bytes) -> bool:
+    """Return whether the bytes are those of a workbook, or of another file in the containers that Excel uses."""
+    return content.startswith((ZIPPED, OLD))
+
+
+def parse_excel(file: Path, content: bytes, units: Unit | None, dt: float | None) -> list[GroundMotion]:
+    """Build the motions from all sheets of a workbook that hold rows of numbers, read as columns of text are."""
+    tables = {name: table for name, cells in sheets_of(file, content).items() if (table := _table(cells))}
+    if not tables:
+        raise InputError(f"{file} holds no numbers: a sheet is expected with columns of time and acceleration.")
+    motions: list[GroundMotion] = []
+    for sheet, table in tables.items():
+        name = file.stem if len(tables) == 1 else f"{file.stem}-{sheet}"
+        try:
+            motions += parse_columns(file, table, units, dt, name)
+        except InputError as error:
+            if len(tables) == 1:
+                raise
+            text = f"Sheet {sheet[:40]!r}: {error}"
+            raise InputError(text, field=error.field) from error
+    names = told_apart([motion.name for motion in motions])
+    return [
+        GroundMotion(each.acceleration, each.dt, name, each.metadata, each.vertical)
+        for each, name in zip(motions, names, strict=True)
+    ]
+
+
+def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
+    """Return the cells of every sheet of a workbook as text, by its name.
+
+    Raises
+    ------
+    InputError
+        If it is none, or one of the old format, it cannot be read, or openpyxl is not installed.
+    """
+    if content.startswith(OLD):
+        raise InputError(f"{file} is a workbook of the old format. Save it as .xlsx or CSV.")
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            size = sum(each.file_size for each in archive.infolist())
+            workbook = "xl/workbook.xml" in archive.namelist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+        raise InputError(f"{file} is a damaged archive or workbook. Download it again.") from error
+    if not workbook:
+        raise InputError(f"{file} is an archive, but no workbook. Unpack it, and give the files in it.")
+    if size > LARGEST:
+        raise InputError(f"{file} has {size / 1e6:.0f} MB when unpacked, above {LARGEST / 1e6:g} MB. Save it as CSV.")
+    try:
+        import openpyxl
+    except ImportError as error:
+        raise InputError(f"{file} is an Excel workbook, which needs openpyxl to be read. {INSTALL}") from error
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about styles and other extensions that do not matter here
+            book: Any = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
+            sheets = {
+                str(sheet.title): [[_text(cell) for cell in row] for row in sheet.iter_rows(values_only=True)]
+                for sheet in book.worksheets
+            }
+    except Exception as error:  # damaged workbooks raise many kinds of errors
+        raise InputError(f"{file} cannot be read as an Excel workbook: {str(error)[:200]}.") from error
+    return sheets
+
+
+def _text(cell: object) -> str:
+    if isinstance(cell, float | int) and not isinstance(cell, bool):
+        return repr(float(cell))
+    return "" if cell is None else str(cell).strip()
+
+
+def _table(cells: list[list[str]]) -> Table | None:
+    """Return the rows of numbers in a sheet, without columns that are empty; None if there are none."""
+    numbered = [(i, row) for i, row in enumerate(cells, 1)]
+    begin = next((k for k, (_, row) in enumerate(numbered) if _numeric(row)), None)
+    if begin is None:
+        return None
+    rows = [(i, row) for i, row in numbered[begin:] if any(row)]
+    heads = [row for _, row in numbered[:begin] if any(row)]
+    used = [k for k in range(max(len(row) for _, row in rows)) if any(k < len(row) and row[k] for _, row in rows)]
+
+    def kept(row: list[str]) -> list[str]:
+        return [row[k] if k < len(row) else "" for k in used]
+
+    found = next((kept(row) for row in reversed(heads) if all(kept(row))), [])
+    labels = found if any(not DECIMAL.fullmatch(label) for label in found) else []
+    return Table(labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads])
+
+
+def _numeric(row: list[str]) -> bool:
+    """Return whether a row begins the numbers: its filled cells are all numbers."""
+    filled = [cell for cell in row if cell]
+    return bool(filled) and all(map(is_number, filled))

@@ -1,0 +1,135 @@
+"""Records in the ASCII format of K-NET and KiK-net, the networks of NIED in Japan.
+
+Format: https://www.kyoshin.bosai.go.jp/kyoshin/man/knetform_en.html
+"""
+
+import math
+import re
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex.motion._direction import AZIMUTHS, Direction
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._text import build_motion, known, number, real
+from rockflex.motion._units import Unit
+
+HEADER_LINES = 17  # the last one is "Memo."
+DELAY = timedelta(seconds=15)  # of the trigger, in the recording time of the header
+JAPAN = "+09:00"
+EARTH = 6371.0  # km, mean radius
+SCALE = re.compile(r"([\d.]+)\s*\(\s*gal\s*\)\s*/\s*([\d.]+)", re.IGNORECASE)
+SUFFIX = re.compile(r"\.(?:NS|EW|UD)[12]?", re.IGNORECASE)
+# Channels of KiK-net: three in the borehole, three at the surface.
+CHANNELS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D"}
+
+
+def is_knet(lines: list[str]) -> bool:
+    """Return whether the lines begin as those of a K-NET file."""
+    return lines[0].lstrip().startswith("Origin Time")
+
+
+def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
+    """Build the motion from the lines of a K-NET or KiK-net file.
+
+    The mean of the record is subtracted, as for the peak in the header.
+    """
+    header = _header(file, lines)
+    scale = SCALE.search(header["Scale Factor"])
+    if scale is None or not all(real(part) for part in scale.groups()):
+        raise InputError(
+            f'{file}: the scale factor is expected as "3920(gal)/6182761", but it is '
+            f"{header['Scale Factor'][:40]!r}. Download the record again."
+        )
+    frequency = re.match(r"[\d.]+", header["Sampling Freq(Hz)"])
+    rate = real(frequency[0]) if frequency else None
+    duration = real(header["Duration Time(s)"])
+    if not rate or not duration:
+        raise InputError(
+            f"{file}: a sampling frequency and a duration are expected in lines 11 and 12, but they are "
+            f"{header['Sampling Freq(Hz)'][:40]!r} and {header['Duration Time(s)'][:40]!r}. Download the record again."
+        )
+    counts = np.array(
+        [number(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()]
+    )
+    if not counts.size or abs(counts.size - duration * rate) > rate:
+        what = "is truncated" if counts.size < duration * rate else "contains too many values"
+        raise InputError(
+            f"{file} {what}: its header says {duration:g} s at {rate:g} Hz, but {counts.size} values follow. "
+            "Download the record again."
+        )
+    gal = float(scale[1]) / float(scale[2])
+    info = _info(file, header)
+    remedy = "Check the scale factor in line 14."
+    name = file.stem + file.suffix.replace(".", "-") if SUFFIX.fullmatch(file.suffix) else file.stem
+    return [build_motion(file, counts - counts.mean(), Unit("cm/s2", gal), 1.0 / rate, info, remedy, name)]
+
+
+def _header(file: Path, lines: list[str]) -> dict[str, str]:
+    """Return the entries of the header by their names, the two names that vary without full stop."""
+    found: dict[str, str] = {}
+    for line in lines[:HEADER_LINES]:
+        name = line[:18].strip()
+        found[name.replace("Max.", "Max").replace("Long.", "Lon.")] = line[18:].strip()
+    needed = ("Station Code", "Record Time", "Sampling Freq(Hz)", "Duration Time(s)", "Dir.", "Scale Factor")
+    missing = [name for name in needed if name not in found]
+    if missing:
+        raise InputError(
+            f"{file} begins as a K-NET file, but {', '.join(map(repr, missing))} is missing among its first "
+            f"{HEADER_LINES} lines. Download the record again."
+        )
+    return found
+
+
+def _info(file: Path, header: dict[str, str]) -> RecordInfo:
+    direction = header["Dir."].strip().upper()
+    component = CHANNELS.get(direction, direction)
+    way: Direction | None = {"U-D": "vertical", "N-S": "horizontal", "E-W": "horizontal"}.get(component)  # pyright: ignore[reportAssignmentType]
+    location = None
+    if direction in CHANNELS:
+        location = "borehole" if direction in "123" else "surface"
+    origin = _time(header.get("Origin Time", ""))
+    started = _time(header["Record Time"])
+    peak = real(header.get("Max Acc. (gal)", ""))
+    return RecordInfo(
+        event=None if origin is None else f"{origin:%Y-%m-%d %H:%M}",
+        year=None if origin is None else origin.year,
+        magnitude=known(real(header.get("Mag.", ""))),
+        magnitude_type="MJMA",
+        epicentral_km=_epicentral(header),
+        component=component,
+        direction=way,
+        azimuth=AZIMUTHS.get(component),
+        station=header["Station Code"] or None,
+        network="NIED",
+        location=location,
+        start_time=None if started is None else f"{started - DELAY:%Y-%m-%dT%H:%M:%S}{JAPAN}",
+        source=file.name,
+        source_format="KiK-net" if location else "K-NET",
+        stated_pga=None if peak is None else 0.01 * abs(peak),
+        processing="mean subtracted",
+    )
+
+
+def _time(text: str) -> datetime | None:
+    try:
+        return datetime.strptime(text, "%Y/%m/%d %H:%M:%S")
+    except ValueError:
+        return None
+
+
+def _epicentral(header: dict[str, str]) -> float | None:
+    """Return the distance along the surface of a sphere, in km, to a metre."""
+    degrees = [real(header.get(name, "")) for name in ("Lat.", "Lon.", "Station Lat.", "Station Long.")]
+    if None in degrees:
+        degrees[3] = degrees[3] if degrees[3] is not None else real(header.get("Station Lon.", ""))
+    places = [math.radians(each) for each in degrees if each is not None]
+    if len(places) < 4:
+        return None
+    north, east, other_north, other_east = places
+    square = math.sin((other_north - north) / 2) ** 2
+    square += math.cos(north) * math.cos(other_north) * math.sin((other_east - east) / 2) ** 2
+    return round(2.0 * EARTH * math.asin(min(1.0, math.sqrt(square))), 3)

@@ -1,0 +1,124 @@
+"""Records in the formats that ObsPy reads: MiniSEED, SAC, GSE2, Kinemetrics EVT and others."""
+
+import io
+import warnings
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex.motion._direction import azimuth_of, direction_of, told_apart
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._text import build_motion
+from rockflex.motion._units import Unit
+
+INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
+LEFT_OUT = ("PICKLE",)  # reading it would run code that the file contains
+# Formats whose calibration is that of an acceleration, in m/s² a count.
+CALIBRATED = ("KINEMETRICS_EVT", "KNET")
+VELOCITY = "HMP"  # the second letter of a channel of a velocity sensor
+
+
+class ForeignError(InputError):
+    """ObsPy takes a file for one of its formats, but cannot read it."""
+
+
+def format_of(content: bytes) -> str | None:
+    """Return the name that ObsPy has for the format of a file, or None if it knows none or is not installed."""
+    if not is_installed():
+        return None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about the age of its dependencies, and about contents
+        from obspy.core.util.base import ENTRY_POINTS
+        from obspy.core.util.misc import buffered_load_entry_point
+
+        for name, entry in ENTRY_POINTS["waveform"].items():
+            if name in LEFT_OUT:
+                continue
+            try:
+                group = f"obspy.plugin.waveform.{entry.name}"
+                is_format: Any = buffered_load_entry_point("obspy", group, "isFormat")
+                if is_format(io.BytesIO(content)):
+                    return str(name)
+            except Exception:  # a foreign reader that stumbles over a file does not know it
+                continue
+    return None
+
+
+def is_installed() -> bool:
+    """Return whether ObsPy can be imported."""
+    return find_spec("obspy") is not None
+
+
+def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> list[GroundMotion]:
+    """Build the motions of all traces of a file; from those of recorders, the mean is subtracted."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            import obspy
+
+            stream: Any = obspy.read(io.BytesIO(content), format=form)
+            stream.merge(method=0)
+    except Exception as error:  # damaged files raise many kinds of errors
+        raise ForeignError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
+    traces = list(stream)
+    names = told_apart([str(trace.stats.channel).strip() or "channel" for trace in traces])
+    motions: list[GroundMotion] = []
+    for trace, name in zip(traces, names, strict=True):
+        motions.append(_motion(file, trace, form, units, file.stem if len(traces) == 1 else f"{file.stem}-{name}"))
+    if not motions:
+        raise InputError(f"{file} holds no samples, according to ObsPy ({form}). Download the record again.")
+    return motions
+
+
+def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) -> GroundMotion:
+    channel = str(trace.stats.channel).strip().upper()
+    if len(channel) == 3 and channel[1] in VELOCITY:
+        raise InputError(
+            f"{file}: channel {channel} is that of a velocity sensor, but an acceleration is expected. Give the "
+            f"channel of the accelerometer, such as {channel[0]}N{channel[2]}."
+        )
+    if np.ma.isMaskedArray(trace.data):
+        raise InputError(
+            f"{file}: channel {channel} has a gap, but a record without gaps is expected. Cut it at the gap with ObsPy."
+        )
+    unit = _unit(file, trace, form, units)
+    info = RecordInfo(
+        component=channel or None,
+        # The numbers of a recorder's channels say nothing about directions.
+        direction=direction_of(file, "" if channel.isdigit() else channel),
+        azimuth=azimuth_of(channel) if len(channel) == 3 else None,
+        station=str(trace.stats.station).strip() or None,
+        network=str(trace.stats.network).strip() or None,
+        location=str(trace.stats.location).strip() or None,
+        start_time=f"{trace.stats.starttime.datetime.isoformat()}+00:00",
+        year=trace.stats.starttime.year,
+        source=file.name,
+        source_format=form,
+        processing="mean subtracted" if form in CALIBRATED else None,
+    )
+    values = np.asarray(trace.data, dtype=np.float64)
+    if form in CALIBRATED:
+        values = values - values.mean()
+    dt = float(f"{float(trace.stats.delta):.12g}")
+    return build_motion(file, values, unit, dt, info, "Check what one count is.", name)
+
+
+def _unit(file: Path, trace: Any, form: str, units: Unit | None) -> Unit:
+    if form in CALIBRATED:
+        if units is None:
+            return Unit("m/s2", float(trace.stats.calib))
+        raise InputError(
+            f"{file} states its own calibration ({form}), but units={str(units)!r} was given. Leave units out.",
+            field="units",
+        )
+    if units is None:
+        raise InputError(
+            f"{file} ({form}) does not state the unit of its samples, which may be counts. Declare what the number 1 "
+            'is: read_motion(path, units="2.4e-4 cm/s2"), or units="m/s2" if the instrument was corrected.',
+            field="units",
+        )
+    return units

@@ -1,0 +1,215 @@
+"""Tables about records: PEER's search results, the flatfiles of NGA, and tables of one's own."""
+
+import csv
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+from types import MappingProxyType
+from typing import TypeVar
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex.motion._excel import is_excel, sheets_of
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._text import decoded, known, read_content, real
+from rockflex.motion._units import Unit, declared
+
+V = TypeVar("V")
+
+DEEPEST = 80  # lines before the header of the table; PEER's search results state their criteria first
+# Labels, reduced to letters and digits, of what a table says.
+LABELS = {
+    "rsn": ("recordsequencenumber", "rsn"),
+    "event": ("earthquakename", "eventname", "event"),
+    "year": ("year",),
+    "station": ("stationname", "station"),
+    "magnitude": ("earthquakemagnitude", "magnitude", "mw", "m"),
+    "distance_km": ("rrupkm", "rrup", "clstdkm", "closestdistancekm", "distancekm"),
+    "distance_jb_km": ("rjbkm", "rjb", "joynerbooredistkm", "distancejbkm"),
+    "epicentral_km": ("repikm", "repi", "epidkm", "epicentralkm"),
+    "vs30": ("vs30msec", "vs30ms", "vs30msselectedforanalysis", "preferredvs30ms", "vs30"),
+    "units": ("units", "unit"),
+    "dt": ("dt", "dts"),
+}
+FILES = {
+    "file": None,
+    "filename": None,
+    "horizontal1accfilename": "horizontal",
+    "horizontal2accfilename": "horizontal",
+    "verticalaccfilename": "vertical",
+    "filenamehorizontal1": "horizontal",
+    "filenamehorizontal2": "horizontal",
+    "filenamevertical": "vertical",
+}
+NUMBERS = ("magnitude", "distance_km", "distance_jb_km", "epicentral_km", "vs30")
+WORDS = ("event", "station")
+
+
+@dataclass(frozen=True)
+class RecordTable:
+    """What tables say of records, by record sequence number and by file."""
+
+    by_number: Mapping[int, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
+    by_file: Mapping[str, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
+    units: Mapping[str, Unit] = field(default_factory=lambda: MappingProxyType({}))
+    steps: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+
+    def joined(self, other: "RecordTable") -> "RecordTable":
+        """Return both tables; this one prevails."""
+        return RecordTable(
+            {**other.by_number, **self.by_number},
+            {**other.by_file, **self.by_file},
+            {**other.units, **self.units},
+            {**other.steps, **self.steps},
+        )
+
+    def completed(self, file: Path, info: RecordInfo) -> RecordInfo:
+        """Return what a header says of a record, with what it leaves open from the tables."""
+        rsn = info.rsn
+        if rsn is None and (named := re.match(r"RSN(\d{1,9})(?!\d)", file.name, re.IGNORECASE)):
+            rsn = int(named[1])
+        found = self.by_file.get(file.name.casefold())
+        if found is not None:
+            info = info.completed(found)
+        numbered = None if rsn is None else self.by_number.get(rsn)
+        return info if numbered is None else info.completed(replace(numbered, direction=None))
+
+    def missing(self, names: Iterable[str]) -> list[str]:
+        """Return the files that the table lists, but are not among the names."""
+        present = {name.casefold() for name in names}
+        return [
+            info.source or key
+            for key, info in self.by_file.items()
+            if key not in present and not any(mark in key for mark in "*?[")
+        ]
+
+    def unit_of(self, file: Path) -> Unit | None:
+        """Return the unit that the tables state for a file."""
+        return _matching(self.units, file)
+
+    def step_of(self, file: Path) -> float | None:
+        """Return the time step that the tables state for a file, in s."""
+        return _matching(self.steps, file)
+
+
+def _matching(by_name: Mapping[str, V], file: Path) -> V | None:
+    name = file.name.casefold()
+    if name in by_name:
+        return by_name[name]
+    return next((value for pattern, value in by_name.items() if fnmatchcase(name, pattern)), None)
+
+
+def read_table(file: Path) -> RecordTable:
+    """Read a table about records from a CSV file or a workbook.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or is no such table.
+    """
+    content = read_content(file)
+    found = table_in(file, content)
+    if found is None:
+        raise InputError(
+            f"{file} is no table about records: a header line is expected with a column of files or record sequence "
+            "numbers (file, RSN) and at least one of units, dt, magnitude, Rrup (km), Rjb (km), Vs30 (m/s)."
+        )
+    return found
+
+
+def table_in(file: Path, content: bytes) -> RecordTable | None:
+    """Return the table about records in the bytes of a file, or None if there is none."""
+    if is_excel(content):
+        for rows in sheets_of(file, content).values():
+            found = _table(file, rows)
+            if found is not None:
+                return found
+        return None
+    text = decoded(content)
+    if text is None:
+        return None
+    lines = text.splitlines()
+    head = next((line for line in lines[:DEEPEST] if _columns(_cells(line, _separator(line))) is not None), None)
+    if head is None:
+        return None
+    separator = _separator(head)
+    return _table(file, (_cells(line, separator) for line in lines))
+
+
+def _separator(line: str) -> str:
+    return max(";,\t", key=line.count)
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    try:
+        row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    except csv.Error:
+        return []
+    return [cell.strip() for cell in row]
+
+
+def _columns(cells: list[str]) -> dict[int, str] | None:
+    """Return what the columns under a header hold, by their places; None if it is not the header of such a table."""
+    plain = [re.sub(r"[^a-z0-9]", "", cell.casefold()) for cell in cells]
+    found: dict[int, str] = {}
+    for name, labels in LABELS.items():
+        for label in labels:
+            if label in plain:
+                found[plain.index(label)] = name
+                break
+    files = {k: label for k, label in enumerate(plain) if label in FILES}
+    names = set(found.values())
+    keyed = bool(files) or "rsn" in names
+    return found | files if keyed and names - {"rsn", "event", "station", "year"} else None
+
+
+def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
+    """Return the table under the first header, down to the first row that is empty."""
+    columns: dict[int, str] | None = None
+    by_number: dict[int, RecordInfo] = {}
+    by_file: dict[str, RecordInfo] = {}
+    units: dict[str, Unit] = {}
+    steps: dict[str, float] = {}
+    for line, cells in enumerate(rows, 1):
+        if columns is None:
+            columns = _columns(cells) if line <= DEEPEST else None
+            continue
+        if not any(cells):
+            break
+        stated = {name: cells[k] for k, name in columns.items() if k < len(cells) and cells[k]}
+        info = _info(stated)
+        if info.rsn is not None:
+            by_number.setdefault(info.rsn, info)
+        for label, direction in FILES.items():
+            # Flatfiles give folders too, with either slash; search results write ----- for no file.
+            whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
+            name = whole.casefold()
+            if not name.strip("- "):
+                continue
+            by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
+            try:
+                if "units" in stated:
+                    units.setdefault(name, declared(stated["units"]))
+                if "dt" in stated and "units" in columns.values():
+                    steps.setdefault(name, positive("dt", _number(stated["dt"]) or 0.0, "s"))
+            except InputError as error:
+                raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
+    return None if columns is None else RecordTable(by_number, by_file, units, steps)
+
+
+def _number(text: str) -> float | None:
+    return real(text.replace(",", "."))
+
+
+def _info(stated: Mapping[str, str]) -> RecordInfo:
+    numbers = {name: known(_number(stated.get(name, ""))) for name in NUMBERS}
+    whole = {name: known(_number(stated.get(name, ""))) for name in ("rsn", "year")}
+    # PEER writes underscores for commas.
+    words = {name: stated[name].replace("_ ", ", ") for name in WORDS if stated.get(name, "-") not in ("-", "-999")}
+    return RecordInfo(
+        **numbers,  # pyright: ignore[reportArgumentType]
+        **{name: None if value is None else int(value) for name, value in whole.items()},  # pyright: ignore[reportArgumentType]
+        **words,  # pyright: ignore[reportArgumentType]
+    )

@@ -1,0 +1,244 @@
+"""A report of what is taken from a folder of records, and what is not, and why."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rockflex._values import Value
+from rockflex.motion._collect import FileRead, collect
+from rockflex.motion._folder import files_of, is_record
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._pairs import named
+from rockflex.motion._read_suite import Vertical, check_vertical
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._sorting import Sorted, sort_out
+from rockflex.motion._stations import StationRecord, group_stations
+from rockflex.motion._suite import Suite
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurveyEntry:
+    """A component in a file, or a file that holds none; None where something is unknown.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file.
+    taken : bool
+        Whether `read_suite` takes the component as a horizontal motion, or as the vertical one of such a motion.
+    reason : str
+        Why it is not taken, or what is to be known of one that is; empty if there is nothing to say.
+    name : str, optional
+        Name of the motion.
+    format : str, optional
+        Format of the file.
+    station, component : str, optional
+        Recording station, and name of the component.
+    direction : str, optional
+        Direction of the component, as in `RecordInfo`.
+    dt : float, optional
+        Time step in s.
+    n_samples : int, optional
+        Number of samples.
+    pga, stated_pga : float, optional
+        Peak of the samples, and that in the header, in m/s².
+    magnitude, distance_km, vs30 : float, optional
+        As in `RecordInfo`, from the header or a table about the records.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> entry = rf.SurveyEntry(file="A-UP.AT2", taken=False, reason="vertical component", name="A-UP")
+    >>> entry.taken, entry.reason
+    (False, 'vertical component')
+    """
+
+    file: str
+    taken: bool
+    reason: str
+    name: str | None = None
+    format: str | None = None
+    station: str | None = None
+    component: str | None = None
+    direction: str | None = None
+    dt: float | None = None
+    n_samples: int | None = None
+    pga: float | None = None
+    stated_pga: float | None = None
+    magnitude: float | None = None
+    distance_km: float | None = None
+    vs30: float | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordSurvey(Value):
+    r"""What is taken from a folder of records, and what is not; the result of `survey_records`.
+
+    Parameters
+    ----------
+    name : str
+        Name of the folder; empty for a list of files.
+    entries : tuple of SurveyEntry
+        One for each component, or file that holds none, sorted by file.
+    motions : tuple of GroundMotion
+        The horizontal motions that are taken.
+    stations : tuple of StationRecord
+        All components that can be read, by recording; see `group_stations`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> _ = Path("lab.csv").write_text("time (s), acc (g)\n0.00, 0.0\n0.01, 0.2\n0.02, 0.0\n")
+    >>> survey = rf.survey_records(["lab.csv"])
+    >>> survey.suite().names, survey.left_out
+    (('lab',), ())
+    """
+
+    name: str
+    entries: tuple[SurveyEntry, ...]
+    motions: tuple[GroundMotion, ...]
+    stations: tuple[StationRecord, ...]
+
+    @property
+    def taken(self) -> tuple[SurveyEntry, ...]:
+        """Entries of the components that are taken."""
+        return tuple(entry for entry in self.entries if entry.taken)
+
+    @property
+    def left_out(self) -> tuple[SurveyEntry, ...]:
+        """Entries of the components and files that are not taken, with the reasons."""
+        return tuple(entry for entry in self.entries if not entry.taken)
+
+    def suite(self) -> Suite:
+        """Return the suite of the motions that are taken, as ``read_suite(paths, on_error="skip")`` does.
+
+        Raises
+        ------
+        InputError
+            If there is none, or two have the same name.
+        """
+        return Suite(self.motions, self.name)
+
+    def to_frame(self) -> "pd.DataFrame":
+        """Return the entries as a table, with a row for each and a column for each field of `SurveyEntry`."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            [asdict(entry) for entry in self.entries], columns=[each.name for each in fields(SurveyEntry)]
+        )
+
+    def __repr__(self) -> str:
+        return f"RecordSurvey({self.name!r}, {len(self.taken)} taken, {len(self.left_out)} left out)"
+
+
+def survey_records(
+    paths: str | Path | Iterable[str | Path],
+    units: str | Mapping[str, str] | None = None,
+    dt: float | None = None,
+    vertical: Vertical | None = None,
+    table: str | Path | None = None,
+) -> RecordSurvey:
+    r"""Say of each file in a folder what it holds, whether `read_suite` takes it, and why not.
+
+    No file is an error: one that cannot be read has an entry with the reason. Files that are no records by their suffix
+    and their beginning have entries too, but not the folders within a folder.
+
+    Parameters
+    ----------
+    paths, units, dt, vertical, table
+        As in `read_suite`.
+
+    Returns
+    -------
+    RecordSurvey
+        The entries, the motions that are taken, and the components by station.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder, it holds no record, `units`, `dt` or `vertical` is not valid, or `table` cannot be
+        read.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> Path("survey").mkdir()
+    >>> for name in ("ABC090", "ABC-UP"):
+    ...     _ = Path("survey", f"{name}.AT2").write_text("NPTS= 3, DT= .01 SEC\n0 .1 0\n")
+    >>> _ = Path("survey", "notes.txt").write_text("Downloaded in spring\n")
+    >>> survey = rf.survey_records("survey")
+    >>> survey
+    RecordSurvey('survey', 1 taken, 2 left out)
+    >>> [(entry.file, entry.reason[:21]) for entry in survey.left_out]
+    [('ABC-UP.AT2', 'vertical component'), ('notes.txt', 'notes.txt holds no nu')]
+    """
+    check_vertical(vertical)
+    name, files = files_of(paths)
+    found = collect(files, units, dt, table)
+    result = sort_out(found, pair=vertical is not None)
+    names = [file.name for file in files]
+    entries = [entry for each in found for entry in _entries(each, result, names)]
+    if isinstance(paths, str | Path):
+        others = (file for file in Path(paths).iterdir() if file.is_file() and not is_record(file))
+        entries += [
+            SurveyEntry(file=file.name, taken=False, reason="no record, by suffix and beginning") for file in others
+        ]
+    motions = [motion for each in found for motion in each.motions.values()]
+    return RecordSurvey(
+        name,
+        tuple(sorted(entries, key=lambda entry: entry.file)),
+        tuple(result.taken[path] for each in found for path in each.motions if path in result.taken),
+        group_stations(motions),
+    )
+
+
+def _entries(each: FileRead, result: Sorted, names: list[str]) -> list[SurveyEntry]:
+    if each.table is not None:
+        missing = [Path(name) for name in each.table.missing(names)]
+        told = f"; it lists {len(missing)} files that are not there: {named(missing)}" if missing else ""
+        reason = f"a table about the records{told}"
+        return [SurveyEntry(file=each.file.name, taken=False, reason=reason, format="table")]
+    if each.fault is not None:
+        reason = str(each.fault).replace(str(each.file), each.file.name)
+        return [SurveyEntry(file=each.file.name, taken=False, reason=reason)]
+    return [_entry(each, path, motion, result) for path, motion in each.motions.items()]
+
+
+def _entry(each: FileRead, path: Path, motion: GroundMotion, result: Sorted) -> SurveyEntry:
+    info = motion.metadata or RecordInfo()
+    return SurveyEntry(
+        file=each.file.name,
+        taken=path in result.taken or path in result.upwards,
+        reason=_reason(each, path, result),
+        name=motion.name,
+        format=info.source_format,
+        station=info.station,
+        component=info.component,
+        direction=info.direction,
+        dt=motion.dt,
+        n_samples=motion.acceleration.size,
+        pga=motion.pga,
+        stated_pga=info.stated_pga,
+        magnitude=info.magnitude,
+        distance_km=info.distance_km,
+        vs30=info.vs30,
+    )
+
+
+def _reason(each: FileRead, path: Path, result: Sorted) -> str:
+    parts: list[str] = []
+    if path in result.below:
+        parts.append("borehole component beneath a record at the surface")
+    elif path in result.vertical:
+        parts.append("vertical component")
+    elif path in result.without:
+        parts.append(result.without[path] or "without a vertical component")
+    if each.notes.get(path):
+        parts.append(each.notes[path])
+    return "; ".join(parts)

@@ -1,0 +1,192 @@
+"""Files in the formats of strong-motion networks, written from the published descriptions, with synthetic samples."""
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+COUNTS = [8000, 8120, 7760, 8240, 8010, 7950, 7999, 8001, 8003, 7917]  # mean 8000
+GAL = 3920 / 6182761
+SAMPLES = [0.0, 1.25, -3.5, 12.125, -8.0, 0.5, 0.25, 0.0]  # cm/s²
+
+
+def load_obspy():
+    """ObsPy, whose import warns of the age of what it uses; without it the test is skipped."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return pytest.importorskip("obspy")
+
+
+def knet(
+    direction: str = "N-S",
+    counts: Sequence[int] = COUNTS,
+    *,
+    peak: float | None = None,
+    scale: str = "3920(gal)/6182761",
+    station: str = "MYG002",
+    rate: int = 10,
+    duration: float | None = None,
+    maximum: str = "Max. Acc. (gal)",
+) -> str:
+    """A K-NET or KiK-net file; the peak is that of the samples without their mean."""
+    numerator, denominator = scale.replace("(gal)", "").split("/")
+    if peak is None:
+        samples = np.array(counts, dtype=float) * float(numerator) / float(denominator)
+        peak = float(np.max(np.abs(samples - samples.mean())))
+    header = {
+        "Origin Time": "2006/01/18 23:25:00",
+        "Lat.": "37.798",
+        "Long.": "142.200",
+        "Depth. (km)": "36",
+        "Mag.": "5.7",
+        "Station Code": station,
+        "Station Lat.": "38.7262",
+        "Station Long.": "141.5109",
+        "Station Height(m)": "79",
+        "Record Time": "2006/01/18 23:25:46",
+        "Sampling Freq(Hz)": f"{rate}Hz",
+        "Duration Time(s)": f"{len(counts) / rate if duration is None else duration:g}",
+        "Dir.": direction,
+        "Scale Factor": scale,
+        maximum: f"{peak:.3f}",
+        "Last Correction": "2006/01/18 23:25:31",
+        "Memo.": "",
+    }
+    rows = ["".join(f"{value:9d}" for value in counts[k : k + 8]) for k in range(0, len(counts), 8)]
+    return "\n".join([*(f"{name:<18}{value}" for name, value in header.items()), *rows]) + "\n"
+
+
+def esm(samples: Sequence[float] = SAMPLES, stream: str = "HNE", **changed: str) -> str:
+    """An ESM file (DYNA 1.2); keys are changed by name, with _ for characters that are none in names."""
+    header = {
+        "EVENT_NAME": "CENTRAL_ITALY",
+        "EVENT_ID": "EMSC-20161030_0000029",
+        "EVENT_DATE_YYYYMMDD": "20161030",
+        "EVENT_TIME_HHMMSS": "064018",
+        "EVENT_LATITUDE_DEGREE": "42.8322",
+        "EVENT_LONGITUDE_DEGREE": "13.1107",
+        "EVENT_DEPTH_KM": "9.2",
+        "MAGNITUDE_W": "6.5",
+        "MAGNITUDE_W_REFERENCE": "Bulletin",
+        "MAGNITUDE_L": "6.1",
+        "FOCAL_MECHANISM": "Normal faulting",
+        "NETWORK": "IT",
+        "STATION_CODE": "NRC",
+        "STATION_NAME": "NORCIA",
+        "LOCATION": "00",
+        "VS30_M/S": "498",
+        "EPICENTRAL_DISTANCE_KM": "4.6",
+        "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS": "20161030_064013.250",
+        "SAMPLING_INTERVAL_S": "0.005000",
+        "NDATA": str(len(samples)),
+        "DURATION_S": f"{0.005 * len(samples):.3f}",
+        "STREAM": stream,
+        "UNITS": "cm/s^2",
+        "INSTRUMENT_ANALOG/DIGITAL": "D",
+        "PGA_CM/S^2": f"{max(samples, key=abs):.6f}",
+        "TIME_PGA_S": "0.015",
+        "LATE/NORMAL_TRIGGERED": "NT",
+        "HEADER_FORMAT": "DYNA 1.2",
+        "DATA_TYPE": "ACCELERATION",
+        "USER5": "",
+    }
+    plain = {key.replace("/", "_").replace("^", "_"): key for key in header}
+    header |= {plain[key]: value for key, value in changed.items()}
+    return (
+        "\n".join([*(f"{key}: {value}" for key, value in header.items()), *(f"{each:.6f}" for each in samples)]) + "\n"
+    )
+
+
+def cosmos(
+    code: int = 90,
+    samples: Sequence[float] = SAMPLES,
+    *,
+    channel: int = 1,
+    integers: dict[int, int] | None = None,
+    reals: dict[int, float] | None = None,
+    kind: str = "acceleration",
+    units: str = "cm/sec2(04)",
+    form: tuple[int, str] = (8, "F10.3"),
+    first: str = "Corrected acceleration",
+) -> str:
+    """A channel of a COSMOS file (version 1.20); header values are changed by their places, which count from 1."""
+    whole = dict.fromkeys(range(1, 101), -999)
+    whole |= {1: 2, 2: 1, 3: 4, 40: 2014, 42: 1, 43: 15, 44: 9, 45: 35, 50: channel, 54: code} | (integers or {})
+    real = dict.fromkeys(range(1, 101), -999.0)
+    peak = max(samples, key=abs)
+    real |= {4: 0.36, 13: 4.4, 17: 21.5, 30: 12.25, 62: 5.0, 63: 0.005 * len(samples), 64: peak, 65: 0.015}
+    real |= reals or {}
+    text = [
+        f"{first:<26}(Format v01.20 with 13 text lines) Src: made up",
+        "Rcrd of Fontana               Earthquake of Wed Jan 15, 2014 01:35 PST",
+        "Hypocenter: 34.143   -117.443   H=  3km       ML=     Mw=4.4",
+        "Origin: 01/15/2014, 09:35:19.0 UTC",
+        "Statn No: 05- 13921 Code:CE-13921  CGS  Riverside - Limonite & Downey",
+        "Coords: 33.975  -117.487   Site geology:",
+        "Recorder: Etna   s/n 1614 ( 3 Chns of   3 at Sta) Sensor: FBA",
+        "Rcrd start time: 1/15/2014, 09:35:12.250 UTC (Q=5) RcrdId: 13921-L1614",
+        f"Sta Chan  {channel}: {code} deg (Rcrdr Chan  {channel})",
+        "Raw record length =  56.000 sec, Uncor max =    20108 counts, at   25.205 sec.",
+        f"Processed: 01/15/14                      Max = {peak:9.3f} cm/s^2   at   0.015 sec",
+        "Record filtered below  0.30 Hz (periods over   3.3 secs)  and above 40.0 Hz",
+        "Values used when parameter or data value is unknown/unspecified:   -999, -999.0",
+    ]
+    columns, number = form
+
+    def block(values: Sequence[float], n: int, spec: str) -> list[str]:
+        kind, digits = spec[0], spec[1:]
+        written = [f"{int(v):{digits}d}" if kind == "I" else f"{v:{digits}{kind.lower()}}" for v in values]
+        return ["".join(written[k : k + n]) for k in range(0, len(written), n)]
+
+    return "\n".join(
+        [
+            *text,
+            " 100 Integer-header values follow on  10 lines, Format= (10I8)",
+            *block(list(whole.values()), 10, "I8"),
+            " 100 Real-header values follow on  20 lines, Format= (5F15.6)",
+            *block(list(real.values()), 5, "F15.6"),
+            '   2 Comment line(s) follow, each starting with a "|":',
+            "| Sensor: FBA",
+            "| 4 acceleration pts, in a comment, Format=(1F10.3)",
+            f"{len(samples):8d} {kind} pts, approx    0 secs, units={units},Format=({columns}{number})",
+            *block(samples, columns, number),
+            f"End-of-data for Chan  {channel} {kind}",
+            "",
+        ]
+    )
+
+
+SEARCH_RESULTS = """
+ PEER Ground Motion Database, Time Series Search Report -- NGA-West2 -- 2025-12-30
+
+
+ -- Summary of PEER Ground Motion Database Search Criteria --
+Magnitude Min:, 0.0
+Record Sequence Number:,
+Earthquake Name:,
+Station Name:,
+
+
+ -- Summary of Metadata of Selected Records --
+Result ID, Spectral Ordinate, Record Sequence Number, Mean Squared Error, Scale Factor, Tp-Pulse Period (sec), \
+5-75% Duration (sec), 5-95% Duration (sec), Arias Intensity (m/sec), Earthquake Name, Year, Station Name, Magnitude, \
+Mechanism, Rjb (km), Rrup (km), Vs30 (m/sec), Lowest Useable Frequency (Hz), Initial-search Scale Factor, \
+Horizontal-1 Acc. Filename, Horizontal-2 Acc. Filename, Vertical Acc. Filename
+1, SRSS, 9001, 0.4768, 1.0, -, 17.7, 24.2, 1.6, "Somewhere_ Italy-02", 1940, "Array #9_ East", 6.95, strike slip, \
+6.09, 7.5, 213.44, 0.25, 1.0, RSN9001_SOME_ABC180.AT2, RSN9001_SOME_ABC270.AT2 , RSN9001_SOME_ABC-UP.AT2
+2, SRSS, 9002, 2.6332, 1.0, 1.463, 12.4, 33.6, 0.3, "Elsewhere", 1952, "Courthouse", 7.36, Reverse, \
+81.3, 82.19, -999, 0.375, 1.0, RSN9002_ELSE_DEF042.AT2, RSN9002_ELSE_DEF132.AT2 ,  -----
+
+ These records were obtained from the NGA-West2 On-Line Ground-Motion Database Tool
+ These records are UNSCALED, AS RECORDED
+
+ -- Scaled Spectra used in Search & Scaling --
+Period (sec),Target pSa (g),Arithmetic Mean pSa (g),RSN-9001 SRSS pSa (g)
+0.01,0.53,0.31,0.35
+"""
+
+
+def at2(component: str, peak: float = 0.1, station: str = "Some Station") -> str:
+    """An AT2 file of three samples."""
+    return f"Some Event, 1/1/2001, {station}, {component}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .1\n0 {peak} 0\n"
