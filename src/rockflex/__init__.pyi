@@ -56,6 +56,7 @@ from .models import VVELComplete as VVELComplete
 from .models import VVELSimplified as VVELSimplified
 from .motion import GroundMotion as GroundMotion
 from .motion import RecordInfo as RecordInfo
+from .motion import RotatedSpectrum as RotatedSpectrum
 from .motion import Suite as Suite
 from .motion import half_sine_pulse as half_sine_pulse
 from .motion import load_suite as load_suite
@@ -68,6 +69,7 @@ from .motion import read_motion as read_motion
 from .motion import read_suite as read_suite
 from .motion import rectangular_pulse as rectangular_pulse
 from .motion import ricker_pulse as ricker_pulse
+from .motion import rotated_spectrum as rotated_spectrum
 from .motion import suite_names as suite_names
 from .papers.silva_stojadinovic_2024 import equivalent_2hz_long_base as equivalent_2hz_long_base
 from .papers.silva_stojadinovic_2024 import equivalent_s1 as equivalent_s1

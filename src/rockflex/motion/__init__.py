@@ -17,6 +17,7 @@ from rockflex.motion._pulses import (
 from rockflex.motion._read_suite import OnError, Vertical, folder_files, read_files, read_suite
 from rockflex.motion._readers import read_motion
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._rotation import RotatedSpectrum, rotated_spectrum
 from rockflex.motion._shaking import Shaking
 from rockflex.motion._suite import Suite
 from rockflex.motion._velocity_pulse import mavroeidis_papageorgiou_pulse
@@ -27,6 +28,7 @@ __all__ = [
     "Measure",
     "OnError",
     "RecordInfo",
+    "RotatedSpectrum",
     "Shaking",
     "Suite",
     "Vertical",
@@ -49,6 +51,7 @@ __all__ = [
     "record_measures",
     "rectangular_pulse",
     "ricker_pulse",
+    "rotated_spectrum",
     "suite_names",
     "vertical_measures",
 ]

@@ -48,13 +48,7 @@ class ResponseSpectrum(Value):
 
 def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
     """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
-    period = finite_vector("periods", periods, "s")
-    bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))
-    if bad.size:
-        raise InputError(
-            f"periods must be zero or at least 1e-6 s, but {period[bad[0]]:g} was given at index {bad[0]}. "
-            "A period of zero gives the peak ground acceleration."
-        )
+    period = checked_periods(periods)
     zeta = in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
     peaks = np.zeros((period.size, 2))
     for i in np.flatnonzero(period):
@@ -64,3 +58,21 @@ def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, dampin
     with np.errstate(over="ignore"):  # the acceleration is zero if the square of the period overflows
         sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
     return ResponseSpectrum(period, zeta, sd, sv, sa)
+
+
+def checked_periods(periods: ArrayLike) -> Array:
+    """Return periods in s, each zero or at least 1e-6 s.
+
+    Raises
+    ------
+    InputError
+        If one is negative, too short or not finite.
+    """
+    period = finite_vector("periods", periods, "s")
+    bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))
+    if bad.size:
+        raise InputError(
+            f"periods must be zero or at least 1e-6 s, but {period[bad[0]]:g} was given at index {bad[0]}. "
+            "A period of zero gives the peak ground acceleration."
+        )
+    return period
