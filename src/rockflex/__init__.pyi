@@ -57,7 +57,12 @@ from .models import VVELSimplified as VVELSimplified
 from .motion import GroundMotion as GroundMotion
 from .motion import RecordInfo as RecordInfo
 from .motion import RotatedSpectrum as RotatedSpectrum
+from .motion import Selection as Selection
 from .motion import Suite as Suite
+from .motion import TargetSpectrum as TargetSpectrum
+from .motion import asce7_site_spectrum as asce7_site_spectrum
+from .motion import asce7_spectrum as asce7_spectrum
+from .motion import ec8_spectrum as ec8_spectrum
 from .motion import half_sine_pulse as half_sine_pulse
 from .motion import load_suite as load_suite
 from .motion import mavroeidis_papageorgiou_pulse as mavroeidis_papageorgiou_pulse
@@ -67,6 +72,7 @@ from .motion import quiet_motion as quiet_motion
 from .motion import read_at2 as read_at2
 from .motion import read_motion as read_motion
 from .motion import read_suite as read_suite
+from .motion import read_target as read_target
 from .motion import rectangular_pulse as rectangular_pulse
 from .motion import ricker_pulse as ricker_pulse
 from .motion import rotated_spectrum as rotated_spectrum

@@ -1,6 +1,7 @@
 """Ground motions: records, pulses, suites, intensity measures and file formats."""
 
 from rockflex.motion._at2 import read_at2
+from rockflex.motion._codes import asce7_site_spectrum, asce7_spectrum, ec8_spectrum
 from rockflex.motion._direction import check_horizontal, direction_of, is_vertical
 from rockflex.motion._embedded import load_suite, suite_names
 from rockflex.motion._ground_motion import GroundMotion
@@ -15,25 +16,35 @@ from rockflex.motion._pulses import (
     ricker_pulse,
 )
 from rockflex.motion._read_suite import OnError, Vertical, folder_files, read_files, read_suite
+from rockflex.motion._read_target import read_target
 from rockflex.motion._readers import read_motion
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._recordings import Combination
 from rockflex.motion._rotation import RotatedSpectrum, rotated_spectrum
+from rockflex.motion._selection import Selection
 from rockflex.motion._shaking import Shaking
 from rockflex.motion._suite import Suite
+from rockflex.motion._target import TargetSpectrum
 from rockflex.motion._velocity_pulse import mavroeidis_papageorgiou_pulse
 
 __all__ = [
     "MEASURES",
+    "Combination",
     "GroundMotion",
     "Measure",
     "OnError",
     "RecordInfo",
     "RotatedSpectrum",
+    "Selection",
     "Shaking",
     "Suite",
+    "TargetSpectrum",
     "Vertical",
+    "asce7_site_spectrum",
+    "asce7_spectrum",
     "check_horizontal",
     "direction_of",
+    "ec8_spectrum",
     "folder_files",
     "half_sine_pulse",
     "intensities",
@@ -48,6 +59,7 @@ __all__ = [
     "read_files",
     "read_motion",
     "read_suite",
+    "read_target",
     "record_measures",
     "rectangular_pulse",
     "ricker_pulse",

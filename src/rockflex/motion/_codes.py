@@ -224,8 +224,8 @@ def asce7_site_spectrum(ss: float, s1: float, site: str, tl: float, *, mce: bool
     """
     if not one_of(site, (*_FA, "default")):
         raise InputError(
-            f'site must be one of A, B, C, D, E or "default", the site class of ASCE 7-16, but {shown(site)} was given. '
-            "Class F needs an analysis of the site.",
+            f'site must be one of A, B, C, D, E or "default", the site class of ASCE 7-16, but {shown(site)} was given.'
+            " Class F needs an analysis of the site.",
             field="site",
         )
     short, second = positive("ss", ss, "m/s²") / GRAVITY, positive("s1", s1, "m/s²") / GRAVITY

@@ -10,11 +10,10 @@ from rockflex._checks import in_range, instance, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.motion._rotation_kernel import rotated_peaks
+from rockflex.motion._periods import checked_periods
 from rockflex.motion._samples import Samples
-from rockflex.motion._spectrum import checked_periods
 
-ANGLES = np.arange(180) * (np.pi / 180)
+ANGLES: Array = np.radians(np.arange(180.0))
 _TURNS = np.stack((np.cos(ANGLES), np.sin(ANGLES)), axis=1)
 
 
@@ -126,6 +125,8 @@ def rotated_spectrum(
     >>> spectrum.rotd50.round(2), spectrum.rotd100.round(2), spectrum.geometric_mean.round(2)
     (array([9.58]), array([13.06]), array([9.61]))
     """
+    from rockflex.motion._rotation_kernel import rotated_peaks
+
     one, other = instance("first", first, Samples), instance("second", second, Samples)
     if abs(one.dt - other.dt) > 1e-9 * one.dt:
         raise InputError(

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, in_range
-from rockflex._errors import InputError
+from rockflex._checks import in_range
 from rockflex._values import Value
+from rockflex.motion._periods import checked_periods
 from rockflex.motion._spectrum_kernel import oscillator_peaks
 
 
@@ -58,21 +58,3 @@ def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, dampin
     with np.errstate(over="ignore"):  # the acceleration is zero if the square of the period overflows
         sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
     return ResponseSpectrum(period, zeta, sd, sv, sa)
-
-
-def checked_periods(periods: ArrayLike) -> Array:
-    """Return periods in s, each zero or at least 1e-6 s.
-
-    Raises
-    ------
-    InputError
-        If one is negative, too short or not finite.
-    """
-    period = finite_vector("periods", periods, "s")
-    bad = np.flatnonzero((period < 0) | ((period > 0) & (period < 1e-6)))
-    if bad.size:
-        raise InputError(
-            f"periods must be zero or at least 1e-6 s, but {period[bad[0]]:g} was given at index {bad[0]}. "
-            "A period of zero gives the peak ground acceleration."
-        )
-    return period

@@ -11,8 +11,6 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 
-RANGE = 50  # periods at which a range is examined
-
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class TargetSpectrum(Value):
@@ -64,8 +62,8 @@ class TargetSpectrum(Value):
         if period[0] < 0.0 or (np.diff(period) <= 0.0).any():
             wrong = 0 if period[0] < 0.0 else int(np.argmax(np.diff(period) <= 0.0)) + 1
             raise InputError(
-                f"periods must increase from zero or more, but {period[wrong]:g} s was given at index {wrong}. Sort the "
-                "table by period, and keep each period once.",
+                f"periods must increase from zero or more, but {period[wrong]:g} s was given at index {wrong}. Sort "
+                "the table by period, and keep each period once.",
                 field="periods",
             )
         all_positive("sa", ordinates, "m/s²")
@@ -88,8 +86,8 @@ class TargetSpectrum(Value):
         outside = (period < self.periods[0]) | (period > self.periods[-1])
         if outside.any():
             raise InputError(
-                f"The target {shown(self.name)} is known from {self.periods[0]:g} to {self.periods[-1]:g} s, but not at "
-                f"{period[np.argmax(outside)]:g} s. Choose periods within it, or extend the table.",
+                f"The target {shown(self.name)} is known from {self.periods[0]:g} to {self.periods[-1]:g} s, but not "
+                f"at {period[np.argmax(outside)]:g} s. Choose periods within it, or extend the table.",
                 field="periods",
             )
         table, ordinates = self.periods, self.sa
@@ -111,28 +109,3 @@ class TargetSpectrum(Value):
             If the factor is not positive.
         """
         return TargetSpectrum(self.periods, positive("factor", factor, "") * self.sa, self.damping_ratio, self.name)
-
-
-def examined_periods(periods: ArrayLike) -> Array:
-    """Return the periods at which spectra are compared: those between two ends, evenly in ln T, or those given.
-
-    Raises
-    ------
-    InputError
-        If there is none, the ends are not in order, or one is negative or not finite.
-    """
-    given = finite_vector("periods", periods, "s")
-    if given.size == 2:
-        if not 0.0 < given[0] < given[1]:
-            raise InputError(
-                f"periods must be a range such as (0.2, 2.0), but ({given[0]:g}, {given[1]:g}) was given. Two periods "
-                "are the ends of a range, in order and positive; give three or more for single periods.",
-                field="periods",
-            )
-        return np.geomspace(given[0], given[1], RANGE)
-    if not given.size or given.min() < 0.0 or (np.diff(given) <= 0.0).any():
-        raise InputError(
-            f"periods must be the two ends of a range, or increasing periods in s, but {shown(periods)} was given.",
-            field="periods",
-        )
-    return given
