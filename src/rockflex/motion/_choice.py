@@ -11,6 +11,7 @@ from rockflex._arrays import Array
 Caps = tuple[tuple[Sequence[Hashable | None], int], ...]
 """For each limit the group of every record, None for a group of its own, and the most of one group."""
 
+SEEDS = 20  # sets that grow from one record each
 _GAIN = 1e-12  # relative improvement below which an exchange is left alone
 
 
@@ -63,12 +64,13 @@ def misfit(ratios: Array) -> Array:
 
 
 def best_set(choice: Choice, n: int) -> list[int]:
-    """Return the better of two sets of `n` records, in order: both are improved by exchanges until none helps.
+    """Return the best of some sets of `n` records, in order: each is improved by exchanges until none helps.
 
-    One set starts from the records with the least misfit, the other grows by the record that helps its mean most. The
-    list is shorter than `n` where the caps leave too few records.
+    One set starts from the records with the least misfits; the others grow, each from one of these records, by the
+    record that helps the mean most. The list is shorter than `n` where the caps leave too few records.
     """
-    starts = _ranked(choice, n), _greedy(choice, n)
+    seeds = np.argsort(choice.misfits, kind="stable")[:SEEDS]
+    starts = [_ranked(choice, n), *(_greedy(choice, n, int(seed)) for seed in seeds)]
     longest = max(map(len, starts))
     sets = [_exchanged(choice, start) for start in starts if len(start) == longest]
     return sorted(min(sets, key=choice.of))
@@ -82,10 +84,9 @@ def _ranked(choice: Choice, n: int) -> list[int]:
     return chosen
 
 
-def _greedy(choice: Choice, n: int) -> list[int]:
-    chosen: list[int] = []
-    total, squares = np.zeros(choice.spectra.shape[1]), 0.0
+def _greedy(choice: Choice, n: int, seed: int) -> list[int]:
     own = choice.misfits**2
+    chosen, total, squares = [seed], choice.spectra[seed], own[seed]
     while len(chosen) < n and (free := choice.allowed(chosen)).any():
         badness = choice.badness(total + choice.spectra, squares + own, len(chosen) + 1)
         i = int(np.argmin(np.where(free, badness, np.inf)))

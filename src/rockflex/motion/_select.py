@@ -1,6 +1,5 @@
 """The choice of records for a target spectrum: checks, factors, limits."""
 
-import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, in_range, instance, one_of, positive, whole_number
+from rockflex._checks import finite_vector, instance, one_of, positive, real_or_nan, whole_number
 from rockflex._errors import InputError, RecordWarning
 from rockflex._shown import shown
 from rockflex.motion._choice import Choice, best_set
@@ -47,7 +46,7 @@ def chosen_records(
         words = ", ".join(map(repr, get_args(Combination)))
         raise InputError(f"measure must be one of {words}, but {shown(wishes.measure)} was given.", field="measure")
     low, high = _limits(wishes.scale_limits)
-    weight = in_range("record_weight", wishes.record_weight, 0.0, math.nextafter(1.0, 2.0))
+    weight = _share("record_weight", wishes.record_weight)
     caps = [
         (name, None if most is None else whole_number(name, most, 1))
         for name, most in (("per_event", wishes.per_event), ("per_station", wishes.per_station))
@@ -75,6 +74,13 @@ def chosen_records(
     if wishes.least_ratio is not None:
         factors = _raised(factors, unscaled / aim, positive("least_ratio", wishes.least_ratio, ""), high)
     return examined, [records[i] for i in found], factors, factors[:, None] * unscaled
+
+
+def _share(name: str, given: float) -> float:
+    share = real_or_nan(given)
+    if not 0.0 <= share <= 1.0:
+        raise InputError(f"{name} must lie in [0, 1], but {shown(given)} was given.", field=name)
+    return share
 
 
 def _limits(given: tuple[float, float]) -> tuple[float, float]:
