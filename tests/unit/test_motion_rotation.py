@@ -116,5 +116,5 @@ def test_refuses(arguments, text):
 
 @pytest.mark.parametrize("percentile", [-1, 100.1, math.nan, "50"])
 def test_refuses_percentiles(percentile):
-    with pytest.raises(rf.InputError, match="percentile must be a number from 0 to 100, but .* RotD50 is the 50th"):
+    with pytest.raises(rf.InputError, match=r"percentile must be a number from 0 to 100, but .* RotD50 is the 50th"):
         rf.rotated_spectrum(FIRST, SECOND, [1.0]).rotd(percentile)

@@ -163,7 +163,7 @@ def asce7_spectrum(sds: float, sd1: float, tl: float, *, mce: bool = False) -> T
     >>> import rockflex as rf
     >>> target = rf.asce7_spectrum(1.0 * 9.81, 0.6 * 9.81, tl=8.0)
     >>> (target.at([0.0, 0.12, 0.6, 1.2, 16.0]) / 9.81).round(6)
-    array([0.4     , 1.      , 1.      , 0.5     , 0.01875 ])
+    array([0.4    , 1.     , 1.     , 0.5    , 0.01875])
     """
     short, second, long = positive("sds", sds, "m/s²"), positive("sd1", sd1, "m/s²"), positive("tl", tl, "s")
     if not isinstance(mce, bool):  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -22,20 +22,18 @@ def factor_to(
     damping_ratio: float | None,
 ) -> float:
     """Return the factor of a motion for a target over periods, or for one ordinate; see `GroundMotion.scaled_to`."""
-    to_target, to_ordinate = (target, periods), (sa, period)
-    if None not in to_target and to_ordinate == (None, None) and damping_ratio is None:
+    if target is not None and periods is not None and sa is None and period is None and damping_ratio is None:
         wanted = instance("target", target, TargetSpectrum)
-        examined = examined_periods(np.nan if periods is None else periods)
+        examined = examined_periods(periods)
         spectrum = motion.spectrum(examined, wanted.damping_ratio).sa
         return fitting_factor(spectrum, wanted.at(examined), name)
-    if None in to_ordinate or to_target != (None, None):
+    if sa is None or period is None or target is not None or periods is not None:
         raise InputError(
             "scaled_to needs either a target and periods, or sa and period, with damping_ratio if it is not 0.05: "
             "motion.scaled_to(target, (0.2, 2.0)) or motion.scaled_to(sa=5.0, period=1.0). A target has its own "
             "damping ratio."
         )
-    ordinate = positive("sa", np.nan if sa is None else sa, "m/s²")
-    at = positive("period", np.nan if period is None else period, "s", zero=True)
+    ordinate, at = positive("sa", sa, "m/s²"), positive("period", period, "s", zero=True)
     return ordinate / _moving(motion.sa(at, 0.05 if damping_ratio is None else damping_ratio), name, at)
 
 

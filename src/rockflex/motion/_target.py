@@ -106,6 +106,8 @@ class TargetSpectrum(Value):
         Raises
         ------
         InputError
-            If the factor is not positive.
+            If the factor is not positive, or an ordinate becomes too large.
         """
-        return TargetSpectrum(self.periods, positive("factor", factor, "") * self.sa, self.damping_ratio, self.name)
+        with np.errstate(over="ignore"):
+            ordinates = positive("factor", factor, "") * self.sa
+        return TargetSpectrum(self.periods, ordinates, self.damping_ratio, self.name)
