@@ -144,6 +144,7 @@ def select(
         "target": wanted,
         "units": {"sa": "m/s²", "period": "s", "distance_km": "km", "vs30": "m/s"},
         "records": _records(chosen),
+        "motions": [item.describe() for item in found if item.motion.name in chosen.suite],
         "misfit": chosen.misfit,
         "least_ratio": chosen.least_ratio,
         "zero_period_ratio": chosen.zero_period_ratio,

@@ -146,7 +146,10 @@ class Selection(Value, Generic[S]):
         return pd.DataFrame(rows)
 
     def spectra(self) -> "pd.DataFrame":
-        """Return a pandas table with one row for each period: target, statistics, and S_a of each record in m/s²."""
+        """Return a pandas table with one row for each period: target, statistics, and S_a of each record in m/s².
+
+        The column of a record has its name, with "record " before it where that is the name of another column.
+        """
         import pandas as pd
 
         columns = {
@@ -156,4 +159,7 @@ class Selection(Value, Generic[S]):
             "median": self.median,
             "dispersion": self.dispersion,
         }
-        return pd.DataFrame(columns | {" + ".join(names): row for names, row in zip(self.names, self.sa, strict=True)})
+        for names, row in zip(self.names, self.sa, strict=True):
+            name = " + ".join(names)
+            columns[f"record {name}" if name in columns else name] = row
+        return pd.DataFrame(columns)

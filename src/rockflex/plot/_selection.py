@@ -80,7 +80,7 @@ def plot_selection(selection: Selection[Any]) -> Figure:
             axis.set_minor_formatter(NullFormatter())
         handles, labels = upper.get_legend_handles_labels()
         figure.legend(
-            handles, labels, loc="outside upper center", ncols=columns(labels, 78),
+            handles, labels, loc="outside upper center", ncols=min(2, columns(labels, 78)),
             title=f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s", title_fontsize=9.0,
         )  # fmt: skip
     return figure
