@@ -102,8 +102,8 @@ def ec8_spectrum(
     --------
     >>> import rockflex as rf
     >>> target = rf.ec8_spectrum(2.5, "C")
-    >>> target.at([0.0, 0.2, 0.6, 1.2, 4.0]).round(3)
-    array([2.875, 7.188, 7.188, 3.594, 0.539])
+    >>> target.at([0.0, 0.2, 0.6, 1.2, 4.0]).round(2)
+    array([2.88, 7.19, 7.19, 3.59, 0.54])
     """
     if real_or_nan(kind) not in _EC8:
         raise InputError(f"kind must be 1 or 2, the type of the spectrum, but {shown(kind)} was given.", field="kind")
