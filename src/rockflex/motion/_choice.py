@@ -100,12 +100,11 @@ def _exchanged(choice: Choice, chosen: list[int]) -> list[int]:
     own, present = choice.misfits**2, choice.of(chosen)
     while True:
         best, exchange = present, None
-        for place, i in enumerate(chosen):
+        for place in range(len(chosen)):
             rest = chosen[:place] + chosen[place + 1 :]
             total, squares = choice.spectra[rest].sum(axis=0), own[rest].sum()
             badness = choice.badness(total + choice.spectra, squares + own, len(chosen))
             badness[~choice.allowed(rest)] = np.inf
-            badness[i] = np.inf
             other = int(np.argmin(badness))
             if badness[other] < best * (1.0 - _GAIN):
                 best, exchange = float(badness[other]), (place, other)
