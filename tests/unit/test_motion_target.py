@@ -191,17 +191,40 @@ def test_from_a_file(tmp_path):
     file.write_text("# a comment\nperiod (s), sa (g)\n0.0, 0.3\n0.1, 0.75\n2.0, 0.2\n")
     target = rf.read_target(file, damping_ratio=0.02)
     assert target == rf.TargetSpectrum([0.0, 0.1, 2.0], G * np.array([0.3, 0.75, 0.2]), 0.02, "site")
-    file.write_text("0.1 750\n2.0 200\n")
+    file.write_text("0.1 750\n\n2.0 200  # the end\n")
     assert rf.read_target(file, "cm/s2").sa.tolist() == [7.5, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("head", "unit"),
+    [
+        ("T [s]; S_a [m/s²]", 1.0),
+        ("T (s) Sa (cm/sec^2)", 0.01),
+        ("T (s), Sa (gal)", 0.01),
+        ("period, Sa (g)", G),
+        ("% T (s), Sa (g)", G),
+    ],
+)
+def test_units_of_the_header(tmp_path, head, unit):
+    (tmp_path / "site.txt").write_text(f"{head}\n0.1; 2\n1.0; 1\n")
+    assert rf.read_target(tmp_path / "site.txt").sa.tolist() == [2.0 * unit, unit]
 
 
 @pytest.mark.parametrize(
     ("text", "options", "message"),
     [
-        ("0.1 1\n2.0 1\n", {}, r'does not state the unit.*read_target\(path, units="g"\).*label the column "sa \(g\)"'),
-        ("period, sa (g)\n0.1, 1\n", {"units": "m/s2"}, "the column header says g, but units='m/s2' was given"),
-        ("0.1\n0.2\n", {"units": "g"}, "has 1 column, but a target spectrum has two"),
-        ("0.1 1 2\n0.2 1 2\n", {"units": "g"}, "has 3 columns, but a target spectrum has two"),
+        (
+            "0.1 1\n2.0 1\n",
+            {},
+            r'does not state the unit.*read_target\(path, units="g"\).*header "period \(s\), sa \(g\)"',
+        ),
+        ("period (s), sa (g)\n0.1, 1\n2, 1\n", {"units": "m/s2"}, "the header says g, but units='m/s2' was given"),
+        ("period (s), sa (furlong)\n0.1, 1\n", {}, "the header gives the unit 'furlong', which is not known. Write it"),
+        ("T (s), sa\n0.1, 1\n2, 1\n", {}, "does not state the unit of its acceleration"),
+        ("0.1\n0.2\n", {"units": "g"}, "line 1: a target spectrum has two columns, the period.* but 1 were found"),
+        ("0.1 1\n0.2 1 2\n", {"units": "g"}, "line 2: a target spectrum has two columns.* but 3 were found"),
+        ("period\n", {"units": "g"}, "holds no numbers: a target spectrum is expected as two columns"),
+        ("0,1; 1\n", {"units": "g"}, "line 1: expected a finite number, but found '0,1'. Write decimals with a point"),
         ("0.1 1\n0.2 x\n", {"units": "g"}, "line 2: expected a finite number, but found 'x'"),
         ("0.2 1\n0.1 1\n", {"units": "g"}, r"site\.txt: periods must increase"),
         ("0.1 1\n0.2 1\n", {"units": "ft"}, "units must be one of 'g', 'm/s2', 'cm/s2', but 'ft' was given"),

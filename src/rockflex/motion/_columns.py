@@ -23,10 +23,10 @@ BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 
 def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | None) -> GroundMotion:
     """Build the motion from rows of numbers."""
-    labels, rows = split_columns(file, lines)
+    labels, rows = _split(file, lines)
     n_columns = len(rows[0][1])
     time_column, column = _choose(file, labels, n_columns)
-    stated = stated_unit(file, labels[column] if labels else "", units)
+    stated = _stated_unit(file, labels[column] if labels else "", units)
     values = np.array([number(cells[column], file, line) for line, cells in rows])
     if time_column is None:
         if dt is None:
@@ -46,12 +46,12 @@ def parse_columns(file: Path, lines: list[str], units: str | None, dt: float | N
     upwards = _vertical_column(file, labels)
     if upwards is None:
         return motion
-    stated = stated_unit(file, labels[upwards], units)
+    stated = _stated_unit(file, labels[upwards], units)
     values = np.array([number(cells[upwards], file, line) for line, cells in rows])
     return motion.with_vertical(acceleration_of(file, values, stated, remedy))
 
 
-def split_columns(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
+def _split(file: Path, lines: list[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Return the column labels (empty if there are none) and the numbered rows of cells."""
     rows: list[tuple[int, list[str]]] = []
     heads: list[str] = []
@@ -140,11 +140,8 @@ def _vertical_column(file: Path, labels: list[str]) -> int | None:
     return found[0] if found else None
 
 
-def stated_unit(file: Path, label: str, units: str | None, call: str = "read_motion", short: str = "acc") -> str:
-    """Return the unit stated by the label or the caller; both must agree.
-
-    `call` and `short`, a label, are what an error suggests.
-    """
+def _stated_unit(file: Path, label: str, units: str | None) -> str:
+    """Return the unit stated by the label or the caller; both must agree."""
     bracket = BRACKET.search(label, 0, _after_brackets(label))
     written = bracket[1] if bracket else ""
     plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-"))
@@ -164,7 +161,7 @@ def stated_unit(file: Path, label: str, units: str | None, call: str = "read_mot
         return stated or str(units)
     raise InputError(
         f"{file} does not state the unit of its acceleration. Declare it: "
-        f'{call}(path, units="g"), "m/s2" or "cm/s2"; or label the column "{short} (g)".',
+        'read_motion(path, units="g"), "m/s2" or "cm/s2"; or label the column "acc (g)".',
         field="units",
     )
 
