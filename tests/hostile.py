@@ -185,6 +185,7 @@ def structures() -> Calls:
 def motions() -> Calls:
     """Calls that make and change ground motions."""
     motion = rf.GroundMotion([0.0, 1.0, -1.0, 0.5] * 20, 0.01, "short")
+    target = rf.ec8_spectrum(2.0, "B")
     pulse = {"amplitude": 1.0, "period": 0.5, "dt": 0.01}
     lasting = {"amplitude": 1.0, "duration": 0.5, "dt": 0.01}
     return {
@@ -210,6 +211,43 @@ def motions() -> Calls:
         "baseline_corrected": (motion.baseline_corrected, {"degree": 1}),
         "band_passed": (motion.band_passed, {"low": 1.0, "high": 20.0, "order": 2}),
         "significant_duration": (motion.significant_duration, {"low": 0.05, "high": 0.95}),
+        "scaled_to": (motion.scaled_to, {"sa": 1.0, "period": 0.5, "damping_ratio": 0.02}),
+        "scaled_to a target": (motion.scaled_to, {"target": target, "periods": (0.2, 1.0)}),
+        "select": (
+            rf.Suite([motion]).select,
+            {
+                "target": target,
+                "n": 1,
+                "periods": (0.2, 1.0),
+                "measure": "component",
+                "scale_limits": (0.1, 1e9),
+                "per_event": 1,
+                "per_station": 1,
+                "record_weight": 0.5,
+                "least_ratio": 0.9,
+            },
+        ),
+        "TargetSpectrum": (
+            rf.TargetSpectrum,
+            {"periods": [0.1, 1.0], "sa": [2.0, 1.0], "damping_ratio": 0.05, "name": "a"},
+        ),
+        "target.at": (target.at, {"periods": [0.5]}),
+        "target.scaled": (target.scaled, {"factor": 2.0}),
+        "read_target": (rf.read_target, {"path": "nothing.csv", "units": "g"}),
+        "ec8_spectrum": (
+            rf.ec8_spectrum,
+            {"ag": 2.0, "ground": "A", "kind": 1, "importance": 1.0, "damping_ratio": 0.05},
+        ),
+        "asce7_spectrum": (rf.asce7_spectrum, {"sds": 10.0, "sd1": 6.0, "tl": 8.0, "mce": False}),
+        "asce7_site_spectrum": (
+            rf.asce7_site_spectrum,
+            {"ss": 10.0, "s1": 6.0, "site": "C", "tl": 8.0, "mce": False},
+        ),
+        "rotated_spectrum": (
+            rf.rotated_spectrum,
+            {"first": motion, "second": motion, "periods": [0.5, 1.0], "damping_ratio": 0.05},
+        ),
+        "rotd": (rf.rotated_spectrum(motion, motion, [0.5]).rotd, {"percentile": 50}),
         "spectrum": (motion.spectrum, {"periods": [0.5, 1.0], "damping_ratio": 0.05}),
         "sd": (motion.sd, {"period": 0.5, "damping_ratio": 0.05}),
         "sa": (motion.sa, {"period": 0.5, "damping_ratio": 0.05}),

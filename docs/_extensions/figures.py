@@ -12,6 +12,7 @@ class Order:
 
     SCRIPTS = (
         "first_run",
+        "records_for_a_target",
         "models_compared",
         "uplift_and_modes",
         "shenton_map",

@@ -56,7 +56,13 @@ from .models import VVELComplete as VVELComplete
 from .models import VVELSimplified as VVELSimplified
 from .motion import GroundMotion as GroundMotion
 from .motion import RecordInfo as RecordInfo
+from .motion import RotatedSpectrum as RotatedSpectrum
+from .motion import Selection as Selection
 from .motion import Suite as Suite
+from .motion import TargetSpectrum as TargetSpectrum
+from .motion import asce7_site_spectrum as asce7_site_spectrum
+from .motion import asce7_spectrum as asce7_spectrum
+from .motion import ec8_spectrum as ec8_spectrum
 from .motion import half_sine_pulse as half_sine_pulse
 from .motion import load_suite as load_suite
 from .motion import mavroeidis_papageorgiou_pulse as mavroeidis_papageorgiou_pulse
@@ -66,8 +72,10 @@ from .motion import quiet_motion as quiet_motion
 from .motion import read_at2 as read_at2
 from .motion import read_motion as read_motion
 from .motion import read_suite as read_suite
+from .motion import read_target as read_target
 from .motion import rectangular_pulse as rectangular_pulse
 from .motion import ricker_pulse as ricker_pulse
+from .motion import rotated_spectrum as rotated_spectrum
 from .motion import suite_names as suite_names
 from .papers.silva_stojadinovic_2024 import equivalent_2hz_long_base as equivalent_2hz_long_base
 from .papers.silva_stojadinovic_2024 import equivalent_s1 as equivalent_s1
@@ -98,6 +106,7 @@ from .plot import plot_moment_rotation_laws as plot_moment_rotation_laws
 from .plot import plot_motion as plot_motion
 from .plot import plot_overturning_spectrum as plot_overturning_spectrum
 from .plot import plot_rocking_spectrum as plot_rocking_spectrum
+from .plot import plot_selection as plot_selection
 from .plot import plot_spread as plot_spread
 from .plot import plot_stripes as plot_stripes
 from .plot import plot_tower as plot_tower

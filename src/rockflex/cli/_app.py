@@ -8,7 +8,7 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _serve, _study, _survey, _warm
+from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _select, _serve, _study, _survey, _warm
 from rockflex.cli._console import complain, note, remarks
 from rockflex.cli._flags import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
@@ -16,6 +16,8 @@ from rockflex.kinds import KINDS
 EPILOG = """[bold]Examples[/bold]
 
 rockflex motion fema-p695-far-field
+
+rockflex select fema-p695-far-field --target ec8:ag=0.25g,ground=C --count 7 --periods 0.2,2
 
 rockflex modes structure.toml
 
@@ -63,6 +65,7 @@ app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_ru
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
 app.command("survey", epilog=_survey.EPILOG, no_args_is_help=True)(_survey.survey)
+app.command("select", epilog=_select.EPILOG, no_args_is_help=True)(_select.select)
 for kind in KINDS.values():
     app.command(kind.command, epilog=_study.epilog(kind.command), no_args_is_help=True)(_study.command_of(kind))
 app.command("figures", epilog=_figures.EPILOG, no_args_is_help=True)(_figures.figures)

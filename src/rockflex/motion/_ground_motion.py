@@ -15,6 +15,8 @@ from rockflex._shown import shown
 from rockflex.motion import _processing, _vertical
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._samples import Samples
+from rockflex.motion._scaling import factor_to
+from rockflex.motion._target import TargetSpectrum
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -201,6 +203,22 @@ class GroundMotion(Samples):
         factor = finite("factor", factor, "")
         with np.errstate(over="ignore"):
             return self._changed(lambda samples: samples * factor)
+
+    def scaled_to(
+        self,
+        target: TargetSpectrum | None = None,
+        periods: ArrayLike | None = None,
+        *,
+        sa: float | None = None,
+        period: float | None = None,
+        damping_ratio: float | None = None,
+    ) -> "GroundMotion":
+        """Return the motion scaled to `sa` (m/s²) at `period` (s), for 5 % damping or `damping_ratio`, or to a target.
+
+        ``scaled_to(target, (0.2, 2.0))`` fits a `TargetSpectrum` with the least mean square of ln(S_a/target) over
+        `periods`, as in `Suite.select`. `InputError` where neither, or both, are given, or the motion does not move.
+        """
+        return self.scaled(factor_to(self, self.name, target, periods, sa, period, damping_ratio))
 
     def refined(self, k: int) -> "GroundMotion":
         """Return the same piecewise linear function with every interval split into `k` equal ones.

@@ -7,12 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, in_range
-from rockflex._errors import InputError
+from rockflex._checks import in_range
 from rockflex._values import Value
+from rockflex.motion._periods import SHORTEST, checked_periods
 from rockflex.motion._spectrum_kernel import oscillator_peaks
-
-SHORTEST = 1e-6  # s
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,13 +56,7 @@ def largest_displacement(acceleration: Array, dt: float, period: float, damping_
 
 def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
     """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
-    period = finite_vector("periods", periods, "s")
-    bad = np.flatnonzero((period < 0) | ((period > 0) & (period < SHORTEST)))
-    if bad.size:
-        raise InputError(
-            f"periods must be zero or at least 1e-6 s, but {period[bad[0]]:g} was given at index {bad[0]}. "
-            "A period of zero gives the peak ground acceleration."
-        )
+    period = checked_periods(periods)
     zeta = in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
     peaks = np.zeros((period.size, 2))
     for i in np.flatnonzero(period):

@@ -65,7 +65,7 @@ def _stationary(
 
 
 @kernel
-def _peaks_inside(
+def peaks_inside(
     omega: float, zeta: float, u: float, v: float, a: float, slope: float, dt: float, sd: float, sv: float
 ) -> tuple[float, float]:
     """Largest |u| and |v| within one interval.
@@ -128,6 +128,6 @@ def oscillator_peaks(acceleration: Array, dt: float, omega: float, zeta: float) 
             q = (-slope - zeta * omega * w - omega * omega * v) / omega_d
             size = math.hypot(w, q)
             if end_u + size * dt * dt / 8 > sd or end_v + size * dt / 2 > sv:
-                sd, sv = _peaks_inside(omega, zeta, u, v, a, slope, dt, sd, sv)
+                sd, sv = peaks_inside(omega, zeta, u, v, a, slope, dt, sd, sv)
         u, v, w = u1, v1, w1
     return sd, sv

@@ -6,11 +6,17 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import overload
 
+from numpy.typing import ArrayLike
+
 from rockflex._checks import instance
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._recordings import Combination
+from rockflex.motion._select import Wishes, chosen_records
+from rockflex.motion._selection import Selection
+from rockflex.motion._target import TargetSpectrum
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -100,3 +106,109 @@ class Suite(Value, Sequence[GroundMotion]):
             f"No motion of the suite {shown(self.name)} is named {shown(index)}. "
             f"The nearest names are {', '.join(map(repr, near))}; .names lists all {len(self)}."
         )
+
+    def scaled_to(
+        self,
+        target: TargetSpectrum | None = None,
+        periods: ArrayLike | None = None,
+        *,
+        sa: float | None = None,
+        period: float | None = None,
+        damping_ratio: float | None = None,
+    ) -> "Suite":
+        """Return the suite with each motion scaled for itself, as by `GroundMotion.scaled_to`."""
+        return Suite(
+            (each.scaled_to(target, periods, sa=sa, period=period, damping_ratio=damping_ratio) for each in self),
+            self.name,
+        )
+
+    def select(
+        self,
+        target: TargetSpectrum,
+        n: int,
+        periods: ArrayLike,
+        *,
+        measure: Combination = "component",
+        scale_limits: tuple[float, float] = (0.25, 4.0),
+        per_event: int | None = None,
+        per_station: int | None = None,
+        record_weight: float = 0.0,
+        least_ratio: float | None = None,
+    ) -> Selection["Suite"]:
+        """Choose records whose mean spectrum fits a target best, each scaled by one factor.
+
+        Each record gets the factor for which its own misfit, the root mean square of ln(S_a/target) over the periods,
+        is least. Of the scaled records, a set is then sought with the least misfit of its arithmetic mean: it grows by
+        the record that helps most, and is improved by exchanges of one record until none helps. A second set starts
+        from the records with the least misfits, and the better one is returned. A set improved by exchanges need not
+        be the best of all, but the same records always give the same set.
+
+        Parameters
+        ----------
+        target : TargetSpectrum
+            The target; spectra are those for its damping ratio.
+        n : int
+            Number of records; with a measure of pairs, of pairs.
+        periods : array_like
+            The two ends of a range in s, such as (0.2 T, 2 T), which is examined at 50 periods evenly spaced in ln T;
+            or three and more increasing periods.
+        measure : {"component", "geometric mean", "rotd50", "rotd100"}
+            The ordinate of a record: that of each motion by itself, or of the two horizontal components of a recording,
+            which are chosen and scaled together. Components belong together if they have the same record sequence
+            number; else the same event, year and station; else names as ABC000 and ABC090. "rotd50" and "rotd100" are
+            those of `rotated_spectrum`.
+        scale_limits : tuple of float
+            Smallest and largest factor. Where the best factor of a record is beyond, it gets the limit.
+        per_event, per_station : int, optional
+            Most records of one earthquake, and at one station. Records of which it is not known are not limited.
+        record_weight : float
+            Weight of the mean of the squared misfits of the records, beside the squared misfit of their mean: from 0,
+            only the mean counts, to 1, the records with the least misfits are chosen, whatever their mean.
+        least_ratio : float, optional
+            Smallest ratio of the mean to the target. If the chosen set has less anywhere, all of its factors are
+            multiplied by the same number.
+
+        Returns
+        -------
+        Selection
+            The chosen records, scaled, in the order of the suite, with their factors and spectra.
+
+        Raises
+        ------
+        InputError
+            If the target does not cover the periods, `n` is more than there are or the limits leave, no motions form a
+            pair, a motion is vertical or does not move, `least_ratio` needs factors beyond the limits, or an argument
+            is out of range.
+
+        Warns
+        -----
+        RecordWarning
+            If motions are left out because they are not one of two components of a recording.
+
+        References
+        ----------
+        Baker JW, Lee C. An improved algorithm for selecting ground motions to match a conditional spectrum.
+        *J Earthquake Eng* 2018;22(4):708–723: the search, greedy and by exchanges.
+
+        Examples
+        --------
+        >>> import rockflex as rf
+        >>> suite = rf.load_suite("fema-p695-far-field")
+        >>> chosen = suite.select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0), per_event=1, least_ratio=0.9)
+        >>> len(chosen.suite), chosen.least_ratio > 0.89
+        (7, True)
+        """
+        wishes = Wishes(
+            measure=measure,
+            scale_limits=scale_limits,
+            per_event=per_event,
+            per_station=per_station,
+            record_weight=record_weight,
+            least_ratio=least_ratio,
+        )
+        examined, records, factors, sa = chosen_records(self.motions, target, n, periods, wishes)
+        scaled = [
+            motion.scaled(factor) for record, factor in zip(records, factors, strict=True) for motion in record.motions
+        ]
+        names = tuple(record.names for record in records)
+        return Selection(target, examined, measure, Suite(scaled, self.name), names, factors, sa)

@@ -17,6 +17,7 @@ from rockflex.plot._moment_rotation_laws import plot_moment_rotation_laws
 from rockflex.plot._motion import plot_motion
 from rockflex.plot._rocking_spectra import plot_overturning_spectrum, plot_rocking_spectrum
 from rockflex.plot._save import save_figure
+from rockflex.plot._selection import plot_selection
 from rockflex.plot._spread import plot_spread
 from rockflex.plot._stripes import plot_stripes
 from rockflex.plot._tower import plot_tower
@@ -41,6 +42,7 @@ __all__ = [
     "plot_motion",
     "plot_overturning_spectrum",
     "plot_rocking_spectrum",
+    "plot_selection",
     "plot_spread",
     "plot_stripes",
     "plot_tower",

@@ -11,7 +11,7 @@ import numpy as np
 from rockflex._kernel import KERNELS, notice
 from rockflex._numba import folder_of
 from rockflex.models import Model
-from rockflex.motion import GroundMotion
+from rockflex.motion import GroundMotion, rotated_spectrum
 from rockflex.response import Response
 from rockflex.structure import LumpedStructure
 from rockflex.study._case import Case
@@ -119,6 +119,7 @@ def _complete() -> None:
 
 def _spectra() -> None:
     _motion().spectrum([0.5])
+    rotated_spectrum(_motion(), _motion(), [0.5])
 
 
 STEPS: dict[str, Callable[[], object]] = {

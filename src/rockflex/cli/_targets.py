@@ -1,0 +1,113 @@
+"""Target spectra as they are written on the command line."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.motion import TargetSpectrum, asce7_site_spectrum, asce7_spectrum, ec8_spectrum, read_target
+
+WORDS = {"yes": True, "no": False}
+Reader = Callable[[str, str], Any]
+
+
+def parse_target(text: str, damping: float | None) -> TargetSpectrum:
+    """Return the target of ``ec8:ag=0.25g,ground=C``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
+
+    `damping` is the damping ratio of a target from a file; None means 5 %.
+
+    Raises
+    ------
+    InputError
+        If a code or a key is unknown, a key is missing or repeated, a value is no number, or the file cannot be read.
+    """
+    code, colon, rest = text.partition(":")
+    if not colon or code not in ("ec8", "asce7"):
+        if not Path(text).exists():
+            raise InputError(
+                f"--target {shown(text)} is neither a file nor a code. Write ec8:ag=0.25g,ground=C, or "
+                "asce7:sds=1g,sd1=0.6g,tl=8, or asce7:ss=1.5g,s1=0.6g,site=D,tl=8, or name a file with the columns "
+                '"period (s), sa (g)".'
+            )
+        return read_target(text, damping_ratio=0.05 if damping is None else damping)
+    if damping is not None:
+        raise InputError(
+            "--damping is for a target from a file. Write ec8:...,damping=0.02; ASCE 7 has 5 %: leave --damping out."
+        )
+    items = _items(code, rest)
+    if code == "ec8":
+        given = _read(code, items, {"ag": _acceleration}, {
+            "ground": _word, "type": _number, "importance": _number, "damping": _number,
+        })  # fmt: skip
+        names = {"type": "kind", "damping": "damping_ratio"}
+        return ec8_spectrum(**{names.get(key, key): value for key, value in given.items()})
+    if "ss" in items or "s1" in items or "site" in items:
+        needed: dict[str, Reader] = {"ss": _acceleration, "s1": _acceleration, "site": _word, "tl": _number}
+        return asce7_site_spectrum(**_read(code, items, needed, {"mce": _yes}))
+    needed = {"sds": _acceleration, "sd1": _acceleration, "tl": _number}
+    return asce7_spectrum(**_read(code, items, needed, {"mce": _yes}))
+
+
+def numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
+    """Return numbers separated by commas.
+
+    Raises
+    ------
+    InputError
+        If one is not a number, or there are too few or too many.
+    """
+    values = [_number(flag, part.strip()) for part in text.split(",")]
+    if len(values) < least or (most is not None and len(values) > most):
+        count = f"{least}" if most == least else f"at least {least}"
+        raise InputError(f"{flag} needs {count} numbers separated by commas, but {shown(text)} was given.")
+    return values
+
+
+def _items(code: str, rest: str) -> dict[str, str]:
+    items: dict[str, str] = {}
+    for part in filter(None, (part.strip() for part in rest.split(","))):
+        key, equals, value = (each.strip() for each in part.partition("="))
+        if not equals or not value or key in items:
+            reason = "occurs twice" if key in items else "has no value"
+            raise InputError(
+                f"--target {code}:...: {shown(key)} {reason}. Write each key once, as in {code}:key=value,..."
+            )
+        items[key] = value
+    return items
+
+
+def _read(code: str, items: dict[str, str], needed: dict[str, Reader], optional: dict[str, Reader]) -> dict[str, Any]:
+    readers = needed | optional
+    unknown, missing = [key for key in items if key not in readers], [key for key in needed if key not in items]
+    if unknown or missing:
+        what = f"{shown(unknown[0])} is not known" if unknown else f"{missing[0]} is missing"
+        raise InputError(
+            f"--target {code}:...: {what}. The keys are {', '.join(needed)}"
+            + (f", and {', '.join(optional)} if wanted." if optional else ".")
+        )
+    return {key: readers[key](f"--target {code}: {key}", value) for key, value in items.items()}
+
+
+def _acceleration(name: str, text: str) -> float:
+    """Read m/s², or g where the number ends in g."""
+    return _number(name, text[:-1].strip()) * GRAVITY if text.endswith("g") else _number(name, text)
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{name} must be a number, but {shown(text)} was given.") from None
+
+
+def _word(name: str, text: str) -> str:
+    del name
+    return text
+
+
+def _yes(name: str, text: str) -> bool:
+    if text not in WORDS:
+        raise InputError(f"{name} must be yes or no, but {shown(text)} was given.")
+    return WORDS[text]

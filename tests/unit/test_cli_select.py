@@ -1,0 +1,183 @@
+"""``rockflex select``: the same choice as in Python, as a table, a figure and records."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+import rockflex as rf
+from rockflex.cli import app
+
+G = 9.81
+SUITE = "fema-p695-far-field"
+USUAL = (SUITE, "--target", "ec8:ag=0.25g,ground=C", "--count", 3, "--periods", "0.2,0.5,1.0")
+
+
+def invoke(*arguments, columns=100):
+    return CliRunner().invoke(app, ["select", *map(str, arguments)], env={"COLUMNS": str(columns)})
+
+
+def refused(*arguments):
+    result = invoke(*arguments)
+    assert result.exit_code == 2
+    return result.stderr
+
+
+def test_document_is_the_selection():
+    options = ("--per-event", 1, "--per-station", 2, "--limits", "0.5,3", "--record-weight", 0.2, "--least", 0.9)
+    found = json.loads(invoke(*USUAL, *options, "--json").stdout)
+    target = rf.ec8_spectrum(0.25 * G, "C")
+    chosen = rf.load_suite(SUITE).select(
+        target,
+        3,
+        [0.2, 0.5, 1.0],
+        per_event=1,
+        per_station=2,
+        scale_limits=(0.5, 3.0),
+        record_weight=0.2,
+        least_ratio=0.9,
+    )
+    assert [row["record"] for row in found["records"]] == list(chosen.suite.names)
+    assert [row["factor"] for row in found["records"]] == chosen.factors.tolist()
+    assert [row["event"] for row in found["records"]] == [motion.metadata.event for motion in chosen.suite]
+    assert (found["misfit"], found["least_ratio"]) == (chosen.misfit, chosen.least_ratio)
+    assert found["zero_period_ratio"] == chosen.zero_period_ratio
+    assert found["target"]["sa"] == target.sa.tolist()
+    assert found["spectra"]["mean"] == chosen.mean.tolist()
+    assert [each["name"] for each in found["motions"]] == list(chosen.suite.names)
+    assert found["options"]["scale_limits"] == [0.5, 3.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "target"),
+    [
+        ("ec8:ag=2", rf.ec8_spectrum(2.0)),
+        ("ec8: ag = 2, ground=E, type=2, importance=1.2, damping=0.02",
+         rf.ec8_spectrum(2.0, "E", 2, importance=1.2, damping_ratio=0.02)),
+        ("asce7:sds=1g,sd1=0.6g,tl=8", rf.asce7_spectrum(G, 0.6 * G, 8.0)),
+        ("asce7:sds=9,sd1=5,tl=8,mce=yes", rf.asce7_spectrum(9.0, 5.0, 8.0, mce=True)),
+        ("asce7:ss=1.5g,s1=0.6g,site=default,tl=8,mce=no", rf.asce7_site_spectrum(1.5 * G, 0.6 * G, "default", 8.0)),
+    ],
+)  # fmt: skip
+def test_targets_of_codes(text, target):
+    arguments = (
+        "el-centro-1940",
+        "--target",
+        text,
+        "--count",
+        1,
+        "--periods",
+        "0.2,2",
+        "--limits",
+        "0.01,100",
+        "--json",
+    )
+    found = json.loads(invoke(*arguments).stdout)["target"]
+    assert found["periods"] == target.periods.tolist()
+    assert found["sa"] == pytest.approx(target.sa.tolist(), rel=1e-14)
+    assert found["damping_ratio"] == target.damping_ratio
+
+
+def test_target_from_a_file(tmp_path):
+    file = tmp_path / "site.csv"
+    file.write_text("period (s), sa (g)\n0.1, 0.75\n0.5, 0.75\n3.0, 0.1\n")
+    arguments = (SUITE, "--target", file, "--count", 2, "--periods", "0.2,2", "--damping", 0.1)
+    chosen = rf.load_suite(SUITE).select(rf.read_target(file, damping_ratio=0.1), 2, (0.2, 2.0))
+    found = json.loads(invoke(*arguments, "--json").stdout)
+    assert found["misfit"] == chosen.misfit
+    assert found["zero_period_ratio"] is None
+    shown = invoke(*arguments).stdout
+    assert "Target: site, damping 0.1, 0.2 to 2 s" in shown
+    assert "period of zero" not in shown
+
+
+def test_printed_table():
+    chosen = rf.load_suite(SUITE).select(rf.ec8_spectrum(0.25 * G, "C"), 3, [0.2, 0.5, 1.0])
+    shown = invoke(*USUAL).stdout
+    rows = {line.split()[0]: line.split() for line in shown.splitlines() if line.startswith("FF-")}
+    assert list(rows) == list(chosen.suite.names)
+    for name, factor in zip(chosen.suite.names, chosen.factors, strict=True):
+        assert f"{factor:.4g}" in [f"{float(cell):.4g}" for cell in rows[name] if cell.replace(".", "").isdigit()]
+    assert f"at least {chosen.least_ratio:.3f} of the target" in shown
+    assert f"At a period of zero the mean is {chosen.zero_period_ratio:.3f} of the target" in shown
+    spread = chosen.dispersion
+    assert f"Standard deviation of ln Sa: {spread.min():.2f} to {spread.max():.2f}" in shown
+    alone = invoke("el-centro-1940", *USUAL[1:3], "--count", 1, "--periods", "0.2,2").stdout
+    assert "Standard deviation" not in alone
+    assert "1940" in alone
+
+
+def test_files(tmp_path):
+    out, records = tmp_path / "out", tmp_path / "records"
+    result = invoke(*USUAL, "--measure", "rotd50", "--out", out, "--records", records)
+    assert result.exit_code == 0
+    assert "6 scaled records written to" in result.stderr
+    chosen = rf.load_suite(SUITE).select(rf.ec8_spectrum(0.25 * G, "C"), 3, [0.2, 0.5, 1.0], measure="rotd50")
+    assert sorted(file.name for file in out.iterdir()) == [
+        "selection.csv", "selection.png", "spectra.csv", "summary.json",
+    ]  # fmt: skip
+    table = pd.read_csv(out / "selection.csv")
+    assert table["record"].tolist() == [" + ".join(names) for names in chosen.names]
+    np.testing.assert_allclose(pd.read_csv(out / "spectra.csv")["mean"], chosen.mean, rtol=1e-15)
+    back = rf.read_suite(records)
+    assert set(back.names) == set(chosen.suite.names)
+    for motion in back:
+        assert motion.dt == chosen.suite[motion.name].dt
+        np.testing.assert_array_equal(motion.acceleration, chosen.suite[motion.name].acceleration)
+    assert "The folder" in refused(*USUAL, "--records", records)
+    assert invoke(*USUAL, "--records", records, "--force").exit_code == 0
+    assert len(rf.read_suite(records)) == 3
+
+
+def test_records_keep_their_vertical_component(tmp_path):
+    for name, direction in (("A-000.AT2", "0"), ("A-UP.AT2", "UP")):
+        text = f"Event, 1/1/2001, Station, {direction}\nUNITS OF G\nNPTS= 4, DT= .1\n0 .4 -.2 0\n"
+        (tmp_path / name).write_text(text)
+    result = invoke(
+        tmp_path / "A-000.AT2", "--vertical", tmp_path / "A-UP.AT2", *USUAL[1:3], "--count", 1, "--periods", "0.2,2",
+        "--limits", "0.01,100", "--records", tmp_path / "scaled",
+    )  # fmt: skip
+    assert result.exit_code == 0
+    (back,) = rf.read_suite(tmp_path / "scaled")
+    np.testing.assert_allclose(back.vertical, back.acceleration, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (("--target", "ec9:ag=1"), "--target 'ec9:ag=1' is neither a file nor a code. Write ec8:ag=0.25g,ground=C, or"),
+        (
+            ("--target", "ec8:"),
+            "--target ec8:...: ag is missing. The keys are ag, and ground, type, importance, damping",
+        ),
+        (("--target", "ec8:ag=1,soil=C"), "--target ec8:...: 'soil' is not known. The keys are ag, and ground"),
+        (("--target", "ec8:ag"), "--target ec8:...: 'ag' has no value. Write each key once, as in ec8:key=value"),
+        (("--target", "ec8:ag=1,ag=2"), "--target ec8:...: 'ag' occurs twice"),
+        (("--target", "ec8:ag=0.2G"), "--target ec8: ag must be a number, but '0.2G' was given"),
+        (("--target", "ec8:ag=1,ground=Z"), "ground must be one of A, B, C, D, E"),
+        (
+            ("--target", "asce7:sds=1"),
+            "--target asce7:...: sd1 is missing. The keys are sds, sd1, tl, and mce if wanted.",
+        ),
+        (("--target", "asce7:ss=1"), "--target asce7:...: s1 is missing. The keys are ss, s1, site, tl, and mce"),
+        (("--target", "asce7:sds=1,sd1=1,tl=8,mce=1"), "--target asce7: mce must be yes or no, but '1' was given"),
+        (("--damping", 0.02), "--damping is for a target from a file. Write ec8:...,damping=0.02"),
+        (("--periods", "0.2,x"), "--periods must be a number, but 'x' was given"),
+        (("--periods", "2,0.2"), "periods must be a range such as (0.2, 2.0)"),
+        (("--limits", "1"), "--limits needs 2 numbers separated by commas, but '1' was given"),
+        (("--limits", "2,1"), "scale_limits must be the smallest and the largest factor"),
+        (("--count", 99), "n must be at most 44, the number of records, but 99 was given"),
+        (("--force",), "--force was given without --out"),
+    ],
+)
+def test_refuses(arguments, text):
+    assert text in refused(*USUAL, *arguments)
+
+
+def test_refuses_one_folder_for_both(tmp_path):
+    text = refused(*USUAL, "--out", tmp_path / "a", "--records", tmp_path / "a")
+    assert "is the folder of --out, too. Give it one of its own" in text
+    (tmp_path / "file").write_text("x")
+    assert "--records" in refused(*USUAL, "--records", tmp_path / "file")
