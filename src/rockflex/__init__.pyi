@@ -21,6 +21,8 @@ from .fragility import fit_logistic as fit_logistic
 from .fragility import fit_outcomes as fit_outcomes
 from .fragility import fit_stripes as fit_stripes
 from .fragility import risk_targeted_median as risk_targeted_median
+from .fragility import write_nrml as write_nrml
+from .fragility import write_pelicun as write_pelicun
 from .kinds import Progress as Progress
 from .kinds import estimate_time as estimate_time
 from .kinds import fill_study as fill_study
