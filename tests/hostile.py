@@ -277,6 +277,7 @@ def fits() -> Calls:
         "LognormalFragility": (rf.LognormalFragility, {"median": 0.5, "beta": 0.4}),
         "probability": (curve.probability, {"im": [0.2]}),
         "quantile": (curve.quantile, {"p": [0.2]}),
+        "from_poe": (rf.HazardCurve.from_poe, {"im": [0.1, 0.5], "poe": [0.4, 0.1], "years": 50.0}),
         "annual_rate": (rf.annual_rate, {"hazard": hazard, "fragility": curve}),
         "risk_targeted_median": (
             rf.risk_targeted_median,

@@ -99,7 +99,8 @@ class HazardCurve(Value):
                 why = " No finite rate gives it: drop such points, or give the probabilities for fewer years."
             given = f"poe[{i}] = {chances[i]:g} was given"
             raise InputError(f"poe must lie between 0 and 1, but {given}.{why}", field="poe")
-        return cls(im, -np.log1p(-chances) / span)
+        with np.errstate(over="ignore"):  # rates that are not finite are rejected
+            return cls(im, -np.log1p(-chances) / span)
 
     @classmethod
     def from_openquake_csv(cls, path: str | Path, *, site: tuple[float, float] | str | None = None) -> Self:

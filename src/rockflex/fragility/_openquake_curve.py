@@ -109,6 +109,11 @@ def _nearest(file: Path, names: Sequence[str], rows: list[list[str]], site: tupl
             f"{file} has no site at {longitude:g}, {latitude:g}. The nearest in degrees is at {x:g}, {y:g}.",
             field="site",
         )
+    here = [row for row, distance in zip(rows, away, strict=True) if distance <= away[nearest] + 1e-9]
+    if len(here) > 1:
+        named = "custom_site_id" in names
+        hint = f" Choose one by its name, such as {shown(here[0][names.index('custom_site_id')])}." if named else ""
+        raise InputError(f"{file} has {len(here)} sites at {longitude:g}, {latitude:g}.{hint}", field="site")
     return rows[nearest]
 
 

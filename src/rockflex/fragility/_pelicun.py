@@ -37,7 +37,8 @@ def write_pelicun(
     Lognormal curves are written as such. Any other becomes a piecewise linear distribution through its values at
     `levels` (Pelicun's ``multilinear_CDF``), which Pelicun rounds to six digits: from zero at no shaking to the first
     level; beyond the last one, what is missing to one is spread over a million times this level. Limit states become
-    LS1, LS2, ... in their order. Units are SI units, which Pelicun converts.
+    LS1, LS2, ... in their order. Units are SI units, which Pelicun converts. The demand is directional: that of the
+    component's own direction. Pelicun would multiply one that is not by 1.2.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def write_pelicun(
     >>> rf.write_pelicun(path, {"pier": pier}, "PGA", levels=[0.5, 20.0]).name
     'fragility.csv'
     >>> print(path.read_text().splitlines()[1])
-    pier,0,Peak Ground Acceleration,mps2,0,0,lognormal,2.0,0.5,,lognormal,5.0,0.5,
+    pier,0,Peak Ground Acceleration,mps2,0,1,lognormal,2.0,0.5,,lognormal,5.0,0.5,
     """
     target = path_of("path", path)
     kind, period = parts_of(measure)
@@ -93,7 +94,7 @@ def write_pelicun(
     table.writerow([*head, *(f"LS{number}-{column}" for number in states for column in _PER_STATE)])
     for function in functions:
         cells = [cell for limit in function.curves for cell in _state(function, limit, im)]
-        table.writerow([function.name, 0, demand, unit, 0, 0, *cells])
+        table.writerow([function.name, 0, demand, unit, 0, 1, *cells])
     return write_whole(target, text.getvalue().encode())
 
 
