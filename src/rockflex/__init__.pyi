@@ -122,6 +122,7 @@ from .structure import LumpedStructure as LumpedStructure
 from .structure import ModalStructure as ModalStructure
 from .structure import Restrained as Restrained
 from .structure import RitzShapes as RitzShapes
+from .structure import Section as Section
 from .structure import TaperedTower as TaperedTower
 from .structure import WallFrame as WallFrame
 from .structure import cosine_shapes as cosine_shapes

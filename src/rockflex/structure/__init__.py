@@ -3,6 +3,7 @@
 from rockflex.structure._beam import Beam
 from rockflex.structure._block import rigid_block
 from rockflex.structure._cantilever import CantileverWithTipMass
+from rockflex.structure._cross_section import Section
 from rockflex.structure._eccentric import Eccentric
 from rockflex.structure._fish_bone import FishBone
 from rockflex.structure._frame import Frame
@@ -26,6 +27,7 @@ __all__ = [
     "ModalStructure",
     "Restrained",
     "RitzShapes",
+    "Section",
     "TaperedTower",
     "WallFrame",
     "cosine_shapes",

@@ -28,7 +28,8 @@ def forms() -> dict[str, Any]:
 
 
 def _fields(table: type[Table]) -> list[dict[str, Any]]:
-    return [_field(name, field) for name, field in table.model_fields.items() if name != "kind"]  # chosen in a list
+    left_out = ("kind", "parts")  # chosen in a list; of a composite section, which only files have
+    return [_field(name, field) for name, field in table.model_fields.items() if name not in left_out]
 
 
 def _field(name: str, field: FieldInfo) -> dict[str, Any]:
