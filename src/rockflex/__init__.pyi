@@ -129,6 +129,7 @@ from .structure import cosine_shapes as cosine_shapes
 from .structure import from_matrices as from_matrices
 from .structure import from_modes as from_modes
 from .structure import rigid_block as rigid_block
+from .structure import structure_warnings as structure_warnings
 from .structure.file import read_structure as read_structure
 from .study import CombinedPeaks as CombinedPeaks
 from .study import InitialState as InitialState

@@ -97,7 +97,7 @@ def run(
     from time import perf_counter
 
     from rockflex.cli._choices import choose_models, make_assumptions, number_or_word, parse_work_limit
-    from rockflex.cli._console import note
+    from rockflex.cli._console import note, warn
     from rockflex.cli._motions import find_motions, quiet_ground
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._run_output import UNITS, write_runs
@@ -151,6 +151,7 @@ def run(
         "options": batch.describe(),
         "units": UNITS,
         "elapsed": elapsed,
+        "warnings": list(loaded.warnings),
         "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
@@ -159,6 +160,7 @@ def run(
         typer.echo(to_json(document))
     else:
         print_runs(loaded.title, batch, runs, elapsed, times=times)
+    warn(document["warnings"])
     print_warnings(runs)
     if print_failures(runs) and strict:
         raise typer.Exit(1)

@@ -10,6 +10,7 @@ from rockflex.structure._frame import Frame
 from rockflex.structure._from_matrices import from_matrices, from_modes
 from rockflex.structure._lumped import LumpedStructure
 from rockflex.structure._modal_structure import ModalStructure
+from rockflex.structure._plausible import structure_warnings
 from rockflex.structure._restrained import Restrained
 from rockflex.structure._ritz import RitzShapes, cosine_shapes
 from rockflex.structure._sections import LumpedMasses
@@ -34,4 +35,5 @@ __all__ = [
     "from_matrices",
     "from_modes",
     "rigid_block",
+    "structure_warnings",
 ]
