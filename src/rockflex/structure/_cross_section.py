@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from rockflex._checks import finite, positive
+from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -87,6 +88,7 @@ class Section(Value):
         return self.density * self.area
 
     @classmethod
+    @computable("The second moment of the section")
     def rectangle(
         cls, width: float, depth: float, *, elastic_modulus: float, density: float, stiffness_factor: float = 1.0
     ) -> Self:
@@ -103,6 +105,7 @@ class Section(Value):
         return cls(b * d, b * d**3 / 12.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
+    @computable("The second moment of the section")
     def box(
         cls,
         width: float,
@@ -134,6 +137,7 @@ class Section(Value):
         return cls(area, (b * d**3 - inner_b * inner_d**3) / 12.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
+    @computable("The second moment of the section")
     def circle(cls, diameter: float, *, elastic_modulus: float, density: float, stiffness_factor: float = 1.0) -> Self:
         """Return a solid circle: diameter in m.
 
@@ -148,6 +152,7 @@ class Section(Value):
         return cls(math.pi * d**2 / 4.0, math.pi * d**4 / 64.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
+    @computable("The second moment of the section")
     def tube(
         cls, diameter: float, wall: float, *, elastic_modulus: float, density: float, stiffness_factor: float = 1.0
     ) -> Self:
@@ -171,6 +176,7 @@ class Section(Value):
         return cls(area, area * (d**2 + inner**2) / 16.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
+    @computable("The second moment of the section")
     def composite(cls, parts: Iterable[tuple["Section", float]], *, stiffness_factor: float = 1.0) -> Self:
         """Return several sections that bend as one: plane sections stay plane, and none slips on another.
 
