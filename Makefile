@@ -5,6 +5,8 @@ BIN    := $(VENV)/bin
 # The package alone, which is enough to run it; and with the tools for tests, types and style.
 INSTALLED := $(VENV)/.installed
 READY  := $(VENV)/.ready
+# OpenQuake and Pelicun, whose requirements would take the packages of the others back to older versions.
+RISK   := $(VENV)-risk
 # Python compiles a module at its first import; pip would compile thousands that are never imported.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 WORKERS ?= 2
@@ -53,9 +55,17 @@ docs: $(READY)  ## build the documentation in build/docs; warnings are errors
 	$(BIN)/rockflex reproduce --out docs/reproduced
 	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
 
-validate: $(READY)  ## compare with OpenSees (needs libblas3 and liblapack3); figures in out/opensees
+$(RISK)/.installed: pyproject.toml
+	$(PYTHON) -m venv $(RISK)
+	$(RISK)/bin/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[risk]'
+	$(RISK)/bin/python -m pip install --quiet --disable-pip-version-check --no-compile --no-deps openquake.engine
+	@touch $(RISK)/.installed
+
+validate: $(READY) $(RISK)/.installed  ## compare with OpenSees (needs libblas3 and liblapack3), OpenQuake and Pelicun
 	$(INSTALL) --editable '.[opensees]'
 	$(BIN)/python validation/opensees/run.py
+	$(RISK)/bin/python validation/openquake/run.py
+	$(RISK)/bin/python validation/pelicun/run.py
 
 bench: $(READY)  ## speed, as ratios to SciPy and to the bare recurrence
 	$(BIN)/python benchmarks/run.py
@@ -66,5 +76,5 @@ records: $(READY)  ## regenerate the embedded records from the packages that shi
 	$(BIN)/python scripts/convert_records.py
 
 clean:  ## remove everything that the targets created
-	rm -rf $(VENV) out build dist .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(RISK) out build dist .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -103,6 +103,8 @@ def structures() -> Calls:
     """Calls that make structures and parameters, with arguments that work."""
     modal = rf.modal_properties([1e4, 1e4], MATRICES["stiffness"], MATRICES["heights"])
     p = rf.RockingProperties(**PROPERTIES)
+    material = {"elastic_modulus": 30e9, "density": 2500.0, "stiffness_factor": 0.5}
+    section = rf.Section.circle(1.0, **material)
     return {
         "Frame": (rf.Frame, FRAME),
         "LumpedStructure": (rf.LumpedStructure, {"masses": [1e4, 1e4], **MATRICES, **BASE}),
@@ -120,6 +122,15 @@ def structures() -> Calls:
         "Beam of shapes": (rf.Beam, BEAM | {"method": "ritz", "n_elements": None, "shear_stiffness": None}),
         "LumpedMasses": (rf.LumpedMasses, {"heights": [1.0, 2.0], "masses": [1.0, 1.0], "rotary": [0.0, 1.0]}),
         "CantileverWithTipMass": (rf.CantileverWithTipMass, CANTILEVER | BASE),
+        "column of a section": (rf.CantileverWithTipMass, {"height": 9.0, "tip_mass": 1e4, "section": section} | BASE),
+        "beam of a section": (rf.Beam, {"height": 9.0, "section": section, "half_width": 1.0, "damping_ratio": 0.02}),
+        "Section": (rf.Section, {"area": 1.0, "second_moment": 0.1, "rotary_inertia": 250.0, **material}),
+        "Section.rectangle": (rf.Section.rectangle, {"width": 1.0, "depth": 2.0, **material}),
+        "Section.box": (rf.Section.box, {"width": 1.0, "depth": 2.0, "wall": 0.1, **material}),
+        "Section.circle": (rf.Section.circle, {"diameter": 1.0, **material}),
+        "Section.tube": (rf.Section.tube, {"diameter": 1.0, "wall": 0.1, **material}),
+        "Section.composite": (rf.Section.composite, {"parts": [(section, 0.0)], "stiffness_factor": 0.5}),
+        "structure_warnings": (rf.structure_warnings, {"structure": rf.Frame(**FRAME)}),
         "WallFrame": (rf.WallFrame, WALL),
         "FishBone": (rf.FishBone, BONE | BASE),
         "rigid_block": (rf.rigid_block, {"slenderness": 0.2, "half_diagonal": 2.0, "mass": 1.0}),
@@ -315,6 +326,7 @@ def fits() -> Calls:
         "LognormalFragility": (rf.LognormalFragility, {"median": 0.5, "beta": 0.4}),
         "probability": (curve.probability, {"im": [0.2]}),
         "quantile": (curve.quantile, {"p": [0.2]}),
+        "from_poe": (rf.HazardCurve.from_poe, {"im": [0.1, 0.5], "poe": [0.4, 0.1], "years": 50.0}),
         "annual_rate": (rf.annual_rate, {"hazard": hazard, "fragility": curve}),
         "risk_targeted_median": (
             rf.risk_targeted_median,

@@ -21,6 +21,8 @@ from .fragility import fit_logistic as fit_logistic
 from .fragility import fit_outcomes as fit_outcomes
 from .fragility import fit_stripes as fit_stripes
 from .fragility import risk_targeted_median as risk_targeted_median
+from .fragility import write_nrml as write_nrml
+from .fragility import write_pelicun as write_pelicun
 from .kinds import Progress as Progress
 from .kinds import estimate_time as estimate_time
 from .kinds import fill_study as fill_study
@@ -129,12 +131,14 @@ from .structure import LumpedStructure as LumpedStructure
 from .structure import ModalStructure as ModalStructure
 from .structure import Restrained as Restrained
 from .structure import RitzShapes as RitzShapes
+from .structure import Section as Section
 from .structure import TaperedTower as TaperedTower
 from .structure import WallFrame as WallFrame
 from .structure import cosine_shapes as cosine_shapes
 from .structure import from_matrices as from_matrices
 from .structure import from_modes as from_modes
 from .structure import rigid_block as rigid_block
+from .structure import structure_warnings as structure_warnings
 from .structure.file import read_structure as read_structure
 from .study import CombinedPeaks as CombinedPeaks
 from .study import InitialState as InitialState

@@ -31,6 +31,8 @@ def test_table_1_of_the_paper():
     assert round(rocking["i_theta"] / (first["effective_mass"] * first["effective_height"] ** 2), 2) == 1.03
     assert round(first["effective_mass"] * first["effective_height"] / rocking["l0r"], 2) == 1.03
     # By hand: L_0^r = Σ m_i h_i, M_r = m_tot g B.
+    assert rocking["uplift_acceleration"] == rocking["resisting_moment"] / rocking["l0r"]
+    assert (found["units"]["uplift_acceleration"], found["warnings"]) == ("m/s²", [])
     assert rocking["l0r"] == pytest.approx(40e3 * 3.0 * 15)
     assert rocking["resisting_moment"] == pytest.approx(6 * 40e3 * 9.81 * first["effective_height"] / 10.0)
 
@@ -44,6 +46,8 @@ def test_printed_table():
     assert ["Sum", "of", "m*_n/Σm", "1.000"] in rows
     assert ["Moment", "of", "inertia", "about", "a", "pivot,", "I_θ", "2.007e+07", "kg", "m²"] in rows
     assert ["Resisting", "moment,", "M_r", "=", "m_tot", "g", "B", "2482", "kN", "m"] in rows
+    # By hand: 2482 kN m over 1800 t m.
+    assert ["Static", "uplift", "at", "a_lift", "=", "M_r/L_0^r", "1.379", "m/s²"] in rows
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
@@ -394,3 +398,29 @@ def test_each_edge_has_its_dissipators(tmp_path):
     locked = [f"{p.pivot(side).dissipator_moment / 1e3:.1f}" for side in (1, -1)]
     assert ["Moment", "of", "the", "dissipators,", "M_d", *locked, "kN", "m"] in rows
     assert ["Self-centring", "yes", "yes"] in rows
+
+
+TONNES = """[cantilever]
+height = 12.0
+tip_mass = 60.0
+mass_per_length = 4e3
+bending_stiffness = 2e5
+base_mass = 50e3
+half_width = 1.5
+damping_ratio = 0.02
+"""
+
+
+def test_what_looks_like_another_unit_is_said_and_not_refused(tmp_path):
+    path = tmp_path / "tonnes.toml"
+    path.write_text(TONNES, "utf-8")
+    expected = rf.structure_warnings(rf.read_structure(path))
+    assert len(expected) == 2
+    printed = invoke(path)
+    assert (printed.exit_code, printed.stderr.splitlines()) == (0, [f"Warning: {text}" for text in expected])
+    assert json.loads(invoke(path, "--json").stdout)["warnings"] == list(expected)
+    ran = CliRunner().invoke(app, ["run", str(path), "el-centro-1940", "--model", "rigid", "--json"])
+    assert ran.exit_code == 0
+    assert json.loads(ran.stdout)["warnings"] == list(expected)
+    assert [f"Warning: {text}" for text in expected] == ran.stderr.splitlines()[:2]
+    assert invoke(STRUCTURE).stderr == ""

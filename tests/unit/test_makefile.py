@@ -32,3 +32,18 @@ def test_testing_adds_its_tools_to_the_same_environment(tmp_path):
     first, second = commands("test", tmp_path)
     assert first.endswith("--editable .")
     assert second.endswith("--editable '.[dev]'")
+
+
+def test_validation_keeps_what_other_programs_need_apart(tmp_path):
+    done = subprocess.run(
+        ["make", "--dry-run", "validate", f"VENV={tmp_path / 'none'}"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    lines = done.stdout.splitlines()
+    lean = [line for line in lines if "pip install" in line and "none-risk" in line]
+    assert [line.split(maxsplit=6)[-1] for line in lean] == [
+        "--no-compile --editable '.[risk]'",
+        "--no-compile --no-deps openquake.engine",
+    ]
+    for program in ("opensees", "openquake", "pelicun"):
+        assert any(line.endswith(f"python validation/{program}/run.py") for line in lines)

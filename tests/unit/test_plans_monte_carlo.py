@@ -381,7 +381,7 @@ def changed(structure=None, **variables):
         ),
         ({"variables": [1]}, "variables must be a table of random variables, but [1] was given."),
         ({"structure": "wall"}, "structure must be a table of a structure, such as [structure.frame], but 'wall' was"),
-        ({"scales": []}, "scales must be a list of factors on the acceleration, but [] was given."),
+        ({"scales": []}, "largest = 3.0, step = 0.25}, but [] was given."),
     ],
 )
 def test_messages(changes, said):

@@ -2,6 +2,7 @@
 
 import json
 
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
@@ -88,6 +89,34 @@ def test_too_few_seeds_are_refused(seeds):
     done = invoke("figure-9", "--seeds", seeds)
     assert done.exit_code == 2
     assert f"seeds must be a whole number of at least 10, but {seeds} was given" in done.stderr.replace("\n", " ")
+
+
+def test_a_negative_seed_is_refused():
+    done = invoke("figure-9", "--seed", -1)
+    assert done.exit_code == 2
+    assert "seed must be a whole number of at least 0, but -1 was given" in done.stderr.replace("\n", " ")
+
+
+def test_populations_have_the_given_seeds(at2, monkeypatch):
+    monkeypatch.setattr(_pool, "PAIRS", 3)
+    records = Records(at2, 10, seed=7)
+    pairs = _pool.pool(records)
+    for place in (0, 9):
+        alone = rf.run_population(records.suite, 3, 7 + place).reset_index(drop=True)
+        pd.testing.assert_frame_equal(pairs.iloc[3 * place : 3 * place + 3].reset_index(drop=True), alone)
+
+
+def test_the_seed_reaches_the_records(monkeypatch):
+    given = []
+
+    def kept(*arguments, **named):
+        given.append((arguments, named))
+        raise rf.InputError("enough")
+
+    monkeypatch.setattr("rockflex.papers.silva_stojadinovic_2024.Records", kept)
+    assert invoke("figure-9", "--seed", 5, "--seeds", 12).exit_code == 2
+    assert invoke("figure-9").exit_code == 2
+    assert given == [((None,), {"seeds": 12, "seed": 5}), ((None,), {})]
 
 
 def test_checks_are_printed_and_not_counted():

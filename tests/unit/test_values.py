@@ -95,7 +95,9 @@ VALUES = {
     rf.BestDesign: best,
     rf.BootstrapBand: lambda: rf.bootstrap_band(rf.fit_cloud, RUNS[0], RUNS[0] ** 2 * (1.0 + RUNS[1]), at=[0.5], n=20),
     rf.BoucWen: lambda: rf.BoucWen(0.05),
-    rf.CantileverWithTipMass: lambda: rf.CantileverWithTipMass(10.0, 1e4, 1e9, 1e3, 1.0, 0.02, 500.0),
+    rf.CantileverWithTipMass: lambda: rf.CantileverWithTipMass(
+        height=10.0, tip_mass=1e4, section=VALUES[rf.Section](), base_mass=1e3, half_width=1.0, damping_ratio=0.02
+    ),
     rf.CloudFit: lambda: rf.fit_cloud([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
     rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, None, 0),
     rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
@@ -142,6 +144,7 @@ VALUES = {
     rf.Restrained: lambda: rf.Restrained(frame(), tendons()),
     rf.RitzShapes: lambda: rf.cosine_shapes(10.0, 3),
     rf.RockingProperties: lambda: rf.Restrained(frame(), tendons()).rocking(),
+    rf.Section: lambda: rf.Section.tube(1.0, 0.02, elastic_modulus=210e9, density=7850.0, stiffness_factor=0.9),
     rf.SecondMode: lambda: rf.modal_combination(frame(), motion()).second,
     rf.Selection: lambda: rf.Suite([motion()]).select(rf.ec8_spectrum(2.0, "B"), 1, (0.2, 1.0)),
     rf.Springs: lambda: rf.winkler_bed(2.0, 3.0, 4e7, n=5),

@@ -30,6 +30,12 @@ def note(message: str) -> None:
     Console(stderr=True).print(message, markup=False, highlight=False, soft_wrap=True)
 
 
+def warn(messages: Iterable[str]) -> None:
+    """Print warnings to stderr."""
+    for message in messages:
+        note(f"Warning: {message}")
+
+
 @contextmanager
 def remarks() -> Generator[None]:
     """Print each warning about records once, as a remark."""

@@ -37,6 +37,7 @@ UNITS = {
     "m_tot": "kg",
     "half_width": "m",
     "resisting_moment": "N m",
+    "uplift_acceleration": "m/s²",
     "nominal_overturning_rotation": "rad",
     "translational_inertia": "kg m²",
     "prestress": "N",
@@ -72,6 +73,7 @@ def modes(
 ) -> None:
     """Print the modes of a structure on a fixed base, and its rocking parameters."""
     from rockflex._checks import whole_number
+    from rockflex.cli._console import warn
     from rockflex.cli._elements import UNITS as ELEMENT_UNITS
     from rockflex.cli._modes_tables import print_modes
     from rockflex.cli._output import check_folder, to_json, versions
@@ -95,6 +97,7 @@ def modes(
         "uplifted": lifted,
         "rocking": {name: value for name, value in rocking.items() if isinstance(value, float) or name in LISTED},
         "units": UNITS | ELEMENT_UNITS,
+        "warnings": list(loaded.warnings),
     }
     need = _adequacy(loaded) if adequacy else None
     if need is not None:
@@ -107,6 +110,7 @@ def modes(
         print_modes(loaded, rows, lifted, properties)
         if need is not None:
             _print_adequacy(need)
+    warn(document["warnings"])
 
 
 def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:

@@ -60,6 +60,7 @@ def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
     return [
         *([stiffness] if p.tendons else []),
         (f"Resisting moment, M_r = {weight} B", number(p.resisting_moment / size), unit),
+        ("Static uplift at a_lift = M_r/L_0^r", number(p.uplift_acceleration), "m/s²"),
         *((name, values[0], unit) for name, values, unit in _closing(p, size, unit)),
         (f"Nominal limit, 0.7 atan({_slope(p, 'B')})", number(p.nominal_overturning_rotation), "rad"),
     ]
@@ -80,6 +81,7 @@ def _each(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
         row("Moment of inertia, I_θ", tuple(each.i_theta for each in sides), "kg m²"),
         *([row("Stiffness of the tendons", stiffness, f"{unit}/rad")] if p.tendons else []),
         row("Resisting moment, M_r", tuple(each.resisting_moment / size for each in sides), unit),
+        row("Static uplift at a_lift", tuple(each.uplift_acceleration for each in sides), "m/s²"),
         *((name, *values, unit) for name, values, unit in _closing(p, size, unit)),
         row(f"Nominal limit, 0.7 atan({_slope(p, 'b')})", nominal, "rad"),
     ]

@@ -61,6 +61,14 @@ def reproduce(
             show_default=False,
         ),
     ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            metavar="SEED",
+            help="Seed of the first of these populations; the others have the next ones. Default: 2024.",
+            show_default=False,
+        ),
+    ] = None,
     names: Annotated[bool, typer.Option("--list", help="List the targets and run nothing.")] = False,
     force: options.Force = False,
 ) -> None:
@@ -78,7 +86,8 @@ def reproduce(
     wanted = targets or list(paper.TARGETS)
     for target in wanted:
         paper.title_of(target)
-    given = paper.Records(records) if seeds is None else paper.Records(records, seeds)
+    chosen = {name: value for name, value in (("seeds", seeds), ("seed", seed)) if value is not None}
+    given = paper.Records(records, **chosen)
     note(given.description)
     with progress("Computing", len(set(wanted))) as advance:
         results = paper.reproduce(wanted, given, lambda _: advance(1))

@@ -67,8 +67,13 @@ def run(
         ),
     ] = None,
     scale: Annotated[
-        list[float], typer.Option("--scale", metavar="FACTOR", help="Factor on the acceleration; may be repeated.")
-    ] = [1.0],  # noqa: B006
+        list[str],
+        typer.Option(
+            "--scale",
+            metavar="FACTOR",
+            help="Factor on the acceleration, or smallest:largest:step such as 0.5:3:0.25; may be repeated.",
+        ),
+    ] = ["1"],  # noqa: B006
     free_vibration: Annotated[
         str,
         typer.Option(metavar="S|settle", help="Seconds after the record, or settle: until at rest or overturned."),
@@ -97,7 +102,7 @@ def run(
     from time import perf_counter
 
     from rockflex.cli._choices import choose_models, make_assumptions, number_or_word, parse_work_limit
-    from rockflex.cli._console import note
+    from rockflex.cli._console import note, warn
     from rockflex.cli._motions import find_motions, quiet_ground
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._run_output import UNITS, write_runs
@@ -106,6 +111,7 @@ def run(
     from rockflex.cli._structures import describe_properties, load_structure, split_arguments
     from rockflex.response import friction_coefficient
     from rockflex.study._arguments import factors_of, free_vibration_time
+    from rockflex.study._ranges import parsed
     from rockflex.study._yielding import yielding
 
     check_folder(out, force=force)
@@ -126,7 +132,9 @@ def run(
             found = find_motions(names, units, dt, on_error, vertical)
         else:
             found, free = quiet_ground(free)
-        scales = list(dict.fromkeys(factors_of(scale, max((each.motion for each in found), key=lambda it: it.pga))))
+        given_scales = [factor for text in scale for factor in parsed(text)]
+        strongest = max((each.motion for each in found), key=lambda it: it.pga)
+        scales = list(dict.fromkeys(factors_of(given_scales, strongest)))
         batch = Batch(
             properties=loaded.properties,
             motions=[each.motion for each in found],
@@ -151,6 +159,7 @@ def run(
         "options": batch.describe(),
         "units": UNITS,
         "elapsed": elapsed,
+        "warnings": list(loaded.warnings),
         "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
@@ -159,6 +168,7 @@ def run(
         typer.echo(to_json(document))
     else:
         print_runs(loaded.title, batch, runs, elapsed, times=times)
+    warn(document["warnings"])
     print_warnings(runs)
     if print_failures(runs) and strict:
         raise typer.Exit(1)

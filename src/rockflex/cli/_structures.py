@@ -11,7 +11,7 @@ from rockflex._schema import FrameFlags, FrameKeys
 from rockflex.cli._elements import describe_elements
 from rockflex.cli._flags import flags_of, naming
 from rockflex.modal import RockingProperties
-from rockflex.structure import Eccentric, Frame, Restrained
+from rockflex.structure import Eccentric, Frame, Restrained, structure_warnings
 from rockflex.structure.file import KINDS, Built, StructureEntry, build_in, checked, read_toml
 from rockflex.study.assumed import Assumed
 
@@ -65,6 +65,11 @@ class LoadedStructure:
         period = 2.0 * math.pi / p.omega[0]
         return f"{self.name}: {modes}, T_1 = {period:.4g} s, h*_1/B = {slenderness:.4g}, ζ_1 = {p.zeta[0]:.4g}{shift}"
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What looks like a wrong unit."""
+        return structure_warnings(self.built)
+
     def describe(self) -> dict[str, Any]:
         """Return the values that it was built from, for a document."""
         return {"name": self.name, "kind": self.kind, **self.values, **self.assumed}
@@ -106,7 +111,12 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
 
 def describe_properties(properties: RockingProperties) -> dict[str, Any]:
     """Return every parameter of a rocking structure by name, for a document; `pivots` where the two differ."""
-    names = (*KINDS["properties"].model_fields, "resisting_moment", "nominal_overturning_rotation")
+    names = (
+        *KINDS["properties"].model_fields,
+        "resisting_moment",
+        "nominal_overturning_rotation",
+        "uplift_acceleration",
+    )
     tendons = ("tendons", "prestress", "tendon_stiffness") if properties.tendons else ()
     held = ("self_centring", "recentring_ratio") if properties.elements else ()
     described = {name: getattr(properties, name) for name in (*names, *tendons, *held)}

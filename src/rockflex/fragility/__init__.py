@@ -24,8 +24,10 @@ from rockflex.fragility._limit_states import (
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._measures import compare_measures
+from rockflex.fragility._nrml import write_nrml
 from rockflex.fragility._observed import observed_fractions
 from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, fit_outcomes
+from rockflex.fragility._pelicun import write_pelicun
 from rockflex.fragility._resamples import resample_weights, resampled_exceedance
 from rockflex.fragility._stripes import fit_stripes
 from rockflex.fragility._unanimous import UnanimousOutcome
@@ -68,4 +70,6 @@ __all__ = [
     "residual_beyond",
     "risk_targeted_median",
     "symbol_of_nominal",
+    "write_nrml",
+    "write_pelicun",
 ]

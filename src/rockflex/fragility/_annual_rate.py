@@ -1,28 +1,18 @@
 """Fragility and hazard together: annual rates of failure, and capacities that meet a target rate."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import float_array, in_range, instance, positive
+from rockflex._checks import in_range, instance, positive
 from rockflex._errors import InputError
+from rockflex.fragility._curve import Curve, Fragility, checked_curve
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._lognormal import LognormalFragility
 
-Curve = Callable[[Array], Array]
 SMALLEST = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
-
-
-class Fragility(Protocol):
-    """Any curve that gives a probability of failure at a measure."""
-
-    def probability(self, im: Array, /) -> Array:
-        """Probability of failure, of the shape of `im`."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -91,7 +81,7 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate
     0.0001
     """
     instance("hazard", hazard, HazardCurve)
-    probability = _probability(fragility)
+    probability = checked_curve(fragility)
     return AnnualRate(_covered(hazard, probability), _below(hazard, probability), float(hazard.rate[-1]))
 
 
@@ -154,29 +144,6 @@ def risk_targeted_median(
             "or set allowed_beyond."
         )
     return median
-
-
-def _probability(fragility: Fragility | Curve) -> Curve:
-    function: Any = getattr(fragility, "probability", fragility)
-    if not callable(function):
-        raise InputError(
-            f"fragility must have a method probability(im), or be a function of im, but {type(fragility).__name__} was "
-            "given."
-        )
-
-    def checked(im: Array) -> Array:
-        given: Any = function(im)
-        p = float_array(given)
-        if p is None:
-            raise InputError("fragility must give an array of probabilities, but it gave something else.")
-        if not ((p >= 0.0) & (p <= 1.0)).all():
-            raise InputError(
-                f"fragility must give probabilities from 0 to 1, but gave {p[~((p >= 0.0) & (p <= 1.0))].flat[0]:g}. "
-                "A part that could not be fitted gives NaN."
-            )
-        return p
-
-    return checked
 
 
 def _covered(hazard: HazardCurve, probability: Curve) -> float:

@@ -1,15 +1,18 @@
 """Seismic hazard curves."""
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector
+from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
+from rockflex.fragility._openquake_curve import read_exported_curve
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -57,6 +60,98 @@ class HazardCurve(Value):
                 "Give annual rates of exceedance; drop the points at which the rate is zero."
             )
         vars(self).update(im=measures, rate=rates)
+
+    @classmethod
+    def from_poe(cls, im: ArrayLike, poe: ArrayLike, years: float) -> Self:
+        """Return the curve of a Poisson process whose probabilities of exceedance are known for a number of years.
+
+        The annual rate is -ln(1 - poe)/years.
+
+        Parameters
+        ----------
+        im : array_like, shape (n,)
+            Intensity measures, positive and rising, two at least, in the unit of the fragility curve.
+        poe : array_like, shape (n,)
+            Probabilities that they are exceeded at least once in `years`, between 0 and 1, falling.
+        years
+            Years that the probabilities refer to, often 1 or 50.
+
+        Raises
+        ------
+        InputError
+            If a probability is not between 0 and 1, or the points are no hazard curve.
+
+        Examples
+        --------
+        >>> import rockflex as rf
+        >>> hazard = rf.HazardCurve.from_poe([1.0, 2.0, 4.0], [0.4, 0.1, 0.02], years=50)
+        >>> print(f"1 in {1 / hazard.rate_at(2.0):.0f} years")
+        1 in 475 years
+        """
+        chances, span = finite_vector("poe", poe, "[0, 1]"), positive("years", years, "years")
+        bad = np.flatnonzero((chances <= 0.0) | (chances >= 1.0))
+        if bad.size:
+            i = int(bad[0])
+            why = " Give fractions, not percentages."
+            if chances[i] == 0.0:
+                why = " The rate is zero there: drop such points."
+            elif chances[i] == 1.0:
+                why = " No finite rate gives it: drop such points, or give the probabilities for fewer years."
+            given = f"poe[{i}] = {chances[i]:g} was given"
+            raise InputError(f"poe must lie between 0 and 1, but {given}.{why}", field="poe")
+        with np.errstate(over="ignore"):  # rates that are not finite are rejected
+            return cls(im, -np.log1p(-chances) / span)
+
+    @classmethod
+    def from_openquake_csv(cls, path: str | Path, *, site: tuple[float, float] | str | None = None) -> Self:
+        r"""Read the hazard curve of a site from a file that OpenQuake exported, such as hazard_curve-mean-PGA_1.csv.
+
+        Measures are converted to SI units: m/s² for PGA and SA, with g = 9.81 m/s², and m/s for PGV. Points with a
+        probability of 0 or 1, at which no rate is known, are left out; of several with the same probability, the one
+        with the largest measure stays.
+
+        Parameters
+        ----------
+        path
+            Path of the file, of one intensity measure; it begins with a comment that states its
+            ``investigation_time``.
+        site
+            Longitude and latitude in degrees, to 1e-4, or the site's ``custom_site_id``. Not needed if there is one
+            site only.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or is not such an export, the site is not in it or not chosen, or fewer than two
+            points are left.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import rockflex as rf
+        >>> path = Path(tempfile.mkdtemp()) / "hazard_curve-mean-PGV_7.csv"
+        >>> _ = path.write_text(
+        ...     "# investigation_time=50.0, imt='PGV'\n"
+        ...     "lon,lat,depth,poe-10.0000000,poe-20.0000000,poe-40.0000000\n"
+        ...     "7.59000,47.56000,0.00000,4.000000E-01,1.000000E-01,0.000000E+00\n"
+        ... )
+        >>> hazard = rf.HazardCurve.from_openquake_csv(path, site=(7.59, 47.56))
+        >>> hazard.im, hazard.rate.round(5)
+        (array([0.1, 0.2]), array([0.01022, 0.00211]))
+        """
+        found = read_exported_curve(path, site)
+        im, poe = np.array(found.im), np.array(found.poe)
+        if (poe < 0.0).any() or (poe > 1.0).any():
+            raise InputError(f"{path} holds probabilities below 0 or above 1.", field="path")
+        last = np.append(poe[1:] != poe[:-1], True)
+        kept = last & (poe > 0.0) & (poe < 1.0)
+        if kept.sum() < 2:
+            raise InputError(
+                f"{path} must have two different probabilities between 0 and 1 at this site, but it has {kept.sum()}.",
+                field="path",
+            )
+        return cls.from_poe(im[kept], poe[kept], found.years)
 
     @property
     def slopes(self) -> Array:

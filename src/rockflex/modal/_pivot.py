@@ -47,6 +47,8 @@ class Pivot:
     nominal_overturning_rotation : float
         Nominal limit 0.7 atan(`arm`/h*_1) of the rotation in rad (Silva & Stojadinović 2024, Section 3.3); for a rigid
         block with L_0^r/m_tot in place of h*_1.
+    uplift_acceleration : float
+        Slow ground acceleration in m/s² that lifts the base about the pivot: `resisting_moment`/L_0^r.
 
     Examples
     --------
@@ -66,6 +68,7 @@ class Pivot:
     dissipator_moment: float
     rocking_stiffness: float
     nominal_overturning_rotation: float
+    uplift_acceleration: float
 
     @property
     def resisting_moment(self) -> float:
@@ -134,7 +137,7 @@ def pivot_of(
     inertia = pivot_inertia(side * eccentricity, half_width, i_theta, translational_inertia, m_tot)
     weight, limit = m_tot * GRAVITY * arm, _OVERTURNING_SHARE * math.atan2(arm, height)
     if not elements:
-        return Pivot(side, arm, inertia, weight, 0.0, 0.0, 0.0, 0.0, -l0r * GRAVITY, limit)
+        return Pivot(side, arm, inertia, weight, 0.0, 0.0, 0.0, 0.0, -l0r * GRAVITY, limit, weight / l0r)
     # Both pivots of a symmetric base must give identical numbers, to the last digit and in any order of the tendons.
     towards = 1 if alike else side
     tendons = [each for each in elements if isinstance(each, Tendon)]
@@ -157,6 +160,7 @@ def pivot_of(
         dissipator_moment=sum((locked_force(each) * abs(arm - towards * each.position) for each in elements), 0.0),
         rocking_stiffness=stiffness - l0r * GRAVITY,
         nominal_overturning_rotation=limit,
+        uplift_acceleration=(weight + prestress) / l0r,
     )
 
 

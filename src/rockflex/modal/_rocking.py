@@ -127,18 +127,15 @@ class RockingProperties(Value):
     ) -> None:
         modes = checked_modes(omega, effective_mass, effective_height, top_ordinate)
         scalars = checked_scalars(i_theta, l0r, m_tot, half_width)
-        n_modes = modes["omega"].size
         inertia = checked_inertia(modes, scalars, translational_inertia)
-        damping = damping_ratios("zeta", zeta, n_modes)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
-        held = elements_within(element_set(elements), scalars["half_width"], e)
         vars(self).update(
             modes,
             **scalars,
-            zeta=damping,
+            zeta=damping_ratios("zeta", zeta, modes["omega"].size),
             translational_inertia=inertia,
-            floors=checked_floors(floors, n_modes),
-            elements=held,
+            floors=checked_floors(floors, modes["omega"].size),
+            elements=elements_within(element_set(elements), scalars["half_width"], e),
             top_height=checked_top_height(floors, top_height),
             base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
             eccentricity=e,
@@ -158,8 +155,7 @@ class RockingProperties(Value):
         """
         above = math.nan if self.base_mass is None else self.m_tot - self.base_mass
         moments = np.array([above, self.l0r, self.translational_inertia])
-        shares = np.array([self.effective_mass * self.effective_height**k for k in range(3)]).sum(axis=1)
-        left = moments - shares
+        left = moments - np.array([self.effective_mass * self.effective_height**k for k in range(3)]).sum(axis=1)
         left[np.abs(left) <= SLACK * np.abs(moments)] = 0.0
         return left
 
@@ -223,6 +219,11 @@ class RockingProperties(Value):
         If the pivots differ, it is the smaller value, that of the `weaker_pivot`.
         """
         return self.weaker_pivot.resisting_moment
+
+    @property
+    def uplift_acceleration(self) -> float:
+        """M_r/L_0^r in m/s²: the slow ground acceleration that lifts the base, about the `weaker_pivot`."""
+        return self.weaker_pivot.uplift_acceleration
 
     @property
     def axial_stiffness(self) -> float:

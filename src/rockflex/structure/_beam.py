@@ -15,6 +15,7 @@ from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._based import Assembled
 from rockflex.structure._beam_fe import finite_element_modes
+from rockflex.structure._cross_section import Section, checked_section, of_section
 from rockflex.structure._modal_structure import ModalStructure
 from rockflex.structure._profile import Along, Profile, profile
 from rockflex.structure._ritz import RitzShapes, cosine_shapes, ritz_modes
@@ -39,9 +40,9 @@ class Beam(Assembled, Value):
     height : float
         Height H in m.
     mass : number, function or table
-        Mass per unit length m(z) in kg/m, positive.
+        Mass per unit length m(z) in kg/m, positive. With a section, its mass.
     bending_stiffness : number, function or table
-        EI(z) in N m², positive.
+        EI(z) in N m², positive. With a section, its stiffness.
     half_width : float
         Half-width B of the base in m.
     damping_ratio : ndarray, shape (n_modes,)
@@ -50,6 +51,8 @@ class Beam(Assembled, Value):
         GA_s(z) in N, positive (Timoshenko beam). Default: no shear deformation.
     rotary_inertia : number, function or table, optional
         Rotary inertia of the section per unit length, ρI, in kg m, zero or positive. Default: none.
+    section : Section, optional
+        The same section from the base to the top, in place of `mass` and `bending_stiffness`.
     lumped_masses : LumpedMasses, optional
         Masses attached along the height.
     base_mass : float
@@ -86,12 +89,13 @@ class Beam(Assembled, Value):
     """
 
     height: float
-    mass: Along
-    bending_stiffness: Along
+    mass: Along | None = None
+    bending_stiffness: Along | None = None
     half_width: float
     damping_ratio: ArrayLike
     shear_stiffness: Along | None = None
     rotary_inertia: Along | None = None
+    section: Section | None = None
     lumped_masses: LumpedMasses | None = None
     base_mass: float = 0.0
     rotary_in_modes: bool = True
@@ -109,6 +113,8 @@ class Beam(Assembled, Value):
                 field="rotary_in_modes",
             )
         n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
+        section = checked_section(self.section)
+        mass, stiffness = (of_section(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness"))
         vars(self).update(
             height=height,
             half_width=positive("half_width", self.half_width, "m"),
@@ -117,8 +123,8 @@ class Beam(Assembled, Value):
             damping_ratio=damping_ratios("damping_ratio", self.damping_ratio, n_modes),
             sections=Sections(
                 height,
-                profile("mass", self.mass, height, "kg/m"),
-                profile("bending_stiffness", self.bending_stiffness, height, "N m²"),
+                profile("mass", mass, height, "kg/m"),
+                profile("bending_stiffness", stiffness, height, "N m²"),
                 _optional("shear_stiffness", self.shear_stiffness, height, "N"),
                 _optional("rotary_inertia", self.rotary_inertia, height, "kg m", zero=True),
                 on_beam(self.lumped_masses, height),

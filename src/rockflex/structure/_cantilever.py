@@ -10,6 +10,7 @@ from rockflex._computable import computable
 from rockflex._values import Value
 from rockflex.structure._based import Assembled
 from rockflex.structure._beam import Beam
+from rockflex.structure._cross_section import Section, checked_section, of_section
 from rockflex.structure._from_matrices import from_matrices
 from rockflex.structure._modal_structure import ModalStructure
 from rockflex.structure._sections import LumpedMasses
@@ -17,7 +18,7 @@ from rockflex.structure._sections import LumpedMasses
 _N_MODES = 5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class CantileverWithTipMass(Assembled, Value):
     """A uniform column with a mass at its tip, clamped to a base that can rock.
 
@@ -28,7 +29,7 @@ class CantileverWithTipMass(Assembled, Value):
     tip_mass : float
         Mass at the tip in kg.
     bending_stiffness : float
-        EI of the column in N m².
+        EI of the column in N m². With a section, its stiffness.
     base_mass : float
         Mass m_0 of the base in kg, zero or positive.
     half_width : float
@@ -36,11 +37,13 @@ class CantileverWithTipMass(Assembled, Value):
     damping_ratio : float or ndarray, shape (n_modes,)
         Damping ratio in [0, 1): one number for all modes, or one per mode.
     mass_per_length : float
-        Mass of the column in kg/m, zero or positive.
+        Mass of the column in kg/m, zero or positive. With a section, its mass.
     tip_inertia : float
         Rotary inertia of the tip mass about its own axis in kg m², zero or positive.
     n_modes : int, optional
         Number of modes. Default: 5; for a massless column all its modes: one, or two with `tip_inertia`.
+    section : Section, optional
+        Section of the column, in place of `bending_stiffness` and `mass_per_length`.
 
     Raises
     ------
@@ -61,20 +64,24 @@ class CantileverWithTipMass(Assembled, Value):
 
     height: float
     tip_mass: float
-    bending_stiffness: float
+    bending_stiffness: float | None = None
     base_mass: float
     half_width: float
     damping_ratio: ArrayLike
     mass_per_length: float = 0.0
     tip_inertia: float = 0.0
     n_modes: int | None = None
+    section: Section | None = None
 
     def __post_init__(self) -> None:
+        section = checked_section(self.section)
+        stiffness = of_section(section, "bending_stiffness", self.bending_stiffness)
+        mass = of_section(section, "mass_per_length", self.mass_per_length, absent=0.0)
         vars(self).update(
             height=positive("height", self.height, "m"),
             tip_mass=positive("tip_mass", self.tip_mass, "kg"),
-            bending_stiffness=positive("bending_stiffness", self.bending_stiffness, "N m²"),
-            mass_per_length=positive("mass_per_length", self.mass_per_length, "kg/m", zero=True),
+            bending_stiffness=positive("bending_stiffness", stiffness, "N m²"),
+            mass_per_length=positive("mass_per_length", mass, "kg/m", zero=True),
             tip_inertia=positive("tip_inertia", self.tip_inertia, "kg m²", zero=True),
         )
         built = self.built
@@ -95,9 +102,9 @@ class CantileverWithTipMass(Assembled, Value):
                 n_modes=_N_MODES if self.n_modes is None else self.n_modes,
             )
         modes = 1 if self.tip_inertia == 0.0 else 2
-        h = self.height
-        with computable(f"The stiffness of a column with height = {h:g} m and EI = {self.bending_stiffness:g} N m²"):
-            k = self.bending_stiffness / h**3
+        h, stiffness = self.height, self.bending_stiffness or 0.0
+        with computable(f"The stiffness of a column with height = {h:g} m and EI = {stiffness:g} N m²"):
+            k = stiffness / h**3
             matrix = [[12.0 * k, -6.0 * k * h], [-6.0 * k * h, 4.0 * k * h**2]]
         return from_matrices(
             [self.tip_mass, self.tip_inertia],

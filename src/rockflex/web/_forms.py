@@ -28,7 +28,8 @@ def forms() -> dict[str, Any]:
 
 
 def _fields(table: type[Table]) -> list[dict[str, Any]]:
-    return [_field(name, field) for name, field in table.model_fields.items() if name != "kind"]  # chosen in a list
+    left_out = ("kind", "parts")  # chosen in a list; of a composite section
+    return [_field(name, field) for name, field in table.model_fields.items() if name not in left_out]
 
 
 def _field(name: str, field: FieldInfo) -> dict[str, Any]:
@@ -75,4 +76,5 @@ def _type(annotation: Any) -> str:
 
 
 def _choices(annotation: Any) -> list[str]:
-    return [str(value) for part in parts(annotation) if get_origin(part) is Literal for value in get_args(part)]
+    words = [str(value) for part in parts(annotation) if get_origin(part) is Literal for value in get_args(part)]
+    return [word for word in words if word != "composite"]  # a section of several parts, which only files have

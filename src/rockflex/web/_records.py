@@ -151,7 +151,7 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
             "periods": pack(PERIODS),
             "sa": pack(spectrum.sa),
             "first_period": first,
-            "lifting": None if built is None else built.properties.resisting_moment / built.properties.l0r,
+            "lifting": None if built is None else built.properties.uplift_acceleration,
         }
     )
 

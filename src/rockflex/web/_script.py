@@ -9,7 +9,7 @@ import numpy as np
 
 from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import BaseElement
-from rockflex.structure import LumpedMasses
+from rockflex.structure import LumpedMasses, Section
 from rockflex.structure.file import StructureEntry
 from rockflex.study._ground_table import BedTable, GroundTable, SpringsTable
 from rockflex.study._yielding import yielding
@@ -205,7 +205,7 @@ def _named(values: Mapping[str, Any]) -> str:
 def _literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return _literal(value.tolist())
-    if isinstance(value, LumpedMasses | BaseElement):
+    if isinstance(value, LumpedMasses | Section | BaseElement):
         return _call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key!r}: {_literal(each)}' for key, each in value.items())}}}"

@@ -159,12 +159,12 @@ def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
 
 def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, Any]]:
     alpha = pivot.balance_rotation if math.isfinite(pivot.balance_rotation) else None
-    lifting, nominal = pivot.resisting_moment / p.l0r, pivot.nominal_overturning_rotation
+    nominal = pivot.nominal_overturning_rotation
     limit = "nominal limit 0.7 atan(B/h*₁)" if p.symmetric else "nominal limit 0.7 atan(b/h*₁), b to this edge"
     said = [
         ("M_r", pivot.resisting_moment, "N m", "moment at which the base lifts"),
         ("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
-        ("a_lift", lifting, "m/s²", "slow ground acceleration that lifts the base"),
+        ("a_lift", pivot.uplift_acceleration, "m/s²", "slow ground acceleration that lifts the base"),
         ("α", alpha, "rad", "rotation beyond which it does not return to the upright position"),
         *([("λ", pivot.recentring_ratio, "", CENTRING)] if pivot.dissipator_moment > 0.0 else []),
         ("θ_nom", nominal, "rad", limit),

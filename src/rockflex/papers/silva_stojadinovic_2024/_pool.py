@@ -18,7 +18,7 @@ from rockflex.papers.silva_stojadinovic_2024._records import Records
 if TYPE_CHECKING:
     import pandas as pd
 
-PAIRS, SEED = 1000, 2024
+PAIRS = 1000
 DRAWS = 400
 KNOWN = 0.95  # share of the draws in which a measure must exist
 
@@ -28,7 +28,7 @@ def pool(records: Records) -> "pd.DataFrame":
     """Run populations of a thousand random structures, each with MDOF-S and 2DOF-S under a record drawn for it."""
     import pandas as pd
 
-    seeds = range(SEED, SEED + records.seeds)
+    seeds = range(records.seed, records.seed + records.seeds)
     return pd.concat([rf.run_population(records.suite, PAIRS, seed) for seed in seeds], ignore_index=True)
 
 
@@ -43,7 +43,7 @@ def intervals(records: Records) -> dict[str, Interval]:
 
     A measure that is missing in more than one draw out of twenty, such as a slope without enough pairs, is NaN.
     """
-    pairs, generator = pool(records), np.random.default_rng(SEED)
+    pairs, generator = pool(records), np.random.default_rng(records.seed)
     drawn = [
         measure(pairs.iloc[np.sort(generator.choice(len(pairs), PAIRS, replace=False))].reset_index(drop=True))
         for _ in range(DRAWS)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
-from rockflex.papers.silva_stojadinovic_2024._pool import PAIRS, SEED, intervals
+from rockflex.papers.silva_stojadinovic_2024._pool import PAIRS, intervals
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
 from rockflex.report import Remark
@@ -24,7 +24,8 @@ def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remar
         Kind.AFTERWARDS,
         f"All records times {FACTOR}",
         "The factor is chosen so that about as many pairs uplift as in the paper, whose records are not available. "
-        f"The sample is one thousand pairs (seed {SEED}); a count of 300 of them has a standard deviation of 14.",
+        f"The sample is one thousand pairs (seed {records.seed}); a count of 300 of them has a standard deviation of "
+        "14.",
         ("quantity", "paper", "records as they are, median", f"times {FACTOR}"),
         [
             (name, printed, f"{as_they_are[key].estimate:.4g}", f"{weaker[key]:.4g}")
@@ -37,4 +38,4 @@ def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remar
 def _pairs(records: Records) -> "pd.DataFrame":
     """Return the measures of the first thousand structures of the population under weaker records."""
     suite = rf.Suite([motion.scaled(FACTOR) for motion in records.suite])
-    return rf.run_population(suite, PAIRS, SEED)
+    return rf.run_population(suite, PAIRS, records.seed)

@@ -7,7 +7,7 @@ import numpy as np
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
 from rockflex.papers.silva_stojadinovic_2024._number import statistic, tendency
-from rockflex.papers.silva_stojadinovic_2024._pool import DRAWS, PAIRS, SEED, intervals, pool, population
+from rockflex.papers.silva_stojadinovic_2024._pool import DRAWS, PAIRS, intervals, pool, population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
 from rockflex.papers.silva_stojadinovic_2024._weaker import under_weaker
@@ -72,9 +72,9 @@ def reproduce(records: Records) -> Result:
     ]
     note = (
         "A thousand pairs; R² and slopes exclude pairs in which a model overturns. Our value is the median, with the "
-        f"90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {SEED} to "
-        f"{SEED + records.seeds - 1}). All draws use the same records, so the intervals do not include the effect of "
-        "other records. The figure shows the first thousand."
+        f"90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {records.seed} to "
+        f"{records.seed + records.seeds - 1}). All draws use the same records, so the intervals do not include the "
+        "effect of other records. The figure shows the first thousand."
     )
     pairs = population(records)
     return Result(

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from rockflex._errors import InputError
 from rockflex._schema import PLAIN, WHOLE, BaseMass, Key, each
 from rockflex.structure import Beam, LumpedMasses
+from rockflex.structure.file._section_table import SectionKey, section_of
 from rockflex.structure.file._table import Table
 from rockflex.structure.file._tables import Damping, HalfWidth, Modes, StructureTable, Vector
 
@@ -40,8 +41,13 @@ class BeamTable(StructureTable):
             label="Heights z",
         ),
     ] = None
-    mass: Annotated[float | Vector, Key("the mass per metre in kg/m", "kg/m", form=_ALONG)]
-    bending_stiffness: Annotated[float | Vector, Key("EI in N m²", "N m²", form=_ALONG)]
+    mass: Annotated[
+        float | Vector | None, Key("the mass per metre in kg/m (unless a section gives it)", "kg/m", form=_ALONG)
+    ] = None
+    bending_stiffness: Annotated[
+        float | Vector | None, Key("EI in N m² (unless a section gives it)", "N m²", form=_ALONG)
+    ] = None
+    section: SectionKey = None
     shear_stiffness: Annotated[
         float | Vector | None, Key("GA_s in N (default: no deformation in shear)", "N", form=_ALONG)
     ] = None
@@ -80,4 +86,4 @@ class BeamTable(StructureTable):
         given |= {name: (z, given[name]) for name in lists}
         if self.lumped_masses is not None:
             given["lumped_masses"] = LumpedMasses(**given["lumped_masses"])
-        return given
+        return given | section_of(self.section)

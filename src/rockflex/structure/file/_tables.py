@@ -16,6 +16,7 @@ from rockflex.structure import (
     WallFrame,
     rigid_block,
 )
+from rockflex.structure.file._section_table import SectionKey, section_of
 from rockflex.structure.file._table import Table
 
 Vector = list[float]
@@ -153,13 +154,20 @@ class CantileverTable(StructureTable):
 
     height: Annotated[float, Key("the height of the body at the tip above the base", "m", low=0.01, high=2000.0)]
     tip_mass: Annotated[float, Key("the mass of the body at the tip", "kg")]
-    bending_stiffness: Annotated[float, Key("EI of the column", "N m²")]
+    bending_stiffness: Annotated[
+        float | None, Key("EI of the column (unless a section gives it)", "N m²", label="Bending stiffness")
+    ] = None
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
     mass_per_length: Annotated[float, Key("the mass of the column per metre", "kg/m")] = 0.0
     tip_inertia: Annotated[float, Key("the rotary inertia of the body at the tip about its own axis", "kg m²")] = 0.0
     n_modes: Annotated[int | None, Key("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")] = None
+    section: SectionKey = None
+
+    def arguments(self, folder: Path) -> dict[str, Any]:
+        """Return the arguments with the section built."""
+        return super().arguments(folder) | section_of(self.section)
 
 
 class WallFrameTable(StructureTable):

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, factors_of
+from rockflex.study._ranges import expanded
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plan._bench import Bench, bench_of
 from rockflex.study.plan._chunked import run_plan
@@ -21,7 +22,12 @@ if TYPE_CHECKING:
 QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
 Factors = Annotated[
     list[float],
-    Field(min_length=1, description="a list of factors on the acceleration"),
+    BeforeValidator(expanded),
+    Field(
+        min_length=1,
+        description="a list of factors on the acceleration, or a range such as "
+        "{smallest = 0.5, largest = 3.0, step = 0.25}",
+    ),
     AfterValidator(lambda scales: factors_of(scales, QUIET)),
 ]
 

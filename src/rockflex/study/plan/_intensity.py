@@ -12,9 +12,8 @@ def intensity_measures(properties: RockingProperties, motion: GroundMotion) -> d
     omega, zeta = math.nan, math.nan
     if properties.n_modes:
         omega, zeta = float(properties.omega[0]), float(properties.zeta[0])
-    lifting = properties.resisting_moment / properties.l0r
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
-    shaking = Shaking(motion, omega, zeta, lifting, rate)
+    shaking = Shaking(motion, omega, zeta, properties.uplift_acceleration, rate)
     return {measure.name: float(measure.of(shaking)) for measure in intensities()}
 
 

@@ -189,7 +189,7 @@ def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
         "structure_mass": drawn.n_stories * STORY_MASS,
         "total_mass": properties.m_tot,
         "l0r_g": properties.l0r * GRAVITY,
-        "uplift_acceleration": properties.resisting_moment / properties.l0r,
+        "uplift_acceleration": properties.uplift_acceleration,
     }
 
 
