@@ -41,7 +41,7 @@ def test_printed_table():
     result = invoke(STRUCTURE)
     assert result.exit_code == 0
     rows = [line.split() for line in result.stdout.splitlines()]
-    assert ["1", "1.0000", "6.283", "0.8795", "10.54", "1.252", "0.02000"] in rows
+    assert ["1", "1.000", "6.283", "0.8795", "10.54", "1.252", "0.02000"] in rows
     assert ["5", "0.1483", "42.36", "0.001568", "1.563", "0.01504", "0.02000"] in rows
     assert ["Sum", "of", "m*_n/Σm", "1.000"] in rows
     assert ["Moment", "of", "inertia", "about", "a", "pivot,", "I_θ", "2.007e+07", "kg", "m²"] in rows
