@@ -12,7 +12,7 @@ from rockflex.response._element_peaks import ELEMENT_PEAKS
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._file import load, save
 from rockflex.response._floor_peaks import FloorPeaks
-from rockflex.response._history import History
+from rockflex.response._history import History, SampledHistory
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._warnings import warnings_of
 
@@ -52,9 +52,8 @@ class Response(Value):
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
     `soil_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`, `horizontal_reaction`,
     `vertical_reaction`, `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`,
-    `sliding_time()` and `energy`; see
-    `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
-    `InputError`.
+    `sliding_time()`, `energy`, `to_frame()`, `at()` and `resample()`; see `History`. A response with peaks only has
+    none of them: `hasattr` returns False, and accessing one raises an `InputError`.
 
     Parameters
     ----------
@@ -218,6 +217,9 @@ class Response(Value):
     required_friction_excluding_impacts = _OfHistory[Callable[..., float]]()
     sliding_time = _OfHistory[Callable[..., float | None]]()
     energy = _OfHistory[EnergyLedger]()
+    to_frame = _OfHistory[Callable[..., Any]]()
+    at = _OfHistory[Callable[..., SampledHistory]]()
+    resample = _OfHistory[Callable[..., SampledHistory]]()
 
     def __post_init__(self) -> None:
         pass  # its arrays are read-only already, and every run of a study creates a response
