@@ -81,11 +81,12 @@ HOME = {
     "starlette": {"web"},
     "uvicorn": {"web"},
     "tomli_w": {"web"},
+    "xarray": {"response"},
 }
 NEVER_AT_IMPORT = {"pandas"}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
-    *("distributed", "jinja2", "starlette", "uvicorn"),
+    *("distributed", "jinja2", "starlette", "uvicorn", "xarray"),
 }  # by `import rockflex`
 LONGEST = 300  # lines
 

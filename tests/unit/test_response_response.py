@@ -46,7 +46,7 @@ QUANTITIES = (
     "slip", "slip_velocity", "heave", "edge_uplift", "spring_force", "vertical_ground_acceleration", "uplifted",
 )  # fmt: skip
 KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float", "uplifted": "NDArray[np.bool_]"}
-METHODS = ("required_friction_excluding_impacts", "sliding_time", "at", "resample", "to_frame")
+METHODS = ("required_friction_excluding_impacts", "sliding_time", "at", "resample", "to_frame", "to_xarray")
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ from rockflex.models import RockingModel, SpringModel
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 UNITS_OF_HISTORY = {
     "time": "s",
@@ -60,6 +61,15 @@ OTHERS = {
 }
 QUANTITIES = UNITS_OF_HISTORY | {name: unit for name, unit in UNITS_OF_GROUND.items() if "_edge_" not in name} | OTHERS
 """Every quantity of a history at its states, with its unit."""
+DIMENSIONS = {
+    **dict.fromkeys(("modal_displacement", "modal_velocity", "modal_acceleration"), "mode"),
+    **dict.fromkeys(("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement"), "floor"),
+    **dict.fromkeys(("element_force", "element_elongation"), "element"),
+    **dict.fromkeys(("spring_force", "soil_pressure"), "spring"),
+    "tendon_force": "tendon",
+    "edge_uplift": "edge",
+}
+"""The second dimension of quantities with several values."""
 
 
 class TabledHistory:
@@ -103,6 +113,59 @@ class TabledHistory:
         else:
             columns = {"time": getattr(self, "time")} | _chosen(self, quantities)  # noqa: B009
         return pd.DataFrame(columns).set_index("time")
+
+    def to_xarray(self, quantities: Sequence[str] | None = None) -> "xr.Dataset":
+        """Return the history as a labelled data set, in SI units; it needs the extra ``rockflex[xarray]``.
+
+        Parameters
+        ----------
+        quantities
+            Names of quantities of the history. None: all that the model has.
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable for each quantity, with its unit in ``attrs["units"]``. Dimensions are `time` (s), in which an
+            event occurs twice, and where there are several values `mode`, `floor`, `element`, `tendon` or `spring`,
+            counted from 1, or `edge`, "left" and "right".
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed, there is no such quantity, or the structure has no floors.
+        """
+        xr = _xarray()
+        names = [name for name in QUANTITIES if hasattr(self, name)] if quantities is None else quantities
+        check_quantities(names)
+        variables: dict[str, Any] = {}
+        labels: dict[str, Any] = {"time": ("time", getattr(self, "time"), {"units": "s"})}  # noqa: B009
+        for name in names:
+            values, dims = getattr(self, name), ("time",)
+            if name == "time" or (quantities is None and values.size == 0):
+                continue
+            if values.ndim > 1:
+                dims = ("time", DIMENSIONS[name])
+                labels[dims[1]] = ["left", "right"] if dims[1] == "edge" else np.arange(values.shape[1]) + 1
+            variables[name] = (dims, values, {"units": QUANTITIES[name]} if QUANTITIES[name] else {})
+        return xr.Dataset(variables, labels, {"model": self.model.label})
+
+
+def _xarray() -> Any:
+    """Return the module.
+
+    Raises
+    ------
+    InputError
+        If it is not installed.
+    """
+    try:
+        import xarray
+    except ImportError as error:
+        raise InputError(
+            "to_xarray needs xarray, which is not installed. Install it, or rockflex with its extra: pip install "
+            '"rockflex[xarray]"; or use to_frame, which needs only pandas.'
+        ) from error
+    return xarray
 
 
 def history_columns(history: TabledHistory, more: Iterable[str] = ()) -> dict[str, Array]:

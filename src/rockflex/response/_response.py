@@ -52,8 +52,8 @@ class Response(Value):
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
     `soil_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`, `horizontal_reaction`,
     `vertical_reaction`, `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`,
-    `sliding_time()`, `energy`, `to_frame()`, `at()` and `resample()`; see `History`. A response with peaks only has
-    none of them: `hasattr` returns False, and accessing one raises an `InputError`.
+    `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()` and `resample()`; see `History`. A response
+    with peaks only has none of them: `hasattr` returns False, and accessing one raises an `InputError`.
 
     Parameters
     ----------
@@ -218,6 +218,7 @@ class Response(Value):
     sliding_time = _OfHistory[Callable[..., float | None]]()
     energy = _OfHistory[EnergyLedger]()
     to_frame = _OfHistory[Callable[..., Any]]()
+    to_xarray = _OfHistory[Callable[..., Any]]()
     at = _OfHistory[Callable[..., SampledHistory]]()
     resample = _OfHistory[Callable[..., SampledHistory]]()
 
