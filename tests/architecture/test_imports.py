@@ -22,7 +22,7 @@ ALLOWED = {
     "structure": {"modal"},
     "models": {"modal"},
     "solve": {"models", "motion"},
-    "response": {"solve", "models", "modal"},
+    "response": {"solve", "models", "modal", "motion"},
     "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel", "store", "fragility"},
     "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
     "report": {"plot"},

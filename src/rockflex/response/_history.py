@@ -20,6 +20,7 @@ from rockflex.models import (
 )
 from rockflex.response._element_history import ElementHistory
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
+from rockflex.response._floor_motion import FloorMotions
 from rockflex.response._floors import floor_histories
 from rockflex.response._global import global_histories
 from rockflex.response._ground_history import GroundHistory, edge_times
@@ -30,7 +31,7 @@ from rockflex.response._sampled import even_instants, instants, of_run, states_a
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class History(GroundHistory, ReactionHistory, ElementHistory, TabledHistory, Value):
+class History(GroundHistory, ReactionHistory, ElementHistory, FloorMotions, TabledHistory, Value):
     """States at the samples of the record and before and after every event; all arrays are read-only.
 
     Parameters
@@ -262,9 +263,9 @@ class History(GroundHistory, ReactionHistory, ElementHistory, TabledHistory, Val
 class SampledHistory(History):
     """The motion of a run at chosen instants; `History.at` and `History.resample` return it.
 
-    It has all quantities of a history at its instants. It lacks the events between them, and so what depends on these:
-    the times of uplift and impact, the energy ledger and the required friction. Asking for one of those raises an
-    `InputError`; take them from the history of the run.
+    It has all quantities of a history at its instants, but not the events between them. The times of uplift and impact,
+    the energy ledger, the required friction and the floor spectra depend on these, and raise an `InputError`: take them
+    from the history of the run.
 
     Examples
     --------
@@ -273,14 +274,8 @@ class SampledHistory(History):
     ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
     ... )
     >>> history = rf.simulate(column, rf.one_sine_pulse(amplitude=3.0, period=1.0), "2DOF-S", output="history").history
-    >>> history.resample(0.25).to_frame(["rotation", "base_moment"]).round(4)["rotation"]
-    time
-    0.00    0.0000
-    0.25    0.0000
-    0.50   -0.0115
-    0.75   -0.0209
-    1.00   -0.0070
-    Name: rotation, dtype: float64
+    >>> history.resample(0.25).rotation.round(4)
+    array([ 0.    ,  0.    , -0.0115, -0.0209, -0.007 ])
     >>> round(float(history.at(0.7).rotation[0]), 4)
     -0.0207
     """
@@ -292,6 +287,8 @@ class SampledHistory(History):
     required_friction = of_run()
     required_friction_excluding_impacts = of_run()
     sliding_time = of_run()
+    floor_motion = of_run()
+    floor_spectrum = of_run()
     at = of_run()
     resample = of_run()
 

@@ -8,6 +8,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 from rockflex._arrays import Array, Bools
 from rockflex._files import path_of
 from rockflex._values import Value
+from rockflex.motion import GroundMotion
 from rockflex.response._element_peaks import ELEMENT_PEAKS
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._file import load, save
@@ -52,8 +53,9 @@ class Response(Value):
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
     `soil_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`, `horizontal_reaction`,
     `vertical_reaction`, `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`,
-    `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()` and `resample()`; see `History`. A response
-    with peaks only has none of them: `hasattr` returns False, and accessing one raises an `InputError`.
+    `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()`, `resample()`,
+    `floor_motion()` and `floor_spectrum()`; see `History`. A response with peaks only has none of them: `hasattr`
+    returns False, and accessing one raises an `InputError`.
 
     Parameters
     ----------
@@ -219,6 +221,8 @@ class Response(Value):
     energy = _OfHistory[EnergyLedger]()
     to_frame = _OfHistory[Callable[..., Any]]()
     to_xarray = _OfHistory[Callable[..., Any]]()
+    floor_motion = _OfHistory[Callable[..., GroundMotion]]()
+    floor_spectrum = _OfHistory[Callable[..., Any]]()
     at = _OfHistory[Callable[..., SampledHistory]]()
     resample = _OfHistory[Callable[..., SampledHistory]]()
 
