@@ -37,6 +37,7 @@ FOUNDATION = {
     "_constants",
     "_errors",
     "_files",
+    "_html",
     "_json",
     "_kernel",
     "_matrices",

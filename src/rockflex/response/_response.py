@@ -7,6 +7,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 from rockflex._arrays import Array, Bools
 from rockflex._files import path_of
+from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
 from rockflex.response._element_peaks import ELEMENT_PEAKS
@@ -42,7 +43,7 @@ class _OfHistory(Generic[Quantity]):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Response(Value):
+class Response(HtmlTable, Value):
     """The response of one structure to one motion.
 
     All peaks are the largest magnitudes of the continuous motion, including those between samples. A response with a
@@ -234,6 +235,10 @@ class Response(Value):
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
             f"u_top,max={self.max_top_displacement:.4g} m, {self.n_impacts} impacts)"
         )
+
+    def _shown_as(self) -> dict[str, Any]:
+        warned = {"warnings": " ".join(self.warnings)} if self.warnings else {}
+        return {name: value for name, value in self.peaks().items() if not name.startswith("time_of_")} | warned
 
     @property
     def warnings(self) -> tuple[str, ...]:
