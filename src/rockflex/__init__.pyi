@@ -120,6 +120,7 @@ from .response import History as History
 from .response import MomentRotation as MomentRotation
 from .response import MomentRotationOnSprings as MomentRotationOnSprings
 from .response import Response as Response
+from .response import SampledHistory as SampledHistory
 from .store import StudyFolder as StudyFolder
 from .structure import Beam as Beam
 from .structure import CantileverWithTipMass as CantileverWithTipMass

@@ -22,7 +22,7 @@ ALLOWED = {
     "structure": {"modal"},
     "models": {"modal"},
     "solve": {"models", "motion"},
-    "response": {"solve", "models", "modal"},
+    "response": {"solve", "models", "modal", "motion"},
     "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel", "store", "fragility"},
     "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
     "report": {"plot"},
@@ -37,6 +37,7 @@ FOUNDATION = {
     "_constants",
     "_errors",
     "_files",
+    "_html",
     "_json",
     "_kernel",
     "_matrices",
@@ -83,11 +84,12 @@ HOME = {
     "tomli_w": {"web"},
     "obspy": {"motion"},
     "openpyxl": {"motion"},
+    "xarray": {"response"},
 }
 NEVER_AT_IMPORT = {"pandas", "obspy", "openpyxl"}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
-    *("distributed", "jinja2", "starlette", "uvicorn", "obspy", "openpyxl"),
+    *("distributed", "jinja2", "starlette", "uvicorn", "obspy", "openpyxl", "xarray"),
 }  # by `import rockflex`
 LONGEST = 300  # lines
 

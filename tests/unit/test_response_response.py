@@ -29,7 +29,10 @@ from rockflex import (
 )
 from rockflex.models import Model
 from rockflex.response import respond
+from rockflex.response._element_history import ElementHistory
+from rockflex.response._floor_motion import FloorMotions
 from rockflex.response._ground_history import GroundHistory
+from rockflex.response._history_columns import TabledHistory
 from rockflex.response._reaction_history import ReactionHistory
 from rockflex.solve import Solution
 
@@ -44,7 +47,16 @@ QUANTITIES = (
     "slip", "slip_velocity", "heave", "edge_uplift", "spring_force", "vertical_ground_acceleration", "uplifted",
 )  # fmt: skip
 KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float", "uplifted": "NDArray[np.bool_]"}
-METHODS = ("required_friction_excluding_impacts", "sliding_time")
+METHODS = (
+    "required_friction_excluding_impacts",
+    "sliding_time",
+    "at",
+    "resample",
+    "to_frame",
+    "to_xarray",
+    "floor_motion",
+    "floor_spectrum",
+)
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +81,11 @@ def test_a_response_has_the_quantities_of_its_history(response):
 
 def test_no_quantity_is_forgotten():
     """Every public property of a history, with its documentation, completed by editors and named in the docstring."""
-    own = [item for part in (History, GroundHistory, ReactionHistory) for item in vars(part).items()]
+    own = [
+        item
+        for part in (History, GroundHistory, ReactionHistory, ElementHistory, FloorMotions, TabledHistory)
+        for item in vars(part).items()
+    ]
     public = {name for name, kind in own if isinstance(kind, property | cached_property) and not name.startswith("_")}
     assert public == {*QUANTITIES, "soil_pressure"}  # which rigid ground has not
     methods = {name for name, kind in own if isfunction(kind) and not name.startswith("_")}

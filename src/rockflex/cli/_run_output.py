@@ -1,6 +1,5 @@
 """The files of ``rockflex run --out``."""
 
-import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -10,7 +9,7 @@ from rockflex.cli._console import note
 from rockflex.cli._output import file_stems, staged
 from rockflex.cli._simulations import Batch, Run
 from rockflex.motion import MEASURES
-from rockflex.response import Response, ground_columns
+from rockflex.response import Response, history_columns
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,10 +54,6 @@ UNITS = {
     "ground.bed.damping": "N s/m",
     "ground.bed.end_zone": "m",
 }
-SERIES = (
-    "time", "side", "ground_acceleration", "rotation", "rotation_velocity", "top_displacement",
-    "total_top_displacement", "base_moment", "base_shear", "horizontal_reaction", "vertical_reaction",
-)  # fmt: skip
 
 
 def write_runs(folder: Path, document: dict[str, Any], batch: Batch, runs: Sequence[Run], *, force: bool) -> None:
@@ -103,12 +98,11 @@ def _series(batch: Batch, responses: Sequence[Response]) -> "Iterator[pd.DataFra
     """Histories as tables, one model below the other; an event is two rows at the same time."""
     import pandas as pd
 
-    names = [*SERIES]
+    names = list[str]()
     if batch.assumptions.bouc_wen is not None:
         names.append("yielding")
     if batch.friction is not None:
         names.append("friction_demand")
     for response in responses:
-        # The total displacement is missing where the height of the top is not known.
-        values = {name: getattr(response, name, math.nan) for name in names} | ground_columns(response)
-        yield pd.DataFrame({"model": response.model, **values})
+        assert response.history is not None
+        yield pd.DataFrame({"model": response.model, **history_columns(response.history, names)})

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
@@ -15,7 +16,7 @@ from rockflex.fragility._regression import fit_lines
 
 
 @dataclass(frozen=True, eq=False)
-class CloudFit(Value):
+class CloudFit(HtmlTable, Value):
     """The line log(y) = c1 + c2 log(IM), with natural logarithms, and the scatter about it.
 
     Given IM, the response is lognormal about the line with the same dispersion everywhere (Silva & Stojadinović 2024,

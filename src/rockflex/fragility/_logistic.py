@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, SolverError
+from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
 from rockflex.fragility._predictor import Standardised, standard_error
@@ -20,7 +21,7 @@ CONVERGED = 1e-4  # score and step of the penalised fit: the defaults of the pac
 
 
 @dataclass(frozen=True, eq=False)
-class LogisticFit(Value):
+class LogisticFit(HtmlTable, Value):
     """The curve P = 1/(1 + exp(-(b0 + b1 log IM))), with the natural logarithm.
 
     Attributes

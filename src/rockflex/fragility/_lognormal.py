@@ -9,12 +9,13 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import finite_matrix, positive
 from rockflex._errors import InputError
+from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, fractions, log_at
 
 
 @dataclass(frozen=True, eq=False)
-class LognormalFragility(Value):
+class LognormalFragility(HtmlTable, Value):
     """The curve P = Φ(ln(IM/median)/beta).
 
     Attributes

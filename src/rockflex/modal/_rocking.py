@@ -13,6 +13,7 @@ from rockflex._arrays import Array
 from rockflex._checks import damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._constants import GRAVITY
+from rockflex._html import HtmlTable
 from rockflex._values import Value, changed
 from rockflex.modal._devices import BaseElement, element_set, mirrored
 from rockflex.modal._floors import FloorModes
@@ -32,7 +33,7 @@ from rockflex.modal._tendons import Tendon
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class RockingProperties(Value):
+class RockingProperties(HtmlTable, Value):
     """The parameters of a rocking structure with n modes (Silva & Stojadinović 2024, Table 2).
 
     They describe any structure, and can be entered by hand from the output of any finite element program. Without modes

@@ -6,8 +6,8 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._global import GLOBAL, asked_of, extremes_of
-from rockflex.response._ground_columns import UNITS_OF_GROUND, ground_columns
-from rockflex.response._history import History
+from rockflex.response._history import History, SampledHistory
+from rockflex.response._history_columns import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
 from rockflex.response._moment_rotation import MomentRotation
 from rockflex.response._moment_rotation_on_springs import MomentRotationOnSprings
 from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
@@ -24,12 +24,14 @@ __all__ = [
     "PEAKS",
     "STATUSES",
     "UNITS_OF_GROUND",
+    "UNITS_OF_HISTORY",
     "EnergyLedger",
     "FloorPeaks",
     "History",
     "MomentRotation",
     "MomentRotationOnSprings",
     "Response",
+    "SampledHistory",
     "asked_of",
     "base_path",
     "columns_among",
@@ -38,6 +40,7 @@ __all__ = [
     "extremes_of",
     "friction_coefficient",
     "ground_columns",
+    "history_columns",
     "large_resistance",
     "push_on_springs",
     "resistance_on_springs",

@@ -7,12 +7,14 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 from rockflex._arrays import Array, Bools
 from rockflex._files import path_of
+from rockflex._html import HtmlTable
 from rockflex._values import Value
+from rockflex.motion import GroundMotion
 from rockflex.response._element_peaks import ELEMENT_PEAKS
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._file import load, save
 from rockflex.response._floor_peaks import FloorPeaks
-from rockflex.response._history import History
+from rockflex.response._history import History, SampledHistory
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._warnings import warnings_of
 
@@ -41,7 +43,7 @@ class _OfHistory(Generic[Quantity]):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Response(Value):
+class Response(HtmlTable, Value):
     """The response of one structure to one motion.
 
     All peaks are the largest magnitudes of the continuous motion, including those between samples. A response with a
@@ -52,9 +54,9 @@ class Response(Value):
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
     `soil_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`, `horizontal_reaction`,
     `vertical_reaction`, `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`,
-    `sliding_time()` and `energy`; see
-    `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
-    `InputError`.
+    `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()`, `resample()`,
+    `floor_motion()` and `floor_spectrum()`; see `History`. A response with peaks only has none of them: `hasattr`
+    returns False, and accessing one raises an `InputError`.
 
     Parameters
     ----------
@@ -218,6 +220,12 @@ class Response(Value):
     required_friction_excluding_impacts = _OfHistory[Callable[..., float]]()
     sliding_time = _OfHistory[Callable[..., float | None]]()
     energy = _OfHistory[EnergyLedger]()
+    to_frame = _OfHistory[Callable[..., Any]]()
+    to_xarray = _OfHistory[Callable[..., Any]]()
+    floor_motion = _OfHistory[Callable[..., GroundMotion]]()
+    floor_spectrum = _OfHistory[Callable[..., Any]]()
+    at = _OfHistory[Callable[..., SampledHistory]]()
+    resample = _OfHistory[Callable[..., SampledHistory]]()
 
     def __post_init__(self) -> None:
         pass  # its arrays are read-only already, and every run of a study creates a response
@@ -227,6 +235,10 @@ class Response(Value):
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
             f"u_top,max={self.max_top_displacement:.4g} m, {self.n_impacts} impacts)"
         )
+
+    def _shown_as(self) -> dict[str, Any]:
+        warned = {"warnings": " ".join(self.warnings)} if self.warnings else {}
+        return {name: value for name, value in self.peaks().items() if not name.startswith("time_of_")} | warned
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ import tomli_w
 
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
-from rockflex.response import UNITS_OF_GROUND, Response, ground_columns
+from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
 from rockflex.web._records import motion_of
@@ -25,18 +25,6 @@ from rockflex.web._uploads import Uploads, clean_name
 
 ROWS = 250_000  # of a table of histories
 CELLS = 6_000_000  # of it: a bed has a column for every spring
-COLUMNS = {
-    "time": "s",
-    "side": "",
-    "ground_acceleration": "m/s2",
-    "rotation": "rad",
-    "top_displacement": "m",
-    "total_top_displacement": "m",
-    "base_moment": "N m",
-    "base_shear": "N",
-    "horizontal_reaction": "N",
-    "vertical_reaction": "N",
-}
 
 
 def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes]:
@@ -121,14 +109,16 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
         )
         raise Refusal({"models": message})
     of_ground = [_of_ground(each) for each in found]
-    cells = sum(each.time.size * (len(COLUMNS) + len(more)) for each, more in zip(found, of_ground, strict=True))
+    cells = sum(
+        each.time.size * (len(UNITS_OF_HISTORY) + len(more)) for each, more in zip(found, of_ground, strict=True)
+    )
     if cells > CELLS:
         message = (
             f"the histories with the forces of all springs have {cells} values, but the page writes {CELLS} at most. "
             "Choose fewer models or springs, or Python lines."
         )
         raise Refusal({"models": message})
-    heads = {name: f"{name} ({unit})" if unit else name for name, unit in COLUMNS.items()}
+    heads = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS_OF_HISTORY.items()}
     # The total displacement is missing where the height of the top is not known.
     columns = ({head: getattr(each, name, math.nan) for name, head in heads.items()} for each in found)
     tables = [
@@ -140,7 +130,7 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
 
 def _of_ground(response: Response) -> dict[str, Any]:
     """Return the histories of a base that slides or is on springs, and of vertical motion, as columns."""
-    columns = ground_columns(response)
+    columns = {} if response.history is None else ground_columns(response.history)
     return {f"{name} ({UNITS_OF_GROUND[name.rstrip('0123456789').rstrip('_')]})": columns[name] for name in columns}
 
 

@@ -146,14 +146,37 @@ class Intervals(NamedTuple):
         In phases that are not linear these are the states at the start of the interval.
         """
         moved = self.before.copy()
-        for rows, basis, forced, w, start, steps in self.parts:
-            end = start.copy()
-            end[:, 0] += fraction * steps * start[:, 1]
-            carried = propagate(basis, w, fraction * steps) + end @ forced
-            moved[rows, : carried.shape[1]] = carried @ basis.basis.T
-        for rows, motion, start, shaking, steps in self.series:
-            moved[rows] = motion.moved(start, shaking, fraction * steps)
+        for part in (*self.parts, *self.series):
+            _move(moved, part.rows, part, slice(None), fraction * part.steps)
         return moved
+
+    def after(self, which: NDArray[np.intp], elapsed: Array) -> Array:
+        """Return the states `elapsed` (m,) seconds after the start of some intervals, shape (m, S').
+
+        In phases that are not linear these are the states at the start of the interval.
+        """
+        moved = self.before[which]
+        for part in (*self.parts, *self.series):
+            place = np.full(self.before.shape[0], -1)
+            place[part.rows] = np.arange(part.rows.size)
+            chosen = np.flatnonzero(place[which] >= 0)
+            if chosen.size:
+                _move(moved, chosen, part, place[which[chosen]], elapsed[chosen])
+        return moved
+
+
+def _move(
+    moved: Array, rows: NDArray[np.intp], part: Part | SeriesPart, which: NDArray[np.intp] | slice, elapsed: Array
+) -> None:
+    """Replace rows by the states some time after the start of intervals of one part."""
+    if isinstance(part, SeriesPart):
+        shaking = Shaking(*(each[which] for each in part.shaking))
+        moved[rows] = part.motion.moved(part.start[which], shaking, elapsed)
+        return
+    end = part.start[which].copy()
+    end[:, 0] += elapsed * end[:, 1]
+    carried = propagate(part.basis, part.w[which], elapsed) + end @ part.forced
+    moved[rows, : carried.shape[1]] = carried @ part.basis.basis.T
 
 
 def _fastest(model: LinearModel, side: int) -> float:

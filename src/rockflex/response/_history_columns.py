@@ -1,0 +1,229 @@
+"""A history as a table: which columns, and in which units."""
+
+import math
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex._checks import one_of
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.models import RockingModel, SpringModel
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+UNITS_OF_HISTORY = {
+    "time": "s",
+    "side": "",
+    "ground_acceleration": "m/s2",
+    "rotation": "rad",
+    "rotation_velocity": "rad/s",
+    "top_displacement": "m",
+    "total_top_displacement": "m",
+    "base_moment": "N m",
+    "base_shear": "N",
+    "horizontal_reaction": "N",
+    "vertical_reaction": "N",
+}
+"""The columns of every history, with their units."""
+UNITS_OF_GROUND = {
+    "vertical_ground_acceleration": "m/s2",
+    "slip": "m",
+    "slip_velocity": "m/s",
+    "heave": "m",
+    "left_edge_uplift": "m",
+    "right_edge_uplift": "m",
+    "spring_force": "N",
+}
+"""Units of further columns; those of the springs have a number, from 1, at the end of their names."""
+OTHERS = {
+    "rotation_acceleration": "rad/s2",
+    "modal_displacement": "m",
+    "modal_velocity": "m/s",
+    "modal_acceleration": "m/s2",
+    "story_drift": "m",
+    "story_shear": "N",
+    "floor_acceleration": "m/s2",
+    "total_floor_displacement": "m",
+    "element_force": "N",
+    "element_elongation": "m",
+    "tendon_force": "N",
+    "edge_uplift": "m",
+    "soil_pressure": "Pa",
+    "friction_demand": "",
+    "yielding": "",
+    "uplifted": "",
+}
+QUANTITIES = UNITS_OF_HISTORY | {name: unit for name, unit in UNITS_OF_GROUND.items() if "_edge_" not in name} | OTHERS
+"""Every quantity of a history at its states, with its unit."""
+DIMENSIONS = {
+    **dict.fromkeys(("modal_displacement", "modal_velocity", "modal_acceleration"), "mode"),
+    **dict.fromkeys(("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement"), "floor"),
+    **dict.fromkeys(("element_force", "element_elongation"), "element"),
+    **dict.fromkeys(("spring_force", "soil_pressure"), "spring"),
+    "tendon_force": "tendon",
+    "edge_uplift": "edge",
+}
+"""The second dimension of quantities with several values."""
+
+
+class TabledHistory:
+    """The quantities of a history as the columns of a table."""
+
+    model: RockingModel
+    states: Array
+
+    def to_frame(self, quantities: Sequence[str] | None = None) -> "pd.DataFrame":
+        """Return the history as a table, one row a state, in SI units.
+
+        An event is two rows at the same time, the motion before and after it, so the index is not unique;
+        ``history.resample(dt).to_frame()`` has every instant once.
+
+        Parameters
+        ----------
+        quantities
+            Names of quantities of the history, such as ``["modal_displacement", "floor_acceleration"]``. One with
+            several values, as for every floor, has a column for each: ``floor_acceleration_1``, ... None: those that
+            ``rockflex run --out`` writes.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Indexed by `time` (s). By default the columns are `side`, `ground_acceleration` (m/s²), `rotation` (rad),
+            `rotation_velocity` (rad/s), `top_displacement` and `total_top_displacement` (m; NaN if the height of the
+            top is not known), `base_moment` (N m), `base_shear`, `horizontal_reaction` and `vertical_reaction` (N);
+            `yielding` with a hysteresis; `vertical_ground_acceleration` if there is any; `slip` and `slip_velocity`
+            where the base can slide; on springs `heave`, `left_edge_uplift`, `right_edge_uplift` and `spring_force_1`,
+            ...
+
+        Raises
+        ------
+        InputError
+            If there is no such quantity, or the structure has no floors.
+        """
+        import pandas as pd
+
+        if quantities is None:
+            columns = history_columns(self, ("yielding",) if self.model.bouc_wen is not None else ())
+        else:
+            columns = {"time": getattr(self, "time")} | _chosen(self, quantities)  # noqa: B009
+        return pd.DataFrame(columns).set_index("time")
+
+    def to_xarray(self, quantities: Sequence[str] | None = None) -> "xr.Dataset":
+        """Return the history as a labelled data set, in SI units; it needs the extra ``rockflex[xarray]``.
+
+        Parameters
+        ----------
+        quantities
+            Names of quantities of the history. None: all that the model has.
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable for each quantity, with its unit in ``attrs["units"]``. Dimensions are `time` (s), in which an
+            event occurs twice, and where there are several values `mode`, `floor`, `element`, `tendon` or `spring`,
+            counted from 1, or `edge`, "left" and "right".
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed, there is no such quantity, or the structure has no floors.
+        """
+        xr = _xarray()
+        names = [name for name in QUANTITIES if hasattr(self, name)] if quantities is None else quantities
+        check_quantities(names)
+        variables: dict[str, Any] = {}
+        labels: dict[str, Any] = {"time": ("time", getattr(self, "time"), {"units": "s"})}  # noqa: B009
+        for name in names:
+            values, dims = getattr(self, name), ("time",)
+            if name == "time" or (quantities is None and values.size == 0):
+                continue
+            if values.ndim > 1:
+                dims = ("time", DIMENSIONS[name])
+                labels[dims[1]] = ["left", "right"] if dims[1] == "edge" else np.arange(values.shape[1]) + 1
+            variables[name] = (dims, values, {"units": QUANTITIES[name]} if QUANTITIES[name] else {})
+        return xr.Dataset(variables, labels, {"model": self.model.label})
+
+
+def _xarray() -> Any:
+    """Return the module.
+
+    Raises
+    ------
+    InputError
+        If it is not installed.
+    """
+    try:
+        import xarray
+    except ImportError as error:
+        raise InputError(
+            "to_xarray needs xarray, which is not installed. Install it, or rockflex with its extra: pip install "
+            '"rockflex[xarray]"; or use to_frame, which needs only pandas.'
+        ) from error
+    return xarray
+
+
+def history_columns(history: TabledHistory, more: Iterable[str] = ()) -> dict[str, Array]:
+    """Return the columns of a history and `more` of its quantities by their names, each of shape (n_states,).
+
+    These are `UNITS_OF_HISTORY`, the quantities of `more`, and `ground_columns`. The total displacement is NaN where
+    the height of the top is not known.
+    """
+    known: Any = history
+    missing = np.full(history.states.shape[0], math.nan)
+    found = {name: getattr(known, name, missing) for name in UNITS_OF_HISTORY}
+    return found | {name: getattr(known, name) for name in more} | ground_columns(history)
+
+
+def ground_columns(history: TabledHistory) -> dict[str, Array]:
+    """Return what a history has beyond that of a base that stands on rigid ground, each of shape (n_states,).
+
+    The vertical acceleration of the ground if there is any, the slip if the base can slide, and on springs the heave,
+    the rise of the edges and the force of every spring.
+    """
+    known: Any = history
+    columns: dict[str, Array] = {}
+    if known.vertical_ground_acceleration.any():
+        columns["vertical_ground_acceleration"] = known.vertical_ground_acceleration
+    if history.model.layout.slip >= 0:
+        columns |= {"slip": known.slip, "slip_velocity": known.slip_velocity}
+    if isinstance(history.model, SpringModel):
+        left, right = known.edge_uplift.T
+        columns |= {"heave": known.heave, "left_edge_uplift": left, "right_edge_uplift": right}
+        columns |= {f"spring_force_{k}": force for k, force in enumerate(known.spring_force.T, 1)}
+    return columns
+
+
+def check_quantities(names: Any) -> None:
+    """Raise an InputError unless these are names of quantities at the states of a history, each once."""
+    listed = isinstance(names, list | tuple)
+    wrong = [name for name in names if not one_of(name, QUANTITIES)] if listed else [names]
+    if wrong or len(set(names)) < len(names):
+        what = f"{shown(wrong[0])} was" if wrong else f"{shown(list(names))} were"
+        near = get_close_matches(str(wrong[0]), QUANTITIES, 1) if wrong and listed else []
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        raise InputError(
+            f"quantities must be a list of different names of quantities, such as ['rotation', 'base_moment'], but "
+            f"{what} given.{hint} There are: {', '.join(QUANTITIES)}.",
+            field="quantities",
+        )
+
+
+def _chosen(history: TabledHistory, names: Sequence[str]) -> dict[str, Array]:
+    """Return chosen quantities as columns; those of several values are numbered from 1."""
+    check_quantities(names)
+    columns: dict[str, Array] = {}
+    for name in names:
+        values = getattr(history, name)
+        if name == "time":
+            continue
+        if values.ndim == 1:
+            columns[name] = values
+        else:
+            columns |= {f"{name}_{k}": column for k, column in enumerate(values.T, 1)}
+    return columns

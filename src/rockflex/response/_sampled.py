@@ -1,0 +1,156 @@
+"""The motion between the states of a history."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockflex._arrays import Array
+from rockflex._checks import finite_vector, positive
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, BoucWen, RockingModel, accelerations
+from rockflex.response._missing import MissingQuantityError
+from rockflex.response._quintic import Motion, quintic_between
+from rockflex.solve import ClosedForm
+
+MOST = 10_000_000  # instants
+PIECES = 16  # of an interval in which z is integrated
+
+
+def of_run() -> Any:
+    """Return a quantity that states at other instants than those of the run cannot tell."""
+    return OfRun()
+
+
+class OfRun:
+    """A quantity of the continuous motion, which states at other instants than those of the run cannot tell."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+        self.__doc__ = f"Not available: ask the history of the run for `{name}`."
+
+    def __get__(self, history: object, owner: type) -> object:
+        if history is None:
+            return self
+        raise MissingQuantityError(
+            f"A sampled history has no {self.name}, since it lacks the events between its instants. Take it from the "
+            "history of the run, before `at` or `resample`."
+        )
+
+
+def instants(times: ArrayLike, known: Array) -> Array:
+    """Return instants in s within a history, from one or many.
+
+    Raises
+    ------
+    InputError
+        If there is none, or one is not finite or outside the history.
+    """
+    given = np.atleast_1d(np.asarray(times)) if np.isscalar(times) else times
+    wanted = finite_vector("times", given, "s")
+    outside = np.flatnonzero((wanted < known[0]) | (wanted > known[-1]))
+    if outside.size or not wanted.size:
+        what = f"times[{outside[0]}] = {wanted[outside[0]]:g} s" if outside.size else "no time"
+        raise InputError(
+            f"times must lie within the history, from {known[0]:g} to {known[-1]:g} s, but {what} was given. Simulate "
+            "with a longer free_vibration, or leave out what is beyond the end.",
+            field="times",
+        )
+    return wanted
+
+
+def even_instants(dt: float, known: Array) -> Array:
+    """Return instants at equal steps from the first state to the last one, which ends a shorter step.
+
+    Raises
+    ------
+    InputError
+        If `dt` is not a positive number, or gives more than 10 million instants.
+    """
+    step, begin, end = positive("dt", dt, "s"), float(known[0]), float(known[-1])
+    if (end - begin) / step > MOST:
+        raise InputError(
+            f"dt = {shown(dt)} s gives {(end - begin) / step:.3g} instants over {end - begin:g} s, above the limit of "
+            f"{MOST}. Give a dt of at least {(end - begin) / MOST:.3g} s.",
+            field="dt",
+        )
+    steps = round((end - begin) / step)
+    if abs(steps * step - (end - begin)) > 1e-9 * step * max(steps, 1):
+        steps = int((end - begin) / step)
+        return np.append(begin + step * np.arange(steps + 1), end)
+    return np.append(begin + step * np.arange(steps), end)
+
+
+def states_at(model: RockingModel, states: Array, times: Array) -> Array:
+    """Return the states of a history at instants within it, shape (m, n_columns); at an event those after it.
+
+    Linear phases are exact. In others the motion is a polynomial of fifth degree through position, velocity and
+    acceleration of both states, the hysteretic variable z is integrated along it, and the energies are linear.
+    """
+    place = np.searchsorted(states[:, TIME], times, side="right") - 1
+    found = states[place]
+    between = np.flatnonzero(found[:, TIME] < times)
+    if not between.size:
+        return found
+    which = place[between]
+    before, after = states[which], states[which + 1]
+    span, elapsed = after[:, TIME] - before[:, TIME], times[between] - before[:, TIME]
+    part = elapsed / span
+    inside = before.copy()
+    inside[:, TIME] = times[between]
+    for column in (GROUND, RISE):
+        inside[:, column] += part * (after[:, column] - before[:, column])
+    decimals = 12 - int(np.ceil(np.log10(max(float(states[-1, TIME]), 1.0))))  # as the steps of `intervals`
+    if not model.integrated:
+        intervals = ClosedForm(model).intervals(states)
+        inside[:, HEADER:] = intervals.after(which, np.round(elapsed, decimals))
+    else:
+        _curve(model, states, which, part, inside)
+        if model.bouc_wen is None:
+            chosen, core = before[:, SIDE] == 0.0, HEADER + model.layout.core
+            moved = ClosedForm(model).intervals(states).after(which[chosen], np.round(elapsed[chosen], decimals))
+            inside[chosen, HEADER:core] = moved[:, : model.layout.core]
+    found[between] = inside
+    return found
+
+
+def _curve(model: RockingModel, states: Array, which: NDArray[np.intp], part: Array, inside: Array) -> None:
+    """Fill in the motion at a part of some intervals by polynomials between the states at their ends."""
+    layout = model.layout
+    n = layout.modes
+    where = [*range(HEADER, HEADER + n), HEADER + layout.rotation]
+    speeds = [*range(HEADER + n, HEADER + 2 * n), HEADER + layout.spin]
+    rates, step = accelerations(model, states)[:, : n + 1], np.diff(states[:, TIME])[which]
+    first, last = ((states[ends][:, where], states[ends][:, speeds], rates[ends]) for ends in (which, which + 1))
+    inside[:, where], inside[:, speeds], _ = quintic_between(first, last, step, part[:, None])
+    energies = slice(HEADER + layout.core, HEADER + layout.memory)
+    before, after = states[which], states[which + 1]
+    inside[:, energies] += part[:, None] * (after[:, energies] - before[:, energies])
+    if model.bouc_wen is not None:
+        z = HEADER + layout.hysteresis
+        inside[:, z] = _hysteresis(model.bouc_wen, before[:, z], first, last, step, part)
+
+
+def _hysteresis(law: BoucWen, z: Array, first: Motion, last: Motion, step: Array, part: Array) -> Array:
+    """Return z (Eq. 38) at a part of some intervals, from z at their starts and the motion, D_1 first, at both ends.
+
+    The rate of z is integrated by the classical method of Runge and Kutta, with the velocity of the polynomial.
+    """
+
+    def velocity(place: Array) -> Array:
+        return quintic_between(first, last, step, place[:, None])[1][:, 0]
+
+    def rate(v: Array, z: Array) -> Array:
+        lean = law.beta + law.gamma * np.where((z >= 0.0) == (v >= 0.0), 1.0, -1.0)
+        return v / law.yield_displacement * (1.0 - lean * np.abs(z) ** law.exponent)
+
+    h, v = part * step / PIECES, velocity(np.zeros_like(part))
+    for k in range(PIECES):
+        middle, end = (velocity(part * (k + more) / PIECES) for more in (0.5, 1.0))
+        k1 = rate(v, z)
+        k2 = rate(middle, z + 0.5 * h * k1)
+        k3 = rate(middle, z + 0.5 * h * k2)
+        k4 = rate(end, z + h * k3)
+        z, v = z + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4), end
+    return z
