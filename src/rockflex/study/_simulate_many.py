@@ -28,7 +28,7 @@ from rockflex.study._prepared import FIXED
 from rockflex.study._results import RESULTS
 from rockflex.study._runs import in_order, in_order_apart
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
-from rockflex.study._tables import ArrowTable, Sheet, to_frame
+from rockflex.study._tables import Sheet
 from rockflex.study._yielding import hysteresis_of
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def simulate_many(
             responses[index * each + place] = response if isinstance(response, Response) else None
         return peaks_among(found)
 
-    def work(task: list[Part]) -> tuple[ArrowTable, list[WorkLimitError]]:
+    def work(task: list[Part]) -> tuple[Sheet, list[WorkLimitError]]:
         refused, begun = list[WorkLimitError](), 0
         sheet = Sheet(sum(last - first for _, first, last, _ in task), columns)
         for index, _, _, cases in task:  # all of them first, so that the code that prepares stays in the cache
@@ -183,14 +183,15 @@ def simulate_many(
             begun += last - first
             if first == 0 and last == each:
                 cases[:] = [None] * len(cases)  # no other task needs them, and the next tables find room in the cache
-        return sheet.table(), refused
+        return sheet, refused
 
     columns = {"status": STATUSES, "error": str, **RESULTS}
     own = impact is not None and type(impact) not in FIXED  # it may keep what it is told
     many = len(everything) >= MANY and each <= CHUNK and not (options["history"] or own or callable(ground))
     found = (in_order_apart if many else in_order)(work, tasks(), workers)
-    results, refused = to_frame(*(table for table, _ in found)), [error for _, errors in found for error in errors]
-    if len(refused) == len(results):
+    results = Sheet.joined([sheet for sheet, _ in found])
+    refused = [error for _, errors in found for error in errors]
+    if len(refused) == len(everything) * each:
         raise refused[0]
 
     import pandas as pd

@@ -35,18 +35,12 @@ def _column(values: list[Any], kind: type | Sequence[str]) -> Any:
 
     if isinstance(kind, type):
         return pa.array(values, TYPES[kind], from_pandas=True)
-    return _named(pa.array(values, pa.int32()), kind)
-
-
-def _named(codes: Any, names: Sequence[str]) -> Any:
-    """Return a column of names; all chunks list all of them, so that their tables have one schema and can be joined."""
-    import pyarrow as pa
-
-    return pa.DictionaryArray.from_arrays(codes, pa.array(names, pa.string()))
+    # All chunks list all names, so that their tables have one schema and can be joined directly.
+    return pa.DictionaryArray.from_arrays(pa.array(values, pa.int32()), pa.array(kind, pa.string()))
 
 
 class Sheet:
-    """A table of results that is filled column by column.
+    """Results of some runs, filled column by column, for a table in memory.
 
     Parameters
     ----------
@@ -79,20 +73,29 @@ class Sheet:
             self._errors[place] = error
         self._missing[places] = True
 
-    def table(self) -> ArrowTable:
-        """Return the table; NaN are missing values."""
-        import pyarrow as pa
+    @staticmethod
+    def joined(sheets: "Sequence[Sheet]") -> dict[str, Any]:
+        """Return the columns of all sheets, one after another, for a DataFrame as `to_frame` gives it."""
+        import pandas as pd
 
+        missing = np.concatenate([sheet._missing for sheet in sheets])
+        errors = [error for sheet in sheets for error in sheet._errors]
         found = dict[str, Any]()
-        for name, kind in self._columns.items():
+        for name, kind in sheets[0]._columns.items():
             if kind is str:
-                found[name] = pa.array(self._errors, pa.string())
+                found[name] = pd.array(errors, dtype=pd.StringDtype())
                 continue
-            column = self._values[name]
-            missing = self._missing | np.isnan(column) if kind is float else self._missing
-            array = pa.array(column, TYPES[kind] if isinstance(kind, type) else pa.int32(), mask=missing)
-            found[name] = array if isinstance(kind, type) else _named(array, kind)
-        return pa.table(found)
+            values: NDArray[Any] = np.concatenate([sheet._values[name] for sheet in sheets])
+            if kind is float:
+                found[name] = np.where(missing, np.nan, values)
+            elif kind is int:
+                found[name] = pd.arrays.IntegerArray(values, missing.copy())
+            elif kind is bool:
+                found[name] = pd.arrays.BooleanArray(values, missing.copy())
+            elif not isinstance(kind, type):
+                codes = np.where(missing, -1, values)
+                found[name] = pd.Categorical.from_codes(codes, dtype=pd.CategoricalDtype(list(kind)))
+        return found
 
 
 def to_frame(*tables: ArrowTable) -> "pd.DataFrame":
