@@ -263,8 +263,7 @@ class RockingProperties(HtmlTable, Value):
     def with_half_width(self, half_width: float) -> "RockingProperties":
         """Return the same structure on a base of the same mass and another half-width B in m.
 
-        The part m_tot B² of I_θ and M_r change with B. The modes, L_0^r, the rotary inertia of the masses, the tendons
-        and the eccentricity do not.
+        The part m_tot B² of I_θ and M_r change with B; modes, L_0^r, rotary inertia, tendons and eccentricity do not.
 
         Raises
         ------
