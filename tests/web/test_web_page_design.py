@@ -28,8 +28,10 @@ def test_design_answers_how_wide(visitor) -> None:
 
 def test_a_search_is_cancelled_and_told_of_changes(visitor) -> None:
     page = visitor.page
+    visitor.fill("structure.frame.n_stories", "15")
     visitor.tab("design")
     page.get_by_label("Model").select_option("MDOF-S")
+    visitor.fill("design.widths", "20")  # takes longer than it takes to cancel it
     page.get_by_role("button", name="Search", exact=True).click()
     page.wait_for_function("() => /^[1-9]\\d* of/.test(document.querySelector('#status').textContent)")
     page.get_by_role("button", name="Cancel").click()
