@@ -12,11 +12,9 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from rockflex._arrays import Array
+from rockflex._numba_vectors import Builder, contiguous, index
 
 LANES, LINE = 4, 8  # numbers in a vector, and in a cache line
-
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-_SAME = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
 
 
 def whole_vectors(size: int) -> int:
@@ -64,45 +62,34 @@ def _sum(context: Any, builder: Any, signature: Any, arguments: Any, start: int)
     """Write the loops; `start` is 1 if the second argument is an array to add to, otherwise 0."""
     kinds = signature.args
 
-    def array(i: int) -> Any:
-        return context.make_array(kinds[i])(context, builder, arguments[i])
-
-    def vector(data: Any, offset: Any) -> Any:
-        return builder.bitcast(builder.gep(data, [offset]), _VECTOR.as_pointer())
-
-    def same(number: Any) -> Any:
-        one = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
-        return builder.shuffle_vector(one, ir.Constant(_VECTOR, ir.Undefined), _SAME)
-
-    def index(value: int) -> Any:
-        return ir.Constant(ir.IntType(64), value)
-
-    def times(number: Any, values: Any, total: Any = None) -> Any:
-        product = builder.fmul(number, values, flags=("contract",))
-        return product if total is None else builder.fadd(total, product, flags=("contract",))
-
-    out, weights, table = array(0), array(start + 2), array(start + 4)
+    make = Builder(context, builder, LANES)
+    out, weights, table = (make.data(kinds[i], arguments[i]) for i in (0, start + 2, start + 4))
+    given = make.data(kinds[1], arguments[1]) if start else None
     factor, row, first, last, count = (arguments[start + i] for i in (1, 3, 5, 6, 7))
-    width = builder.extract_value(table.shape, 1)
-    weight = builder.gep(weights.data, [builder.mul(row, builder.extract_value(weights.shape, 1))])
+    width = make.size(kinds[start + 4], arguments[start + 4], 1)
+    weight = builder.gep(weights, [builder.mul(row, make.size(kinds[start + 2], arguments[start + 2], 1))])
+
+    def times(number: Any, values: Any) -> Any:
+        return builder.fmul(make.same(number), values, flags=("contract",))
 
     def sum_vectors(place: Any, number: int) -> None:
         """Sum vectors that follow one another, in one loop over the rows."""
         places = [builder.add(place, index(LANES * i)) for i in range(number)]
-        sums = [cgutils.alloca_once(builder, _VECTOR) for _ in places]
+        sums = [cgutils.alloca_once(builder, make.vector) for _ in places]
 
         def add(k: Any, totals: list[Any]) -> None:
-            factor, begin = same(builder.load(builder.gep(weight, [k]))), builder.mul(k, width)
+            factor, begin = make.number(weight, k), builder.mul(k, width)
             for each, total, kept in zip(places, totals, sums, strict=True):
-                values = builder.load(vector(table.data, builder.add(each, begin)), align=8)
-                builder.store(times(factor, values, total), kept)
+                values = make.load(table, builder.add(each, begin))
+                builder.store(times(factor, values) if total is None else make.plus(total, factor, values), kept)
 
         add(index(0), [None] * number)
         with cgutils.for_range(builder, last, start=first, intp=last.type) as loop:
             add(loop.index, [builder.load(each) for each in sums])
         for each, total in zip(places, sums, strict=True):
-            given = builder.load(vector(array(1).data, each), align=8) if start else None
-            builder.store(times(same(factor), builder.load(total), given), vector(out.data, each), align=8)
+            whole = builder.load(total)
+            found = times(factor, whole) if given is None else make.plus(make.load(given, each), factor, whole)
+            make.store(found, out, each)
 
     # Pairs of vectors, and one more if their number is odd.
     vectors = builder.udiv(builder.add(count, index(LANES - 1)), index(LANES))
@@ -112,10 +99,6 @@ def _sum(context: Any, builder: Any, signature: Any, arguments: Any, start: int)
     with builder.if_then(builder.trunc(vectors, ir.IntType(1))):
         sum_vectors(builder.mul(pairs, index(2 * LANES)), 1)
     return context.get_dummy_value()
-
-
-def _contiguous(*arguments: Any) -> bool:
-    return all(each.layout == "C" for each in arguments if isinstance(each, types.Array))
 
 
 def _weigh(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -133,7 +116,7 @@ def _compiled_weigh(
     del factor, row, first, last, count  # numba converts them
     whole = types.int64
     given = (out, types.float64, weights, whole, table, whole, whole, whole)
-    return (types.none(*given), _weigh) if _contiguous(*given) else None
+    return (types.none(*given), _weigh) if contiguous(*given) else None
 
 
 @intrinsic
@@ -143,7 +126,7 @@ def _compiled_place(
     del factor, row, first, last, count
     whole = types.int64
     given = (out, start, types.float64, weights, whole, table, whole, whole, whole)
-    return (types.none(*given), _place) if _contiguous(*given) else None
+    return (types.none(*given), _place) if contiguous(*given) else None
 
 
 _interpreted = cast("Any", config).DISABLE_JIT

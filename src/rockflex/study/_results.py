@@ -6,11 +6,10 @@ from operator import attrgetter
 from typing import Any
 
 from rockflex.modal import RockingProperties, Tendon
-from rockflex.response import PEAKS, Response
+from rockflex.response import NAMES, Response
 
-RESULTS: dict[str, type] = {  # every number and flag of a Response, by its name
-    name: kind for name in PEAKS if (kind := Response.__annotations__[name]) in (float, int, bool)
-}
+# Every number and flag of a Response, by its name.
+RESULTS: dict[str, type] = {name: Response.__annotations__[name] for name in NAMES if name != "status"}
 OF_ELEMENTS = ("tendon_yield", "tendon_overload", "residual_rotation")
 OF_GROUND = ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement")
 
