@@ -85,8 +85,9 @@ SPRINGS = "[ground]\nbase_inertia = 3e4\n[ground.springs]\nstiffness = 4e8\n"
          "was given.", None),
         (SPRINGS + "damping = -1.0", "[ground.springs]: damping must be zero or positive, but",
          "ground.springs.damping"),
-        (SPRINGS.replace("base_inertia = 3e4", ""), "[ground]: A base without rotary inertia on springs has no inertia",
-         "ground.base_inertia"),
+        (SPRINGS.replace("base_inertia = 3e4", ""), "[ground]: A base without rotary inertia on springs has no inertia "
+         "against rotation once all modes are included. Give mat_mass in kg for a rigid mat as wide as the base, or "
+         "base_inertia in kg m² for base and floors together.", "ground.base_inertia"),
         (SPRINGS.replace("base", "mat_mass = 4e4\nbase"), "[ground]: mat_mass was given besides the base_inertia. "
          "Leave one of them out.", "ground.mat_mass"),
         ("[ground]\nmat_mass = 4e4\nfriction = 0.3", "[ground]: base_inertia belongs to springs",

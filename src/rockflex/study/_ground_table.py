@@ -116,6 +116,13 @@ class GroundTable(GroundKeys, Table):
 
     def _inertia(self, properties: RockingProperties) -> float | None:
         if self.mat_mass is None:
+            if self.base_inertia is None and (self.springs or self.bed):
+                raise InputError(
+                    "A base without rotary inertia on springs has no inertia against rotation once all modes are "
+                    "included. Give mat_mass in kg for a rigid mat as wide as the base, or base_inertia in kg m² for "
+                    "base and floors together.",
+                    field="base_inertia",
+                )
             return self.base_inertia
         if self.base_inertia is not None:
             _refuse_both("mat_mass", "the base_inertia")
