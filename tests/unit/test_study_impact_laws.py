@@ -115,7 +115,11 @@ def test_a_restitution_may_return_energy_in_a_complete_model():
     ("after", "text"),
     [
         (raising, "The impact law Law() failed: no idea"),
-        (lambda v, s: 0.0, "The impact law Law() failed: cannot unpack non-iterable float object"),
+        (
+            lambda v, s: 0.0,
+            "The impact law Law() failed: after must return the modal velocities in m/s and the rotation velocity in "
+            "rad/s, but it returned 0.0.",
+        ),
         (
             lambda v, s: (v[:1], 0.0),
             "The impact law Law() failed: The modal velocity after an impact must have 3 values, but 1 were returned.",

@@ -1,7 +1,7 @@
 """Impact laws in the form used by kernels (Silva & Stojadinović 2024, Section 2.1.1)."""
 
 import ctypes
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from rockflex._arrays import Array
 from rockflex._checks import finite, finite_vector
 from rockflex._errors import InputError
 from rockflex._kernel import Callback, kernel
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution, VVELComplete, VVELSimplified
 
@@ -118,7 +119,7 @@ class OwnLaw:
     def _after(self, address: int, n: int) -> int:
         state = np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_double)), (2 * n + 2,))
         try:
-            velocity, spin = self._law.after(self._properties, state[n : 2 * n].copy(), float(state[-1]))
+            velocity, spin = _pair(self._law.after(self._properties, state[n : 2 * n].copy(), float(state[-1])))
             checked = finite_vector("the modal velocity after an impact", velocity, "m/s")
             if checked.size != n:
                 raise InputError(
@@ -130,3 +131,15 @@ class OwnLaw:
             self.failures.append(error)
             return 1
         return 0
+
+
+def _pair(returned: Any) -> tuple[Any, Any]:
+    """Return the two things that a law returned."""
+    try:
+        velocity, spin = returned
+    except (TypeError, ValueError):
+        raise InputError(
+            "after must return the modal velocities in m/s and the rotation velocity in rad/s, but it returned "
+            f"{shown(returned)}."
+        ) from None
+    return velocity, spin
