@@ -13,6 +13,44 @@ StructureFile = Annotated[
     Path | None,
     typer.Option("--structure", "-s", metavar="FILE.toml", help="The structure file, if it is not the first argument."),
 ]
+Arguments = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="STRUCTURE.toml MOTION",
+        help="The structure file, then ground motions: suites, records (suite/name), files or directories.",
+        show_default=False,
+    ),
+]
+Motions = Annotated[
+    list[str] | None,
+    typer.Option("--motion", "-m", metavar="MOTION", help="A ground motion; may be repeated.", show_default=False),
+]
+Models = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--model",
+        metavar="LABEL",
+        help="Labels, separated by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, "
+        "MDOF-C, 3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; fixed base: fixed, 5DOF-fixed; one "
+        "mode that yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of omitted modes in V_b and M_b: "
+        "2DOF-S-R, 5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
+        "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation, those of these that rock; on springs or with "
+        "--ground-friction, those that are simplified and elastic and rock.",
+        show_default=False,
+    ),
+]
+Scales = Annotated[
+    list[str],
+    typer.Option(
+        "--scale",
+        metavar="FACTOR",
+        help="Factor on the acceleration, or smallest:largest:step such as 0.5:3:0.25; may be repeated.",
+    ),
+]
+FreeVibration = Annotated[
+    str,
+    typer.Option(metavar="S|settle", help="Seconds after the record, or settle: until at rest or overturned."),
+]
 Friction = Annotated[
     float | None,
     typer.Option(
