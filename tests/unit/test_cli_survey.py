@@ -33,7 +33,7 @@ def test_table_and_reasons(folder):
     assert ["RSN7_A090.AT2", "AT2", "Some", "Station", "90", "yes", "0.1", "3", "0.1000", "6.5", "12.5", "360"] in rows
     assert ["MYG002.EW", "K-NET", "MYG002", "E-W", "yes", "0.1", "10", "0.0001551", "5.7", "-", "-"] in rows
     assert (
-        "3 taken, 3 left out; 2 recordings, 1 with a horizontal pair, 1 of them with a vertical component"
+        "3 taken, 3 left out; 2 recordings: 1 with a horizontal pair, 1 with a vertical component, 1 with both"
         in result.stdout
     )
     assert "  RSN7_A-UP.AT2: vertical component\n" in result.stdout

@@ -203,11 +203,18 @@ def test_from_a_file(tmp_path):
         ("T (s), Sa (gal)", 0.01),
         ("period, Sa (g)", G),
         ("% T (s), Sa (g)", G),
+        ('"T (s)"; "Sa (mm/s2)"', 1e-3),
     ],
 )
 def test_units_of_the_header(tmp_path, head, unit):
     (tmp_path / "site.txt").write_text(f"{head}\n0.1; 2\n1.0; 1\n")
     assert rf.read_target(tmp_path / "site.txt").sa.tolist() == [2.0 * unit, unit]
+
+
+def test_decimal_commas(tmp_path):
+    (tmp_path / "site.csv").write_text("T [s];Sa [m/s²]\n0,1;2,5\n1;1,25\n")
+    read = rf.read_target(tmp_path / "site.csv")
+    assert (read.periods.tolist(), read.sa.tolist()) == ([0.1, 1.0], [2.5, 1.25])
 
 
 @pytest.mark.parametrize(
@@ -222,12 +229,12 @@ def test_units_of_the_header(tmp_path, head, unit):
         ("period (s), sa (furlong)\n0.1, 1\n", {}, "the header gives the unit 'furlong', which is not known. Write it"),
         ("T (s), sa\n0.1, 1\n2, 1\n", {}, "does not state the unit of its acceleration"),
         ("0.1\n0.2\n", {"units": "g"}, "line 1: a target spectrum has two columns, the period.* but 1 were found"),
-        ("0.1 1\n0.2 1 2\n", {"units": "g"}, "line 2: a target spectrum has two columns.* but 3 were found"),
+        ("0.1 1\n0.2 1 2\n", {"units": "g"}, "line 2: expected 2 columns as in line 1, but found 3"),
+        ("0.1 1 2\n0.2 1 2\n", {"units": "g"}, "line 1: a target spectrum has two columns.* but 3 were found"),
         ("period\n", {"units": "g"}, "holds no numbers: a target spectrum is expected as two columns"),
-        ("0,1; 1\n", {"units": "g"}, "line 1: expected a finite number, but found '0,1'. Write decimals with a point"),
         ("0.1 1\n0.2 x\n", {"units": "g"}, "line 2: expected a finite number, but found 'x'"),
         ("0.2 1\n0.1 1\n", {"units": "g"}, r"site\.txt: periods must increase"),
-        ("0.1 1\n0.2 1\n", {"units": "ft"}, "units must be one of 'g', 'm/s2', 'cm/s2', but 'ft' was given"),
+        ("0.1 1\n0.2 1\n", {"units": "ft"}, "units must be one of 'g', 'm/s2', .*'in/s2', but 'ft' was given"),
         ("0.1 1\n0.2 1\n", {"units": "g", "damping_ratio": 5}, r"^damping_ratio must lie in"),
     ],
 )

@@ -103,10 +103,12 @@ def _print(found: "RecordSurvey") -> None:
 
 
 def _stations(found: "RecordSurvey") -> str:
-    pairs = sum(len(each.horizontal) == 2 for each in found.stations)
-    whole = sum(len(each.horizontal) == 2 and each.vertical is not None for each in found.stations)
+    pairs = [len(each.horizontal) == 2 for each in found.stations]
+    upright = [each.vertical is not None for each in found.stations]
+    both = sum(pair and vertical for pair, vertical in zip(pairs, upright, strict=True))
     return (
-        f"{len(found.stations)} recordings, {pairs} with a horizontal pair, {whole} of them with a vertical component"
+        f"{len(pairs)} recording{'s' * (len(pairs) != 1)}: {sum(pairs)} with a horizontal pair, {sum(upright)} with a "
+        f"vertical component, {both} with both"
     )
 
 

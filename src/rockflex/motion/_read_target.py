@@ -1,34 +1,32 @@
 """Target spectra from files."""
 
-import re
 from pathlib import Path
 
 import numpy as np
 
 from rockflex._checks import one_of
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import path_of
 from rockflex._shown import shown
+from rockflex.motion._table import BRACKET, after_brackets, table_of
 from rockflex.motion._target import TargetSpectrum
-from rockflex.motion._text import DECIMAL, number, read_lines
+from rockflex.motion._text import number, read_lines
+from rockflex.motion._units import UNITS, spelled
 
-_UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01}
-_SPELLED = {"m/s/s": "m/s2", "ms-2": "m/s2", "cm/s/s": "cm/s2", "gal": "cm/s2"} | {unit: unit for unit in _UNITS}
 _SECONDS = ("s", "sec", "seconds")
-_BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 
 
 def read_target(path: str | Path, units: str | None = None, damping_ratio: float = 0.05) -> TargetSpectrum:
     r"""Read a target spectrum from two columns of a CSV or text file: period in s, and pseudo-acceleration.
 
-    Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments.
+    Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. Decimals may
+    have a comma where something else separates the columns.
 
     Parameters
     ----------
     path : str or Path
         The file.
-    units : {"g", "m/s2", "cm/s2"}, optional
+    units : {"g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2"}, optional
         Unit of the acceleration, if the header does not state it, as in "period (s), sa (g)".
     damping_ratio : float
         Damping ratio for which the ordinates hold.
@@ -52,22 +50,20 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """
-    if units is not None and not one_of(units, _UNITS):
+    if units is not None and not one_of(units, UNITS):
         raise InputError(
-            f"units must be one of {', '.join(map(repr, _UNITS))}, but {shown(units)} was given.", field="units"
+            f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.", field="units"
         )
     file = path_of("path", path)
-    head, rows = _split(read_lines(file))
-    if not rows:
-        raise InputError(f"{file} holds no numbers: a target spectrum is expected as two columns, period and S_a.")
-    for line, cells in rows:
-        if len(cells) != 2:
-            raise InputError(
-                f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
-                f"but {len(cells)} were found. Keep these."
-            )
-    values = np.array([[number(cell, file, line) for cell in cells] for line, cells in rows])
-    unit = _UNITS[_unit(file, head, units)]
+    table = table_of(file, read_lines(file), "a target spectrum is expected as two columns, period and S_a")
+    line, cells = table.rows[0]
+    if len(cells) != 2:
+        raise InputError(
+            f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
+            f"but {len(cells)} were found. Keep these."
+        )
+    values = np.array([[number(cell, file, line) for cell in cells] for line, cells in table.rows])
+    unit = UNITS[_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
     try:
         return TargetSpectrum(values[:, 0], values[:, 1] * unit, damping_ratio, file.stem)
     except InputError as error:
@@ -76,29 +72,15 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
         raise InputError(f"{file}: {error}", field=error.field) from error
 
 
-def _split(lines: list[str]) -> tuple[str, list[tuple[int, list[str]]]]:
-    """Return the last line before the numbers, and the cells of the others with the number of their line."""
-    head, rows = "", list[tuple[int, list[str]]]()
-    for i, line in enumerate(lines, 1):
-        content = re.split("[#%!]", line, maxsplit=1)[0].strip()
-        separator = next((mark for mark in (";", ",") if mark in content), None)
-        cells = [cell.strip() for cell in content.split(separator)]
-        if content and (rows or DECIMAL.fullmatch(cells[0].replace(",", "."))):
-            rows.append((i, cells))
-        elif not rows and line.strip():
-            head = line
-    return head, rows
-
-
 def _unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or that of the caller; both must agree."""
-    found = _BRACKET.findall(head[: max(head.rfind(")"), head.rfind("]")) + 1])
+    found = BRACKET.findall(head[: after_brackets(head)])
     written = found[-1] if found and found[-1].strip().lower() not in _SECONDS else ""  # that of the periods
-    plain = re.sub(r"[\s^*·.]", "", written.lower().replace("²", "2").replace("−", "-").replace("sec", "s"))
-    stated = _SPELLED.get(plain)
+    stated = spelled(written)
     if written and stated is None:
         raise InputError(
-            f"{file}: the header gives the unit {shown(written)}, which is not known. Write it as g, m/s2 or cm/s2."
+            f"{file}: the header gives the unit {shown(written)}, which is not known. Write it as one of "
+            f"{', '.join(UNITS)}."
         )
     if stated and units and stated != units:
         raise InputError(

@@ -22,12 +22,15 @@ class Table:
     heads: list[str]
 
 
-def table_of(file: Path, lines: list[str]) -> Table:
+RECORD = "a record is expected as AT2, CSV or columns of text"
+
+
+def table_of(file: Path, lines: list[str], expected: str = RECORD) -> Table:
     """Return the rows of numbers in the lines of a text file.
 
     Cells are separated by semicolons, commas, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A comma is a
     decimal one where something else separates the cells; and in a single column, unless the numbers before it increase
-    like times.
+    like times. `expected` says in the message for a file without numbers what it should hold.
     """
     heads: list[str] = []
     plain: list[tuple[int, str]] = []  # header lines that are not comments
@@ -40,7 +43,7 @@ def table_of(file: Path, lines: list[str]) -> Table:
         elif content:
             body.append((i, content))
     if not body:
-        raise InputError(f"{file} holds no numbers: a record is expected as AT2, CSV or columns of text.")
+        raise InputError(f"{file} holds no numbers: {expected}.")
     separator, commas = _separator(body)
     rows: list[tuple[int, list[str]]] = []
     for i, content in body:
