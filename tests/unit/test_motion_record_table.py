@@ -3,7 +3,7 @@
 import pytest
 
 import rockflex as rf
-from record_samples import SEARCH_RESULTS, at2
+from record_samples import SEARCH_RESULTS, at2, esm
 from rockflex.motion._record_table import read_table
 
 FLATFILE = (
@@ -120,3 +120,27 @@ def test_a_unit_in_the_table_must_fit_the_file(tmp_path):
     (tmp_path / "A090.AT2").write_text(at2("90"))
     with pytest.raises(rf.InputError, match="is an AT2 file, in g by definition, but units='m/s2' was given"):
         rf.read_suite(tmp_path)
+
+
+ESM_FLATFILE = (
+    "event_id;event_time;ML;Mw;EMEC_Mw;network_code;station_code;location_code;vs30_m_sec;vs30_m_sec_WA;epi_dist;JB_dist;"
+    "rup_dist\n"
+    "EMSC-20161030_0000029;2016-10-30 06:40:18;6.1;6.5;6.6;IT;NRC;00;498;450;4.6;0.1;5.4\n"
+    "EMSC-20161030_0000029;2016-10-30 06:40:18;6.1;;6.6;IT;ACC;00;;712;19.5;11.2;12.8\n"
+)
+
+
+def test_the_flatfile_of_esm(tmp_path):
+    (tmp_path / "records").mkdir()
+    for station in ("NRC", "ACC", "XYZ"):
+        changed = {"MAGNITUDE_W": "", "MAGNITUDE_L": "", "VS30_M_S": "", "STATION_CODE": station}
+        (tmp_path / "records" / f"IT.{station}.ASC").write_text(esm(**changed))
+    (tmp_path / "flatfile.csv").write_text(ESM_FLATFILE)
+    suite = rf.read_suite(tmp_path / "records", table=tmp_path / "flatfile.csv")
+    assert [facts(motion) for motion in suite] == [
+        (None, 6.6, 12.8, 11.2, 712.0),  # what EMEC and the slope give, where the first column is empty
+        (None, 6.5, 5.4, 0.1, 498.0),
+        (None, None, None, None, None),
+    ]
+    assert {motion.metadata.epicentral_km for motion in suite} == {4.6}  # as the header says
+    assert {motion.metadata.event_id for motion in suite} == {"EMSC-20161030_0000029"}

@@ -92,4 +92,5 @@ def _info(file: Path, header: dict[str, str]) -> RecordInfo:
         source=file.name,
         source_format="ESM",
         stated_pga=None if peak is None else 0.01 * abs(peak),
+        event_id=event[1] if event[1] not in ("", "None") else None,
     )

@@ -53,6 +53,8 @@ class RecordInfo:
         Peak ground acceleration that the header of the file states, in m/s².
     processing : str, optional
         What was done to the samples when they were read, such as "mean subtracted".
+    event_id : str, optional
+        Identifier of the earthquake in the catalogue of the source, such as "EMSC-20161030_0000029".
 
     Examples
     --------
@@ -84,6 +86,7 @@ class RecordInfo:
     source_format: str | None = None
     stated_pga: float | None = None
     processing: str | None = None
+    event_id: str | None = None
 
     @property
     def is_vertical(self) -> bool:

@@ -1,4 +1,8 @@
-"""Tables about records: PEER's search results, the flatfiles of NGA, and tables of one's own."""
+"""Tables about records: PEER's search results, the flatfiles of NGA and of ESM, and tables of one's own.
+
+The columns of ESM's flatfile: Lanzano G et al. The pan-European Engineering Strong Motion (ESM) flatfile: compilation
+criteria and data statistics. *Bull Earthq Eng* 2019;17(2):561–582.
+"""
 
 import csv
 import re
@@ -7,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from types import MappingProxyType
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 from rockflex._checks import positive
 from rockflex._errors import InputError
@@ -17,6 +21,7 @@ from rockflex.motion._text import decoded, known, read_content, real
 from rockflex.motion._units import Unit, declared
 
 V = TypeVar("V")
+Recording: TypeAlias = tuple[str, str | None, str]  # event, network and station
 
 DEEPEST = 80  # lines before the header of the table; PEER's search results state their criteria first
 # Labels, reduced to letters and digits, of what a table says.
@@ -24,11 +29,13 @@ LABELS = {
     "rsn": ("recordsequencenumber", "rsn"),
     "event": ("earthquakename", "eventname", "event"),
     "year": ("year",),
-    "station": ("stationname", "station"),
+    "event_id": ("eventid",),
+    "network": ("networkcode", "network"),
+    "station": ("stationname", "stationcode", "station"),
     "magnitude": ("earthquakemagnitude", "magnitude", "mw", "m"),
-    "distance_km": ("rrupkm", "rrup", "clstdkm", "closestdistancekm", "distancekm"),
-    "distance_jb_km": ("rjbkm", "rjb", "joynerbooredistkm", "distancejbkm"),
-    "epicentral_km": ("repikm", "repi", "epidkm", "epicentralkm"),
+    "distance_km": ("rrupkm", "rrup", "clstdkm", "closestdistancekm", "distancekm", "rupdist"),
+    "distance_jb_km": ("rjbkm", "rjb", "joynerbooredistkm", "distancejbkm", "jbdist"),
+    "epicentral_km": ("repikm", "repi", "epidkm", "epicentralkm", "epidist"),
     "vs30": ("vs30msec", "vs30ms", "vs30msselectedforanalysis", "preferredvs30ms", "vs30"),
     "units": ("units", "unit"),
     "dt": ("dt", "dts"),
@@ -43,18 +50,21 @@ FILES = {
     "filenamehorizontal2": "horizontal",
     "filenamevertical": "vertical",
 }
+# Where the first column has no value: the moment magnitude of EMEC, and Vs30 after Wald and Allen from the slope.
+SECOND = {"magnitude": "emecmw", "vs30": "vs30msecwa"}
 NUMBERS = ("magnitude", "distance_km", "distance_jb_km", "epicentral_km", "vs30")
-WORDS = ("event", "station")
+WORDS = ("event", "station", "network", "event_id")
 
 
 @dataclass(frozen=True)
 class RecordTable:
-    """What tables say of records, by record sequence number and by file."""
+    """What tables say of records: by record sequence number, by file, and by event, network and station."""
 
     by_number: Mapping[int, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
     by_file: Mapping[str, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
     units: Mapping[str, Unit] = field(default_factory=lambda: MappingProxyType({}))
     steps: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    by_recording: Mapping[Recording, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
 
     def joined(self, other: "RecordTable") -> "RecordTable":
         """Return both tables; this one prevails."""
@@ -63,6 +73,7 @@ class RecordTable:
             {**other.by_file, **self.by_file},
             {**other.units, **self.units},
             {**other.steps, **self.steps},
+            {**other.by_recording, **self.by_recording},
         )
 
     def completed(self, file: Path, info: RecordInfo) -> RecordInfo:
@@ -71,6 +82,8 @@ class RecordTable:
         if rsn is None and (named := re.match(r"RSN(\d{1,9})(?!\d)", file.name, re.IGNORECASE)):
             rsn = int(named[1])
         found = self.by_file.get(file.name.casefold())
+        if found is None and (recording := _recording(info)):
+            found = self.by_recording.get(recording)
         if found is not None:
             info = info.completed(found)
         numbered = None if rsn is None else self.by_number.get(rsn)
@@ -114,7 +127,8 @@ def read_table(file: Path) -> RecordTable:
     if found is None:
         raise InputError(
             f"{file} is no table about records: a header line is expected with a column of files or record sequence "
-            "numbers (file, RSN) and at least one of units, dt, magnitude, Rrup (km), Rjb (km), Vs30 (m/s)."
+            "numbers (file, RSN), or columns of events and stations (event_id, station_code), and at least one of "
+            "units, dt, magnitude, Rrup (km), Rjb (km), Vs30 (m/s)."
         )
     return found
 
@@ -161,8 +175,10 @@ def _columns(cells: list[str]) -> dict[int, str] | None:
                 break
     files = {k: label for k, label in enumerate(plain) if label in FILES}
     names = set(found.values())
-    keyed = bool(files) or "rsn" in names
-    return found | files if keyed and names - {"rsn", "event", "station", "year"} else None
+    keyed = bool(files) or "rsn" in names or {"event_id", "station"} <= names
+    if not keyed or not names - {"rsn", "event", "event_id", "network", "station", "year"}:
+        return None
+    return found | files | {plain.index(label): label for label in SECOND.values() if label in plain}
 
 
 def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
@@ -172,6 +188,7 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
     by_file: dict[str, RecordInfo] = {}
     units: dict[str, Unit] = {}
     steps: dict[str, float] = {}
+    by_recording: dict[Recording, RecordInfo] = {}
     for line, cells in enumerate(rows, 1):
         if columns is None:
             columns = _columns(cells) if line <= DEEPEST else None
@@ -182,6 +199,8 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
         info = _info(stated)
         if info.rsn is not None:
             by_number.setdefault(info.rsn, info)
+        if recording := _recording(info):
+            by_recording.setdefault(recording, info)
         for label, direction in FILES.items():
             # Flatfiles give folders too, with either slash; search results write ----- for no file.
             whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
@@ -196,7 +215,11 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
                     steps.setdefault(name, positive("dt", _number(stated["dt"]) or 0.0, "s"))
             except InputError as error:
                 raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
-    return None if columns is None else RecordTable(by_number, by_file, units, steps)
+    return None if columns is None else RecordTable(by_number, by_file, units, steps, by_recording)
+
+
+def _recording(info: RecordInfo) -> Recording | None:
+    return None if info.event_id is None or info.station is None else (info.event_id, info.network, info.station)
 
 
 def _number(text: str) -> float | None:
@@ -204,7 +227,7 @@ def _number(text: str) -> float | None:
 
 
 def _info(stated: Mapping[str, str]) -> RecordInfo:
-    numbers = {name: known(_number(stated.get(name, ""))) for name in NUMBERS}
+    numbers = {name: known(_number(stated.get(name) or stated.get(SECOND.get(name, ""), ""))) for name in NUMBERS}
     whole = {name: known(_number(stated.get(name, ""))) for name in ("rsn", "year")}
     # PEER writes underscores for commas.
     words = {name: stated[name].replace("_ ", ", ") for name in WORDS if stated.get(name, "-") not in ("-", "-999")}
