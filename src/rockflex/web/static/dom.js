@@ -52,22 +52,24 @@ export function clone(value) {
   return JSON.parse(JSON.stringify(value));
 }
 
-// Repeat `work` for the newest call only; calls in between are skipped.
+// Repeat `work` for the newest call only; calls in between are skipped. Each call returns when nothing is left to do.
 export function latest(work) {
-  let running = false;
+  let running = null;
   let wanted = false;
-  return async function again() {
-    wanted = true;
-    if (running) return;
-    running = true;
+  async function rounds() {
     try {
       while (wanted) {
         wanted = false;
         await work();
       }
     } finally {
-      running = false;
+      running = null;
     }
+  }
+  return function again() {
+    wanted = true;
+    running ??= rounds();
+    return running;
   };
 }
 

@@ -10,15 +10,14 @@ const KINDS = [
 ];
 const WITHOUT = { winkler: ["shear_modulus", "poisson_ratio"], asce41: ["subgrade_modulus", "end_zone", "end_ratio"] };
 const [FRICTION, DAMPING, SETTLEMENT, GRAVITY] = [0.5, 0.3, 0.005, 9.81]; // of new springs, and m and m/s²
+const USUAL = { mass: 2e5, half_width: 1 }; // kg and m of a structure that cannot be built yet
 const round = (value) => Number(value.toPrecision(2));
 
-// `shown` returns the structure as it is drawn, whose weight and width new springs suit.
+// `shown` returns the view of the present structure, or a promise of it: its weight and width are those of new springs.
 export function ground(app, shown) {
   const { about } = app;
   const specs = Object.fromEntries(about.ground.map((spec) => [spec.name, spec]));
-  const kind = select("ground.kind", "Ground", KINDS, "", (name) => {
-    put({ ...kept(), ...made(name) });
-  });
+  const kind = select("ground.kind", "Ground", KINDS, "", choose);
   const tick = h("input", { type: "checkbox", id: "slides", onchange: () => {
     const { friction: _, ...rest } = app.state.ground ?? {};
     put(tick.checked ? { ...rest, friction: FRICTION } : rest);
@@ -29,15 +28,24 @@ export function ground(app, shown) {
     h("p", { class: "hint" }, "On springs no impact law acts, and only simplified elastic models that lift can be used; likewise if the base can slide."),
     trouble());
 
+  let chosen = ""; // a later choice replaces one that still waits for the structure
+  async function choose(name) {
+    chosen = name;
+    const { state } = app;
+    const view = name ? shown() : null;
+    const known = view instanceof Promise ? await view : view;
+    if (chosen === name && app.state === state) put({ ...kept(), ...made(name, known) });
+  }
+
   function kept() {
     const { friction: mu } = app.state.ground ?? {};
     return mu === undefined ? {} : { friction: mu };
   }
 
   // Springs that settle a little under the weight, and a rigid mat of a tenth of the mass.
-  function made(name) {
+  function made(name, view) {
     if (!name) return {};
-    const { mass, half_width: b } = shown() ?? { mass: 2e5, half_width: 1 };
+    const { mass, half_width: b } = view ?? USUAL;
     const stiffness = (mass * GRAVITY) / SETTLEMENT;
     const mat = { mat_mass: round(0.1 * mass) };
     if (name === "springs") return { ...mat, springs: { stiffness: round(stiffness / 2), heave_damping_ratio: DAMPING } };

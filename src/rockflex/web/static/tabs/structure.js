@@ -38,7 +38,8 @@ export default function structureTab(app) {
   const moved = h("div");
   const held = elements(app, current, put);
   let view = null;
-  const below = ground(app, () => view);
+  let viewed = ""; // the structure of the view
+  const below = ground(app, viewNow);
   const results = h("div", { class: "results" });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
@@ -85,12 +86,20 @@ export default function structureTab(app) {
 
   const load = latest(async () => {
     results.classList.add("stale");
+    const asked = JSON.stringify(app.state.structure);
     const answer = await app.ask("/api/structure", element);
     if (!answer) return;
     results.classList.remove("stale");
     view = answer;
+    viewed = asked;
     results.replaceChildren(...show());
   });
+
+  // The view of the present structure: at once if it is there, else a promise of it; null if it cannot be built.
+  function viewNow() {
+    const now = () => (viewed === JSON.stringify(app.state.structure) ? view : null);
+    return now() ?? load().then(now);
+  }
 
   function show() {
     return [
