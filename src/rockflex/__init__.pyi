@@ -23,7 +23,6 @@ from .fragility import fit_stripes as fit_stripes
 from .fragility import risk_targeted_median as risk_targeted_median
 from .fragility import write_nrml as write_nrml
 from .fragility import write_pelicun as write_pelicun
-from .kinds import Progress as Progress
 from .kinds import estimate_time as estimate_time
 from .kinds import fill_study as fill_study
 from .kinds import load_study as load_study
@@ -114,6 +113,7 @@ from .plot import plot_stripes as plot_stripes
 from .plot import plot_tower as plot_tower
 from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
+from .progress import Progress as Progress
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History

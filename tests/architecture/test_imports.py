@@ -17,17 +17,40 @@ ALLOWED = {
     "motion": set(),
     "modal": set(),
     "parallel": set(),
+    "progress": set(),
     "store": set(),
     "fragility": set(),
     "structure": {"modal"},
     "models": {"modal"},
     "solve": {"models", "motion"},
     "response": {"solve", "models", "modal", "motion"},
-    "study": {"motion", "modal", "structure", "models", "solve", "response", "parallel", "store", "fragility"},
+    "study": {
+        "motion",
+        "modal",
+        "structure",
+        "models",
+        "solve",
+        "response",
+        "parallel",
+        "progress",
+        "store",
+        "fragility",
+    },
     "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
     "report": {"plot"},
-    "papers": {"motion", "modal", "structure", "models", "response", "study", "fragility", "plot", "report"},
-    "kinds": {"motion", "structure", "study", "fragility", "plot", "papers", "parallel", "store"},
+    "papers": {
+        "motion",
+        "modal",
+        "structure",
+        "models",
+        "response",
+        "study",
+        "fragility",
+        "plot",
+        "progress",
+        "report",
+    },
+    "kinds": {"motion", "structure", "study", "fragility", "plot", "papers", "parallel", "progress", "store"},
 }
 FOUNDATION = {
     "_arrays",
@@ -63,7 +86,8 @@ USERS = {"papers"}  # may import the package's own front too, as its users do
 HOME = {
     "matplotlib": {"plot", "papers"},
     "typer": {"cli"},
-    "rich": {"cli"},
+    "rich": {"cli", "progress"},
+    "IPython": {"progress"},
     "numba": {
         "_numba",
         "_numba_calls",
@@ -89,7 +113,7 @@ HOME = {
 NEVER_AT_IMPORT = {"pandas", "obspy", "openpyxl"}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
-    *("distributed", "jinja2", "starlette", "uvicorn", "obspy", "openpyxl", "xarray"),
+    *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray"),
 }  # by `import rockflex`
 LONGEST = 300  # lines
 

@@ -137,38 +137,6 @@ def _end(bar: "Progress", tasks: "list[TaskID]") -> None:
         bar.update(tasks[-1], completed=1)
 
 
-@contextmanager
-def study_progress(title: str) -> Generator[Callable[[int, int, int], None], None, None]:
-    """Show a bar with rate and remaining time on stderr, if it is a terminal; the yielded function updates it."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda _parts, _done, _runs: None
-        return
-    from time import perf_counter
-
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
-
-    look = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[rate]}"))
-    # Refreshed after each part: a thread for it would keep this process from being copied.
-    with Progress(*look, TimeRemainingColumn(), console=console, transient=True, auto_refresh=False) as bar:
-        task, start = bar.add_task(title, total=None, rate=""), perf_counter()
-
-        def show(parts: int, done: int, runs: int) -> None:
-            rate = runs / max(perf_counter() - start, 1e-9)
-            bar.update(task, total=parts, completed=done, rate=f"{rate:.0f} rows/s" if runs else "", refresh=True)
-
-        yield show
-
-
-def duration(seconds: float) -> str:
-    """Write a time as 0.8 s, 45 s, 12 min or 3.4 h."""
-    if seconds < 90.0:
-        return f"{seconds:.1f} s" if seconds < 10.0 else f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
-
-
 def fits(console: "Console", table: "Table") -> bool:
     """Tell whether a table fits the width of the terminal."""
     return _width(console, table) <= console.width

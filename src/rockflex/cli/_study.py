@@ -11,7 +11,7 @@ from rockflex.cli import _options as options
 from rockflex.kinds import StudyKind
 
 if TYPE_CHECKING:
-    from rockflex.kinds import Progress
+    from rockflex.progress import Progress
     from rockflex.study.plan import Spec
 
 Result = TypeVar("Result")
@@ -120,9 +120,9 @@ def _load(kind: StudyKind, file: Path, work_limit: str | None) -> "Spec":
 
 def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> None:
     """Print how many runs a study has and about how long it takes."""
-    from rockflex.cli._console import duration
     from rockflex.cli._output import to_json
     from rockflex.kinds import estimate_time
+    from rockflex.progress import duration
 
     plan = study.plan()
     seconds = estimate_time(study, workers)
@@ -177,19 +177,20 @@ def _watched(
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
 
-    from rockflex.cli._console import note, study_progress
+    from rockflex.cli._console import note
     from rockflex.parallel import ClusterError
+    from rockflex.progress import bar, pace
 
     last: list[Progress] = []
     start = perf_counter()
     try:
-        with study_progress(study.name or file.stem) as show:
+        with bar(study.name or file.stem, transient=True) as show:
 
             def progress(now: "Progress") -> None:
                 if not last and now.kept:
                     note(f"{now.kept} of {now.parts} parts are already in {out}")
                 last[:] = [now]
-                show(now.parts, now.done, now.runs)
+                show(now.done, now.parts, pace(now, perf_counter() - start))
 
             result = work(progress)
     except KeyboardInterrupt as stop:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from rockflex._errors import InputError, SolverError
-from rockflex.cli._console import duration, grid, note, number, output, show
+from rockflex.cli._console import grid, note, number, output, show
 from rockflex.cli._output import to_json, versions
 from rockflex.kinds import Findings, StudyKind
+from rockflex.progress import duration
 
 if TYPE_CHECKING:
     import pandas as pd

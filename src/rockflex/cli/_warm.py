@@ -12,7 +12,8 @@ def warm() -> None:
 
     They are kept for later processes, until rockflex or numba is upgraded.
     """
-    from rockflex.cli._console import duration, note, steps
+    from rockflex.cli._console import note, steps
+    from rockflex.progress import duration
     from rockflex.study import warm as start
 
     with steps("Compiling the kernels for") as show:

@@ -12,6 +12,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._versions import versions_of
 from rockflex.parallel import core_count, map_dask
+from rockflex.progress import PartProgress, Progress, check_part_progress, telling_parts
 from rockflex.store import Part, PartMaker, StudyFolder
 
 if TYPE_CHECKING:
@@ -27,27 +28,6 @@ SAMPLE = 48  # largest number of units that an estimate runs
 PATIENCE = 2.0  # s after which an estimate stops, without compilation
 
 
-@dataclass(frozen=True)
-class Progress:
-    """Progress of a study, in parts; `kept` of them were stored by an earlier call.
-
-    Examples
-    --------
-    >>> import rockflex as rf
-    >>> study = rf.PopulationStudy(pairs=3, seed=1, runs_per_chunk=2, records={"suites": ["el-centro-1940"]})
-    >>> seen = []
-    >>> table = rf.run_study(study, progress=seen.append)
-    >>> seen[-1]
-    Progress(parts=3, done=3, kept=0, runs=3)
-    """
-
-    parts: int
-    done: int
-    kept: int
-    runs: int
-    """Rows of the table that this call has computed."""
-
-
 def run_study(
     study: "Spec | str | Path",
     folder: str | Path | None = None,
@@ -55,7 +35,7 @@ def run_study(
     workers: SupportsIndex | None = None,
     dask: str | None = None,
     any_version: bool = False,
-    progress: Callable[[Progress], None] | None = None,
+    progress: PartProgress = None,
 ) -> "pd.DataFrame":
     """Run a study, or the rest of one that was stopped, and return its table.
 
@@ -74,7 +54,8 @@ def run_study(
     any_version
         Resume a study that was started with other versions of the libraries.
     progress
-        Called at the start and after every part.
+        ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function of one `Progress`, called
+        here at the start and after every part.
 
     Returns
     -------
@@ -103,7 +84,7 @@ def run_study(
     if folder is not None:
         filled = fill_study(study, folder, workers=workers, dask=dask, any_version=any_version, progress=progress)
         return to_frame(filled.table())
-    plan, tables = _plan_of(_loaded(study), workers, dask), dict[int, Any]()
+    plan, tables = _plan_of(_loaded(study), workers, dask, progress), dict[int, Any]()
 
     def keep(number: int, table: Any) -> int:
         tables[number] = table
@@ -124,7 +105,7 @@ def fill_study(
     workers: SupportsIndex | None = None,
     dask: str | None = None,
     any_version: bool = False,
-    progress: Callable[[Progress], None] | None = None,
+    progress: PartProgress = None,
 ) -> StudyFolder:
     """Run a study, or the rest of one that was stopped, into a folder, and return the folder for reading.
 
@@ -161,7 +142,7 @@ def fill_study(
     from rockflex.study.plan import to_frame
 
     spec = _loaded(study)
-    plan = _plan_of(spec, workers, dask)
+    plan = _plan_of(spec, workers, dask, progress)
     mine = _share_of(plan, share)
     checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
@@ -200,7 +181,8 @@ def _loaded(study: "Spec | str | Path") -> "Spec":
     return load_study(study) if isinstance(study, str | Path) else study
 
 
-def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None) -> "ChunkedPlan":
+def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress) -> "ChunkedPlan":
+    check_part_progress(progress)
     if workers is not None and dask is not None:
         raise InputError(
             f"workers is for this machine, but {shown(workers)} was given together with the cluster at {dask}."
@@ -231,36 +213,33 @@ def _compute(
     so_far: "Callable[[], pd.DataFrame]",
     workers: SupportsIndex | None,
     dask: str | None,
-    progress: Callable[[Progress], None] | None,
+    progress: PartProgress,
     parts: int | None = None,
 ) -> None:
     """Compute these of `parts` chunks, round by round; `keep` takes each one when it is done, and counts its rows."""
     total = plan.n_chunks if parts is None else parts
     done = kept = total - len(numbers)
     runs = 0
-    tell: Callable[[Progress], None] = progress or (lambda _: None)
-    tell(Progress(total, done, kept, runs))
-    for place, each in enumerate(plan.rounds):
-        missing = [number for number in numbers if number in each]
-        if done == total:
-            break
-        if place:
-            plan = plan.informed(so_far())
-        work = sent(plan)
-        # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-        with closing(_here(plan, work, missing, workers) if dask is None else map_dask(work, missing, dask)) as coming:
-            for number, result in coming:
-                runs += keep(number, result)
-                done += 1
-                tell(Progress(total, done, kept, runs))
-
-
-def _here(
-    plan: "ChunkedPlan", work: "Chunks[Result]", numbers: Sequence[int], workers: SupportsIndex | None
-) -> Generator[tuple[int, Result]]:
     from rockflex.study.plan import map_chunks
 
-    yield from map_chunks(plan, work.chunk, numbers, workers)
+    def coming(plan: "ChunkedPlan", missing: Sequence[int]) -> Generator[tuple[int, Result]]:
+        work = sent(plan)
+        return map_chunks(plan, work.chunk, missing, workers) if dask is None else map_dask(work, missing, dask)
+
+    with telling_parts(progress) as tell:
+        tell(Progress(total, done, kept, runs))
+        for place, each in enumerate(plan.rounds):
+            missing = [number for number in numbers if number in each]
+            if done == total:
+                break
+            if place:
+                plan = plan.informed(so_far())
+            # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
+            with closing(coming(plan, missing)) as results:
+                for number, result in results:
+                    runs += keep(number, result)
+                    done += 1
+                    tell(Progress(total, done, kept, runs))
 
 
 def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:

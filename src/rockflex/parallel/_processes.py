@@ -8,7 +8,7 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.synchronize import Event
@@ -37,7 +37,7 @@ def may_fork() -> bool:
 
 def map_processes(
     function: Callable[[Task], Result], tasks: Iterable[Task], count: int, asked: Callable[[], bool]
-) -> Iterator[Result]:
+) -> Generator[Result]:
     """Yield `function(task)` of every task, in order of completion, computed by copies of this process.
 
     The copies have everything that this process has, compiled kernels included; only tasks and results are sent.

@@ -1,7 +1,7 @@
 """A map over tasks on threads: the kernels release the interpreter lock."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import SupportsIndex, TypeVar
 
@@ -32,7 +32,7 @@ def map_threads(
     tasks: Iterable[Task],
     workers: SupportsIndex | None = None,
     leaving: Callable[[], object] = lambda: None,
-) -> Iterator[Result]:
+) -> Generator[Result]:
     """Yield `function(task)` of every task, in order of completion; few tasks wait at a time.
 
     When the map ends early, by an error, an interrupt or `close`, no further task starts, and the map waits for those

@@ -16,6 +16,7 @@ from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion
+from rockflex.progress import ProgressChoice, telling
 from rockflex.response import Response
 from rockflex.study._arguments import (
     WORK_LIMIT,
@@ -130,6 +131,7 @@ def overturning_spectrum(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Smallest amplitude at which a pulse overturns a structure, as a function of the frequency of the pulse.
 
@@ -154,6 +156,8 @@ def overturning_spectrum(
         Number of threads; None for one a core.
     work_limit
         Work limit of each run, as in `simulate`.
+    progress
+        As in `run_cloud`, counted in frequencies.
 
     Returns
     -------
@@ -194,7 +198,8 @@ def overturning_spectrum(
                 f"pulse must make a GroundMotion of an amplitude and a period, but it made {described(made)}. "
                 "Give one_sine_pulse, for instance."
             )
-    rows = in_order(lambda made: _search(run, made, tried, width), pulses, workers)
+    with telling(progress, len(pulses), "frequencies") as advance:
+        rows = in_order(lambda made: _search(run, made, tried, width), pulses, workers, lambda _: advance(1))
     import pandas as pd
 
     table = pd.DataFrame(rows).assign(frequency_ratio=ratios, period=periods)

@@ -10,6 +10,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.models import ImpactLaw, Model, parse_model
 from rockflex.motion import GroundMotion
+from rockflex.progress import ProgressChoice
 from rockflex.structure import rigid_block
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, check_options, ground_under, positive_numbers
 from rockflex.study._simulate_many import simulate_many
@@ -28,6 +29,7 @@ def rocking_spectrum(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Largest rotation of homogeneous rigid blocks under one motion, for several slendernesses and sizes.
 
@@ -53,7 +55,7 @@ def rocking_spectrum(
         Number of threads; None for one a core.
     work_limit
         Work limit of each run, as in `simulate_many`.
-    ground
+    ground, progress
         As in `simulate_many`.
 
     Returns
@@ -95,6 +97,7 @@ def rocking_spectrum(
         workers=workers,
         work_limit=work_limit,
         ground=ground,
+        progress=progress,
     ).reset_index(drop=True)
     slenderness, period = np.repeat(alphas, len(times)), np.tile(times, len(alphas))
     import pandas as pd

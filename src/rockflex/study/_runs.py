@@ -1,7 +1,8 @@
 """Runs on threads or processes, which stop soon after nobody waits for them any more."""
 
-from collections.abc import Callable, Iterable, Iterator
-from itertools import chain, islice
+from collections.abc import Callable, Generator, Iterable
+from contextlib import closing
+from itertools import islice
 from threading import Event
 from typing import SupportsIndex, TypeVar
 
@@ -14,7 +15,7 @@ Result = TypeVar("Result")
 
 def map_runs(
     function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
-) -> Iterator[Result]:
+) -> Generator[Result]:
     """Map over tasks as `map_threads` does. Leaving the map, by Ctrl-C for instance, stops the runs in progress."""
     leave, asked = Event(), asked_to_stop()
 
@@ -30,7 +31,7 @@ def map_runs_apart(
     tasks: Iterable[Task],
     workers: SupportsIndex | None = None,
     rehearse: Callable[[], object] = lambda: None,
-) -> Iterator[Result]:
+) -> Generator[Result]:
     """Map in the same way, by processes where this one can be copied.
 
     `rehearse` is called before; it compiles the kernels, which each copy would otherwise do for itself. What the
@@ -49,28 +50,38 @@ def map_runs_apart(
 
 
 def in_order(
-    function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
+    function: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    workers: SupportsIndex | None = None,
+    tell: Callable[[Result], object] = lambda _: None,
 ) -> list[Result]:
-    """Return the results of `map_runs` in the order of the tasks."""
-    return _sorted(map_runs(_numbered(function), enumerate(tasks), workers))
+    """Return the results of `map_runs` in the order of the tasks; each is told here when it is there."""
+    return _sorted(map_runs(_numbered(function), enumerate(tasks), workers), tell)
 
 
 def in_order_apart(
-    function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
+    function: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    workers: SupportsIndex | None = None,
+    tell: Callable[[Result], object] = lambda _: None,
 ) -> list[Result]:
     """Return the same as `in_order`, computed by processes where this one can be copied; see `map_runs_apart`."""
     numbered, queue = _numbered(function), enumerate(tasks)
     if worker_count(workers) == 1 or not may_fork():
-        return _sorted(map_runs(numbered, queue, workers))
+        return _sorted(map_runs(numbered, queue, workers), tell)
     # The first one here, so that the kernels are compiled before this process is copied.
-    first = list(map_runs(numbered, islice(queue, 1), 1))
-    return _sorted(chain(first, map_runs_apart(numbered, queue, workers)))
+    first = _sorted(map_runs(numbered, islice(queue, 1), 1), tell)
+    return first + _sorted(map_runs_apart(numbered, queue, workers), tell)
 
 
 def _numbered(function: Callable[[Task], Result]) -> Callable[[tuple[int, Task]], tuple[int, Result]]:
     return lambda task: (task[0], function(task[1]))
 
 
-def _sorted(results: Iterable[tuple[int, Result]]) -> list[Result]:
-    found = dict(results)
-    return [found[place] for place in range(len(found))]
+def _sorted(results: Generator[tuple[int, Result]], tell: Callable[[Result], object]) -> list[Result]:
+    found = dict[int, Result]()
+    with closing(results) as coming:  # or the runs in progress would go on after an error in `tell`
+        for place, result in coming:
+            found[place] = result
+            tell(result)
+    return [found[place] for place in sorted(found)]

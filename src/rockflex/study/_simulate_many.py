@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rockflex._errors import InputError
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import check_horizontal
+from rockflex.progress import ProgressChoice, telling
 from rockflex.response import STATUSES, Response
 from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
@@ -53,6 +54,7 @@ def simulate_many(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
@@ -81,6 +83,9 @@ def simulate_many(
     ground
         As in `simulate`. With several structures, a function gives each its own: ``lambda properties:
         Ground(springs=winkler_bed(properties.half_width, ...), ...)``.
+    progress
+        ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function ``progress(done, total)``
+        of the runs that are done and of all, called here, first with 0. What it raises ends the study.
 
     Returns
     -------
@@ -188,7 +193,8 @@ def simulate_many(
     columns = {"status": STATUSES, "error": str, **RESULTS}
     own = impact is not None and type(impact) not in FIXED  # it may keep what it is told
     many = len(everything) >= MANY and each <= CHUNK and not (options["history"] or own or callable(ground))
-    found = (in_order_apart if many else in_order)(work, tasks(), workers)
+    with telling(progress, len(everything) * each, "runs") as advance:
+        found = (in_order_apart if many else in_order)(work, tasks(), workers, lambda made: advance(made[0].size))
     results = Sheet.joined([sheet for sheet, _ in found])
     refused = [error for _, errors in found for error in errors]
     if len(refused) == len(everything) * each:

@@ -51,7 +51,7 @@ class Sheet:
     """
 
     def __init__(self, size: int, columns: Columns) -> None:
-        self._columns = columns
+        self._columns, self.size = columns, size
         self._values = {
             name: np.zeros(size, kind if isinstance(kind, type) else np.int32)
             for name, kind in columns.items()

@@ -7,6 +7,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion
+from rockflex.progress import ProgressChoice
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, factors_of
 from rockflex.study._ranges import expanded
 from rockflex.study._subjects import Models, Motions, Structures
@@ -91,6 +92,7 @@ def run_cloud(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale, with intensity measures.
 
@@ -110,6 +112,9 @@ def run_cloud(
         Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
     ground
         As in `simulate_many`.
+    progress
+        ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function ``progress(done, total)``
+        of the runs that are done and of all, called here, first with 0. What it raises ends the study.
 
     Returns
     -------
@@ -151,4 +156,4 @@ def run_cloud(
         work_limit=work_limit,
         ground=ground,
     )
-    return run_plan(CloudPlan(bench, given, per_chunk=64), workers)
+    return run_plan(CloudPlan(bench, given, per_chunk=64), workers, progress)

@@ -13,6 +13,7 @@ from rockflex._shown import shown
 from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
+from rockflex.progress import ProgressChoice
 from rockflex.structure.file import StructureEntry
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, RockingStructure, described
 from rockflex.study._subjects import Models, Motions
@@ -207,6 +208,7 @@ def run_design(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
 
@@ -223,7 +225,7 @@ def run_design(
         B in m, positive.
     tendons
         Levels of a tendon on the axis, each with every width; `TendonLevel()` means none. Default: the structure's own.
-    models, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground
+    models, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, progress
         As in `run_cloud`.
     base_mass_per_width
         Mass in kg/m that the base gains for each metre of width 2 B above the structure's own width, and loses for each
@@ -262,4 +264,4 @@ def run_design(
         [structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
     designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
-    return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers)
+    return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers, progress)

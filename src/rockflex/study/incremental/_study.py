@@ -12,6 +12,7 @@ from rockflex._shown import shown
 from rockflex.fragility import LIMIT_STATES, OVERTURNING
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import intensity
+from rockflex.progress import ProgressChoice
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice
 from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study._tables import Columns, Row
@@ -75,6 +76,7 @@ class IncrementalPlan(CrossPlan):
     """A ladder of scales for every structure, record and model, divided into chunks."""
 
     exact_count = False
+    units = "ladders"
 
     def __init__(self, bench: Bench, steps: Steps, limit: Limit, runs_per_chunk: int) -> None:
         check_ladder(*steps)
@@ -149,6 +151,7 @@ def run_incremental(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Scale every motion until it overturns the structure, and beyond, and return every run.
 
@@ -166,6 +169,8 @@ def run_incremental(
         Relative width of the boundaries.
     limit
         ``"overturning"``: |θ| reaches π/2; ``"nominal"``: it passes 0.7 atan(B/h*_1).
+    progress
+        As in `run_cloud`, counted in ladders: all runs of a structure, a record and a model.
 
     Returns
     -------
@@ -195,7 +200,7 @@ def run_incremental(
     if not one_of(limit, ("overturning", "nominal")):
         raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
     steps = Steps(smallest_scale, largest_scale, growth, tolerance)
-    return run_plan(IncrementalPlan(bench, steps, limit, 64), workers)
+    return run_plan(IncrementalPlan(bench, steps, limit, 64), workers, progress)
 
 
 def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.DataFrame":

@@ -1,11 +1,13 @@
 """A study divided into chunks that can be computed anywhere."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
 from rockflex._checks import whole_number
 from rockflex.motion import Suite, check_horizontal
+from rockflex.progress import ProgressChoice, telling
 from rockflex.study._runs import map_runs, map_runs_apart
 from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
 from rockflex.study.plan._records import checksums
@@ -26,6 +28,9 @@ class ChunkedPlan(ABC):
 
     exact_count: ClassVar[bool] = True
     """Whether `n_runs` is the number of runs, and not only an upper bound."""
+
+    units: ClassVar[str] = "runs"
+    """What the units are, in the plural."""
 
     def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
         check_horizontal(*motions)
@@ -107,7 +112,9 @@ class ChunkedPlan(ABC):
         return tabulate(self.rows(units), self.columns)
 
 
-def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.DataFrame":
+def run_plan(
+    plan: ChunkedPlan, workers: SupportsIndex | None = None, progress: ProgressChoice = None
+) -> "pd.DataFrame":
     """Compute all chunks of a plan, and return them as one table, in order.
 
     Parameters
@@ -116,25 +123,32 @@ def run_plan(plan: ChunkedPlan, workers: SupportsIndex | None = None) -> "pd.Dat
         The plan that `.plan()` of a study returns.
     workers
         Number of threads or processes; None for one a core.
+    progress
+        None, "bar", or a function of the number of units that are done, and of all.
 
     Returns
     -------
     pandas.DataFrame
         The rows of all chunks; see the study for its columns.
     """
-    plan.check_work()
     tables: list[ArrowTable] = []
-    for numbers in plan.rounds:
-        if tables:
-            plan = plan.informed(to_frame(*tables))
-        found = dict(map_chunks(plan, plan.chunk, numbers, workers))
-        tables += [found[number] for number in numbers]
+    with telling(progress, plan.n_units, plan.units) as advance:
+        plan.check_work()
+        for numbers in plan.rounds:
+            if tables:
+                plan = plan.informed(to_frame(*tables))
+            found = dict[int, ArrowTable]()
+            with closing(map_chunks(plan, plan.chunk, numbers, workers)) as coming:
+                for number, table in coming:
+                    found[number] = table
+                    advance(len(plan.units_of(number)))
+            tables += [found[number] for number in numbers]
     return to_frame(*tables)
 
 
 def map_chunks(
     plan: ChunkedPlan, chunk: Callable[[int], Result], numbers: Sequence[int], workers: SupportsIndex | None
-) -> Iterator[tuple[int, Result]]:
+) -> Generator[tuple[int, Result]]:
     """Yield the number and the result of chunks in order of completion.
 
     Processes compute them where this one can be copied, if the plan allows it and there are more than a few runs;

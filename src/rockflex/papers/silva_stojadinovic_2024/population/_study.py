@@ -13,6 +13,7 @@ from rockflex.modal import RockingProperties
 from rockflex.models import LinearModel, modal_displacement
 from rockflex.motion import GroundMotion, Suite
 from rockflex.papers.silva_stojadinovic_2024.population._prototypes import STORY_MASS, Prototype, draw_prototype
+from rockflex.progress import ProgressChoice
 from rockflex.response import Response, respond
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
 from rockflex.study._case import Case
@@ -83,6 +84,8 @@ class PopulationPlan(ChunkedPlan):
 
     Pairs share no data, so a study of any size fits in memory.
     """
+
+    units = "pairs"
 
     def __init__(
         self,
@@ -218,6 +221,7 @@ def run_population(
     free_vibration: float | Literal["settle"] = 0.0,
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Simulate random structures under random records with MDOF-S and 2DOF-S (Silva & Stojadinović 2024, Section 3.3).
 
@@ -235,6 +239,8 @@ def run_population(
         Seed of the draws, an integer of at least zero.
     free_vibration, workers, work_limit
         As in `run_cloud`.
+    progress
+        As in `run_cloud`, counted in pairs.
 
     Returns
     -------
@@ -266,4 +272,4 @@ def run_population(
     count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
     free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
-    return run_plan(PopulationPlan(suite, count, start, free, 32, limit), workers)
+    return run_plan(PopulationPlan(suite, count, start, free, 32, limit), workers, progress)

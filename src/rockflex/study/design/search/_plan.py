@@ -34,6 +34,7 @@ class SearchPlan(ChunkedPlan):
     """
 
     exact_count = False
+    units = "designs"
 
     def __init__(
         self,

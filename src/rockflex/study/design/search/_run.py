@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 from rockflex._checks import instance
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
+from rockflex.progress import ProgressChoice
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, RockingStructure
 from rockflex.study._subjects import Motions
 from rockflex.study.design.search._cost import DesignCost
@@ -33,6 +34,7 @@ def search_design(
     workers: SupportsIndex | None = None,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Search base width, tendons and dissipators together for the cheapest design that meets all requirements.
 
@@ -53,6 +55,8 @@ def search_design(
         Unit costs of the width and of the forces.
     model
         One model, as in `simulate`.
+    progress
+        As in `run_cloud`, counted in designs.
 
     Returns
     -------
@@ -87,4 +91,4 @@ def search_design(
     )
     wanted = check_requirements(requirements)
     space, unit_costs = instance("search", search, DesignSearch), instance("cost", cost, DesignCost)
-    return run_plan(SearchPlan(bench, space, wanted, unit_costs, given, runs_per_chunk=64), workers)
+    return run_plan(SearchPlan(bench, space, wanted, unit_costs, given, runs_per_chunk=64), workers, progress)

@@ -1,0 +1,87 @@
+"""A bar of rich on stderr, where a person reads it; elsewhere lines of a log.
+
+rich draws it because the command line has it anyway. Its own display in notebooks needs ipywidgets, and leaves nothing
+in the saved file; here the same table is shown as HTML, which every notebook can update.
+"""
+
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from rockflex.progress._lines import Lines
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+Show = Callable[[int, int, str], None]
+
+EVERY = {"terminal": 0.1, "notebook": 0.3}  # s between two pictures of the bar
+
+
+@contextmanager
+def bar(title: str, *, transient: bool = False) -> Generator[Show]:
+    """Show a bar on stderr; the yielded function takes what is done, the total, and a remark.
+
+    A terminal or a notebook shows the bar with its count and the remaining time, and keeps it unless `transient`; any
+    other stderr gets lines. No thread draws it: with one, this process could not be copied for the runs.
+    """
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if console.is_jupyter:
+        with _picture(title) as show:
+            yield show
+    elif console.is_terminal:
+        with _columns(console=console, transient=transient, auto_refresh=False) as drawn:
+            yield _throttled(drawn, title, drawn.refresh, EVERY["terminal"])
+    else:
+        yield Lines(title, last=not transient).show
+
+
+@contextmanager
+def _picture(title: str) -> Generator[Show]:
+    """Show the bar as the output of a notebook's cell."""
+    from IPython.display import display
+
+    drawn = _columns(auto_refresh=False)  # never started: only its table is used
+
+    def table() -> Any:
+        return drawn.make_tasks_table(drawn.tasks)
+
+    show = _throttled(drawn, title, lambda: handle.update(table()), EVERY["notebook"])
+    handle: Any = display(table(), display_id=True)
+    try:
+        yield show
+    finally:
+        handle.update(table())
+
+
+def _columns(**how: Any) -> "Progress":
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    look = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[remark]}"))
+    return Progress(*look, TimeElapsedColumn(), TimeRemainingColumn(elapsed_when_finished=False), **how)
+
+
+def _throttled(drawn: "Progress", title: str, refresh: Callable[[], object], every: float) -> Show:
+    """Return a function that draws the bar, but not more often than a person can see."""
+    task = drawn.add_task(title, total=None, remark="")
+    last = -every
+
+    def show(done: int, total: int, remark: str) -> None:
+        nonlocal last
+        drawn.update(task, completed=done, total=total, remark=remark)
+        now = perf_counter()
+        if now - last >= every or done >= total:
+            last = now
+            refresh()
+
+    return show
