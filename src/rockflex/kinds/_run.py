@@ -220,12 +220,6 @@ def _compute(
     total = plan.n_chunks if parts is None else parts
     done = kept = total - len(numbers)
     runs = 0
-    from rockflex.study.plan import map_chunks
-
-    def coming(plan: "ChunkedPlan", missing: Sequence[int]) -> Generator[tuple[int, Result]]:
-        work = sent(plan)
-        return map_chunks(plan, work.chunk, missing, workers) if dask is None else map_dask(work, missing, dask)
-
     with telling_parts(progress) as tell:
         tell(Progress(total, done, kept, runs))
         for place, each in enumerate(plan.rounds):
@@ -234,12 +228,22 @@ def _compute(
                 break
             if place:
                 plan = plan.informed(so_far())
+            work = sent(plan)
             # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-            with closing(coming(plan, missing)) as results:
-                for number, result in results:
+            coming = _here(plan, work, missing, workers) if dask is None else map_dask(work, missing, dask)
+            with closing(coming):
+                for number, result in coming:
                     runs += keep(number, result)
                     done += 1
                     tell(Progress(total, done, kept, runs))
+
+
+def _here(
+    plan: "ChunkedPlan", work: "Chunks[Result]", numbers: Sequence[int], workers: SupportsIndex | None
+) -> Generator[tuple[int, Result]]:
+    from rockflex.study.plan import map_chunks
+
+    return map_chunks(plan, work.chunk, numbers, workers)
 
 
 def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
