@@ -63,6 +63,7 @@ from .motion import Suite as Suite
 from .motion import TargetSpectrum as TargetSpectrum
 from .motion import asce7_site_spectrum as asce7_site_spectrum
 from .motion import asce7_spectrum as asce7_spectrum
+from .motion import ec8_second_spectrum as ec8_second_spectrum
 from .motion import ec8_spectrum as ec8_spectrum
 from .motion import half_sine_pulse as half_sine_pulse
 from .motion import load_suite as load_suite

@@ -29,7 +29,8 @@ def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite
     if not low_enough or math.isnan(number) or (math.isinf(number) and not infinite):
         kind = "zero or positive" if zero else "positive"
         kind += "" if infinite else ", finite"
-        raise InputError(f"{name} must be a {kind} number in {unit}, but {shown(value)} was given.", field=name)
+        measured = f" in {unit}" if unit else ""
+        raise InputError(f"{name} must be a {kind} number{measured}, but {shown(value)} was given.", field=name)
     return number
 
 

@@ -54,6 +54,10 @@ def test_document_is_the_selection():
     ("text", "target"),
     [
         ("ec8:ag=2", rf.ec8_spectrum(2.0)),
+        ("ec8-2024:s_alpha=5,s_beta=0.15g,site=C,damping=0.02",
+         rf.ec8_second_spectrum(5.0, 0.15 * G, "C", damping_ratio=0.02)),
+        ("ec8-2024:s_alpha=5,s_beta=2,f_alpha=1.3,f_beta=1.7,topography=1.2",
+         rf.ec8_second_spectrum(5.0, 2.0, amplification=(1.3, 1.7), topography=1.2)),
         ("ec8: ag = 2, ground=E, type=2, importance=1.2, damping=0.02",
          rf.ec8_spectrum(2.0, "E", 2, importance=1.2, damping_ratio=0.02)),
         ("asce7:sds=1g,sd1=0.6g,tl=8", rf.asce7_spectrum(G, 0.6 * G, 8.0)),
@@ -153,6 +157,10 @@ def test_records_keep_their_vertical_component(tmp_path):
             "--target ec8:...: ag is missing. The keys are ag, and ground, type, importance, damping",
         ),
         (("--target", "ec8:ag=1,soil=C"), "--target ec8:...: 'soil' is not known. The keys are ag, and ground"),
+        (
+            ("--target", "ec8-2024:s_alpha=5,s_beta=2,f_beta=2"),
+            "--target ec8-2024:...: give both f_alpha and f_beta, or",
+        ),
         (("--target", "ec8:ag"), "--target ec8:...: 'ag' has no value. Write each key once, as in ec8:key=value"),
         (("--target", "ec8:ag=1,ag=2"), "--target ec8:...: 'ag' occurs twice"),
         (("--target", "ec8:ag=0.2G"), "--target ec8: ag must be a number, but '0.2G' was given"),

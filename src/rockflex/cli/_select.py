@@ -25,6 +25,9 @@ rockflex select folder --target site.csv --count 7 --periods 0.2,2 --records sca
 
 ec8:ag=A,ground=A..E,type=1|2,importance=I,damping=ZETA: EN 1998-1:2004, 3.2.2.2. Only ag is needed.
 
+ec8-2024:s_alpha=A,s_beta=A,site=A..D,f_alpha=F,f_beta=F,topography=F,damping=ZETA: EN 1998-1-1:2024, 5.2.2.2, on \
+sites A to D or with the factors of the site. Only s_alpha and s_beta are needed.
+
 asce7:sds=A,sd1=A,tl=S,mce=yes|no: ASCE 7-16, 11.4.6; or from the maps: asce7:ss=A,s1=A,site=A..E|default,tl=S.
 
 A file with the columns "period (s), sa (g)".

@@ -7,14 +7,21 @@ from typing import Any
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import TargetSpectrum, asce7_site_spectrum, asce7_spectrum, ec8_spectrum, read_target
+from rockflex.motion import (
+    TargetSpectrum,
+    asce7_site_spectrum,
+    asce7_spectrum,
+    ec8_second_spectrum,
+    ec8_spectrum,
+    read_target,
+)
 
 WORDS = {"yes": True, "no": False}
 Reader = Callable[[str, str], Any]
 
 
 def parse_target(text: str, damping: float | None) -> TargetSpectrum:
-    """Return the target of ``ec8:ag=0.25g,ground=C``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
+    """Return the target of ``ec8:ag=0.25g,ground=C``, ``ec8-2024:...``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
 
     `damping` is the damping ratio of a target from a file; None means 5 %.
 
@@ -24,12 +31,12 @@ def parse_target(text: str, damping: float | None) -> TargetSpectrum:
         If a code or a key is unknown, a key is missing or repeated, a value is no number, or the file cannot be read.
     """
     code, colon, rest = text.partition(":")
-    if not colon or code not in ("ec8", "asce7"):
+    if not colon or code not in ("ec8", "ec8-2024", "asce7"):
         if not Path(text).exists():
             raise InputError(
                 f"--target {shown(text)} is neither a file nor a code. Write ec8:ag=0.25g,ground=C, or "
-                "asce7:sds=1g,sd1=0.6g,tl=8, or asce7:ss=1.5g,s1=0.6g,site=D,tl=8, or name a file with the columns "
-                '"period (s), sa (g)".'
+                "ec8-2024:s_alpha=0.6g,s_beta=0.2g,site=C, or asce7:sds=1g,sd1=0.6g,tl=8, or "
+                'asce7:ss=1.5g,s1=0.6g,site=D,tl=8, or name a file with the columns "period (s), sa (g)".'
             )
         return read_target(text, damping_ratio=0.05 if damping is None else damping)
     if damping is not None:
@@ -41,13 +48,26 @@ def parse_target(text: str, damping: float | None) -> TargetSpectrum:
         given = _read(code, items, {"ag": _acceleration}, {
             "ground": _word, "type": _number, "importance": _number, "damping": _number,
         })  # fmt: skip
-        names = {"type": "kind", "damping": "damping_ratio"}
-        return ec8_spectrum(**{names.get(key, key): value for key, value in given.items()})
+        return ec8_spectrum(**_renamed(given))
+    if code == "ec8-2024":
+        given = _read(code, items, {"s_alpha": _acceleration, "s_beta": _acceleration}, {
+            "site": _word, "f_alpha": _number, "f_beta": _number, "topography": _number, "damping": _number,
+        })  # fmt: skip
+        factors = [given.pop(key, None) for key in ("f_alpha", "f_beta")]
+        if (factors[0] is None) != (factors[1] is None):
+            raise InputError(f"--target {code}:...: give both f_alpha and f_beta, or neither.")
+        amplification = None if factors[0] is None else tuple(factors)
+        return ec8_second_spectrum(**_renamed(given), amplification=amplification)
     if "ss" in items or "s1" in items or "site" in items:
         needed: dict[str, Reader] = {"ss": _acceleration, "s1": _acceleration, "site": _word, "tl": _number}
         return asce7_site_spectrum(**_read(code, items, needed, {"mce": _yes}))
     needed = {"sds": _acceleration, "sd1": _acceleration, "tl": _number}
     return asce7_spectrum(**_read(code, items, needed, {"mce": _yes}))
+
+
+def _renamed(given: dict[str, Any]) -> dict[str, Any]:
+    names = {"type": "kind", "damping": "damping_ratio"}
+    return {names.get(key, key): value for key, value in given.items()}
 
 
 def numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:

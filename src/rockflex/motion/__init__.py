@@ -3,6 +3,7 @@
 from rockflex.motion._at2 import read_at2
 from rockflex.motion._codes import asce7_site_spectrum, asce7_spectrum, ec8_spectrum
 from rockflex.motion._direction import check_horizontal, direction_of, is_vertical
+from rockflex.motion._ec8_second import ec8_second_spectrum
 from rockflex.motion._embedded import load_suite, suite_names
 from rockflex.motion._folder import folder_files
 from rockflex.motion._ground_motion import GroundMotion
@@ -50,6 +51,7 @@ __all__ = [
     "asce7_spectrum",
     "check_horizontal",
     "direction_of",
+    "ec8_second_spectrum",
     "ec8_spectrum",
     "folder_files",
     "group_stations",
