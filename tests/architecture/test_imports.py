@@ -37,7 +37,7 @@ ALLOWED = {
         "fragility",
     },
     "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
-    "report": {"plot"},
+    "report": {"plot", "response", "models", "modal", "motion", "structure"},
     "papers": {
         "motion",
         "modal",

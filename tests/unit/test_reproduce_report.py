@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from page import Page, check_page
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, stated, statistic
-from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_report
+from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_document
 from rockflex.report._svg import inline
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
@@ -61,7 +61,7 @@ def document():
 def folder(document, tmp_path_factory):
     out = tmp_path_factory.mktemp("report")
     drawn = []
-    files = write_report(document, out, drawn.append)
+    files = write_document(document, out, drawn.append)
     assert drawn == ["figure-3", "figure-3-spread"]
     assert [file.name for file in files] == [
         "figure-3.svg", "figure-3-spread.svg", "report.html", "report.md", "numbers.csv",

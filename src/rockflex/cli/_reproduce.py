@@ -104,7 +104,7 @@ def _write(results: "list[Result]", records: "Records", out: Path, *, force: boo
     from rockflex.cli._console import progress
     from rockflex.cli._output import staged, versions
     from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-    from rockflex.report import Document, write_report
+    from rockflex.report import Document, write_document
 
     verdicts = {str(verdict): verdict.meaning for verdict in Verdict}
     kinds = {str(kind): kind.meaning for kind in Kind}
@@ -118,7 +118,7 @@ def _write(results: "list[Result]", records: "Records", out: Path, *, force: boo
     }
     figures = sum(len(result.figures) for result in results)
     with staged(out, summary, force=force) as stage, progress("Drawing", figures) as advance:
-        write_report(document, stage, lambda _: advance(1))
+        write_document(document, stage, lambda _: advance(1))
 
 
 def _print_numbers(results: "Sequence[Result]") -> None:

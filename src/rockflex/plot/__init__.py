@@ -16,7 +16,8 @@ from rockflex.plot._moment_rotation import plot_moment_rotation
 from rockflex.plot._moment_rotation_laws import plot_moment_rotation_laws
 from rockflex.plot._motion import plot_motion
 from rockflex.plot._rocking_spectra import plot_overturning_spectrum, plot_rocking_spectrum
-from rockflex.plot._save import save_figure
+from rockflex.plot._run_sheet import record_strip, run_sheet
+from rockflex.plot._save import save_figure, svg_of
 from rockflex.plot._selection import plot_selection
 from rockflex.plot._spread import plot_spread
 from rockflex.plot._stripes import plot_stripes
@@ -47,5 +48,8 @@ __all__ = [
     "plot_stripes",
     "plot_tower",
     "plot_yielding",
+    "record_strip",
+    "run_sheet",
     "save_figure",
+    "svg_of",
 ]

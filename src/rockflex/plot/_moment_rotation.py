@@ -70,8 +70,8 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
             "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
-    rotation = _HEADROOM * (rotation_limit(curves) or max(map(_whole_line, curves)))
-    largest = max(_largest_moment(curve) for curve in curves)
+    rotation = _HEADROOM * (rotation_limit(curves) or max(map(whole_line, curves)))
+    largest = max(largest_moment(curve) for curve in curves)
     factor, unit = readable(largest, "N m")
     columns = min(len(curves), _PER_ROW)
     rows = math.ceil(len(curves) / columns)
@@ -84,7 +84,7 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
         for axes, curve in zip(panels, curves, strict=False):
             moment = curve.history.base_moment / factor
             axes.plot(curve.history.rotation, moment, color=curve.look.color, linewidth=0.8, label=curve.label)
-            axes.add_line(_resistance(curve, rotation, factor))
+            axes.add_line(resistance_line(curve, rotation, factor))
             axes.set_title(curve.label)
             axes.tick_params(labelbottom=True)
         for axes in panels[len(curves) :]:
@@ -96,13 +96,13 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
     return figure
 
 
-def _whole_line(curve: Curve) -> float:
+def whole_line(curve: Curve) -> float:
     """Rotation up to which the static line is shown: where the moment vanishes, if it does."""
     balance = curve.balance_rotation
     return balance if math.isfinite(balance) else curve.history.model.properties.nominal_overturning_rotation
 
 
-def _largest_moment(curve: Curve) -> float:
+def largest_moment(curve: Curve) -> float:
     """Largest moment on the axes: of the static moment, and of M_b without overturning."""
     moment = curve.response.max_base_moment
     if curve.falls:
@@ -123,7 +123,7 @@ def _path(curve: Curve) -> tuple[Array, Array]:
     return history.rotation[rocking], (weight + parts.sum(axis=1))[rocking]
 
 
-def _resistance(curve: Curve, rotation: float, factor: float) -> Line2D:
+def resistance_line(curve: Curve, rotation: float, factor: float) -> Line2D:
     p = curve.history.model.properties
     if not follows_a_line(p):
         theta, moment = _path(curve)

@@ -80,13 +80,21 @@ def scale_of(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, float
 
 
 def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -> list[Artist]:
-    """Fill one panel over time; return a line for each curve."""
+    """Fill one panel over time and list the peaks beside it; return a line for each curve."""
+    lines, peaks = draw_curves(axes, quantity, curves)
+    letter(axes, mark)
+    notes = [(text, curve.look.color) for text, curve in zip(peaks, curves, strict=True)]
+    list_beside(axes, [("peaks", "#404040"), *notes], 10.0)
+    return lines
+
+
+def draw_curves(axes: Axes, quantity: Quantity, curves: list[Curve]) -> tuple[list[Artist], list[str]]:
+    """Fill one panel over time; return a line for each curve, and its peak in words."""
     factor, unit, limit = scale_of(quantity, curves)
     low = -limit if quantity.name != "edge_uplift" else -_HEADROOM * _settlement(curves, limit)
     axes.set(ylim=(low, limit), ylabel=f"{quantity.symbol} [{unit}]")
-    letter(axes, mark)
     lines: list[Artist] = []
-    notes = [("peaks", "#404040")]
+    peaks: list[str] = []
     for curve in curves:
         look = curve.look
         first, *others = axes.plot(
@@ -100,9 +108,8 @@ def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -
             axes.axvline(curve.response.end_time, color=look.color, linestyle=":", linewidth=0.8, zorder=1.5)
         if curve.falls and quantity.name == "rotation":
             _mark_fall(axes, curve, limit)
-        notes.append((_mark_peak(axes, quantity, curve, factor), look.color))
-    list_beside(axes, notes, 10.0)
-    return lines
+        peaks.append(_mark_peak(axes, quantity, curve, factor))
+    return lines, peaks
 
 
 def add_key(

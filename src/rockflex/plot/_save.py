@@ -54,7 +54,16 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
             f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
             f"{shown(target.suffix)}. Change the suffix."
         )
+    return write_whole(target, _content(figure, suffix))
+
+
+def svg_of(figure: Figure) -> str:
+    """Return a figure as the text of an SVG file."""
+    return _content(figure, ".svg").decode()
+
+
+def _content(figure: Figure, suffix: str) -> bytes:
     content = io.BytesIO()
     with styled():
         figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
-    return write_whole(target, content.getvalue())
+    return content.getvalue()

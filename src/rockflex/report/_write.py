@@ -10,7 +10,7 @@ from rockflex.report._html import to_html
 from rockflex.report._markdown import to_markdown
 
 
-def write_report(document: Document, folder: Path, progress: Callable[[str], None] | None = None) -> list[Path]:
+def write_document(document: Document, folder: Path, progress: Callable[[str], None] | None = None) -> list[Path]:
     """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.
 
     Parameters
@@ -31,9 +31,9 @@ def write_report(document: Document, folder: Path, progress: Callable[[str], Non
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from rockflex.report import Document, write_report
+    >>> from rockflex.report import Document, write_document
     >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> [path.name for path in write_report(document, Path(tempfile.mkdtemp()))]
+    >>> [path.name for path in write_document(document, Path(tempfile.mkdtemp()))]
     ['report.html', 'report.md', 'numbers.csv']
     """
     from rockflex.plot import save_figure

@@ -1,0 +1,143 @@
+"""The figures of a report of one page: histories and loops of several models, and the record."""
+
+from collections.abc import Iterable, Sequence
+from string import ascii_uppercase
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from rockflex._arrays import Array
+from rockflex.plot._curves import Curve, curves_of, rotation_limit
+from rockflex.plot._history import shade_uplifts
+from rockflex.plot._moment_rotation import largest_moment, resistance_line, whole_line
+from rockflex.plot._panel import draw_curves, quantities_of, scale_of
+from rockflex.plot._style import BLACK, GRAY, SHADE, SMALL, columns, new_figure, styled
+from rockflex.plot._units import readable
+from rockflex.response import Response
+
+_MM = 1.0 / 25.4  # inches
+_ROOM = 1.08
+_PANEL = 26.0  # mm of height that a panel needs
+_LEAST = 3  # panels in any case
+_PATH = 500  # points of a line that is a path, not a law
+_LETTERS = 125  # of a legend over the whole width
+
+
+def run_sheet(
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, width: float, height: float
+) -> Figure:
+    """Draw the histories of models that ran under one record, one panel per quantity, and their loops beside them.
+
+    The panels are the rotation, the displacement of the top, the base moment, and what a base does that slides or is on
+    springs. The loops are those of base moment and rotation, over the static resisting moment of the first model that
+    can lift. `width` and `height` are in mm.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, or one has no history.
+    """
+    curves = curves_of(responses, labels)
+    lifting = [curve for curve in curves if curve.lifts]
+    loops = [curve for curve in lifting if curve.history.model.properties.n_modes]
+    quantities = quantities_of(_panels(curves, height))
+    with styled():
+        figure = new_figure(width * _MM, height * _MM)
+        figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02, hspace=0.02, wspace=0.02)  # pyright: ignore
+        grid = figure.add_gridspec(len(quantities), 2 if loops else 1, width_ratios=(1.9, 1.0) if loops else None)
+        panels: list[Axes] = []
+        handles: list[Artist] = []
+        for row, (quantity, mark) in enumerate(zip(quantities, ascii_uppercase, strict=False)):
+            axes = figure.add_subplot(grid[row, 0], sharex=panels[0] if panels else None)
+            handles, _ = draw_curves(axes, quantity, curves)
+            axes.annotate(
+                mark, (0.0, 1.0), xytext=(4, -3), xycoords="axes fraction", textcoords="offset points", weight="bold",
+                va="top", zorder=6.0,
+            )  # fmt: skip
+            axes.set_ylabel(axes.get_ylabel().replace(", total", "").replace(", relative", ""), fontsize=8.0)
+            axes.tick_params(labelbottom=row == len(quantities) - 1)
+            axes.locator_params(axis="y", nbins=5)
+            panels.append(axes)
+        main = shade_uplifts(panels, curves)
+        panels[-1].set(xlabel="time [s]", xlim=_span(curves))
+        figure.align_ylabels(panels)
+        names = [curve.label for curve in curves]
+        if main is not None:
+            handles.append(Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4))
+            names.append(f"uplifted: {main.label}" if len(curves) > 1 else "uplifted")
+        if loops:
+            _draw_loops(figure.add_subplot(grid[:, 1]), loops, ascii_uppercase[len(quantities)])
+        figure.legend(
+            handles, names, loc="outside upper center", ncols=columns(names, _LETTERS), handlelength=2.6,
+            columnspacing=1.4, borderpad=0.1, borderaxespad=0.1,
+        )  # fmt: skip
+    return figure
+
+
+def record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
+    """Draw a ground acceleration in m/s² over the time in s, `width` by `height` mm."""
+    largest = float(np.max(np.abs(acceleration))) or 1.0
+    with styled():
+        figure = new_figure(width * _MM, height * _MM)
+        figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02)  # pyright: ignore
+        axes = figure.add_subplot()
+        axes.plot(time, acceleration, color=BLACK, linewidth=0.5)
+        axes.set(xlim=(float(time[0]), float(time[-1])), ylim=(-_ROOM * largest, _ROOM * largest))
+        axes.locator_params(axis="y", nbins=4)
+        axes.tick_params(labelsize=SMALL)
+        axes.set_xlabel("time [s]", fontsize=SMALL, labelpad=1.0)
+        axes.set_ylabel("$a_g$ [m/s²]", fontsize=SMALL, labelpad=1.0)
+    return figure
+
+
+def _panels(curves: list[Curve], height: float) -> list[str]:
+    """Names of the quantities that matter for these models."""
+    models = [curve.history.model for curve in curves]
+    known = all(model.properties.top_height is not None for model in models)
+    names = ["rotation"] if any(model.lifts for model in models) else []
+    names.append("total_top_displacement" if known else "top_displacement")
+    if any(model.properties.n_modes for model in models):
+        names += ["base_moment", "base_shear"]
+    else:
+        names.append("horizontal_reaction")
+    if any(curve.response.max_slip for curve in curves):
+        names.append("slip")
+    if any(model.layout.heave >= 0 for model in models):
+        names.append("edge_uplift")
+    spare = [name for name in ("base_shear", "base_moment") if name in names]
+    while len(names) * _PANEL > height and len(names) > _LEAST and spare:
+        names.remove(spare.pop(0))
+    return names
+
+
+def _span(curves: list[Curve]) -> tuple[float, float]:
+    times = [curve.history.time for curve in curves]
+    return min(float(time[0]) for time in times), max(float(time[-1]) for time in times)
+
+
+def _draw_loops(axes: Axes, curves: list[Curve], mark: str) -> None:
+    """Draw base moment over rotation, and what resists it."""
+    rotation = _ROOM * (rotation_limit(curves) or max(map(whole_line, curves)))
+    (moment,) = quantities_of(["base_moment"])
+    largest = max(largest_moment(curves[0]), scale_of(moment, curves)[2] * scale_of(moment, curves)[0] / _ROOM)
+    factor, unit = readable(largest, "N m")
+    for curve in curves:
+        kept = curve.before_fall
+        axes.plot(
+            curve.history.rotation[kept], curve.history.base_moment[kept] / factor, color=curve.look.color,
+            linestyle=curve.look.dashes, linewidth=0.8 * curve.look.width, zorder=curve.order,
+        )  # fmt: skip
+    line = resistance_line(curves[0], rotation, factor)
+    line.set(linewidth=0.9 if len(line.get_xdata()) < _PATH else 0.5, zorder=1.8)  # pyright: ignore[reportArgumentType]
+    axes.add_line(line)
+    limit = _ROOM * largest / factor
+    axes.set(xlim=(-rotation, rotation), ylim=(-limit, limit), xlabel="θ [rad]", ylabel=f"$M_b$ [{unit}]")
+    axes.locator_params(axis="x", nbins=4)
+    axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=SMALL, loc="right")
+    axes.annotate(
+        mark, (0.0, 1.0), xytext=(4, -3), xycoords="axes fraction", textcoords="offset points", weight="bold", va="top",
+        zorder=6.0,
+    )  # fmt: skip

@@ -1,0 +1,157 @@
+"""The checks of every run: uplift, overturning, contact, friction, its elements, and the energy balance."""
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import partial
+
+from rockflex._errors import InputError
+from rockflex.models import SpringModel
+from rockflex.report.run._base import ground_friction
+from rockflex.report.run._given import Given
+from rockflex.report.run._numbers import rounded
+from rockflex.report.run._table import Cell, Table, shows
+from rockflex.response import IMPACT_WINDOW, History, Response
+
+BALANCED = 1e-6  # of the input energy
+OMITTED = "not computed"
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run to check, and the coefficient of friction between base and ground, if it is known."""
+
+    label: str
+    response: Response
+    history: History
+    friction: float | None
+    long: bool
+    """Whether to compute what takes long: its energies and the friction that it requires."""
+
+
+def check_table(about: Given, friction: float | None, omitted: Collection[str]) -> Table:
+    """Return the checks, a row for each run; long ones are left out for the labels in `omitted`."""
+    runs = [
+        Run(label, response, history, friction, label not in omitted)
+        for label, response, history in zip(about.labels, about.responses, about.histories, strict=True)
+    ]
+    columns = [
+        (("uplift", ""), _uplift),
+        (("overturning", ""), partial(_overturning, about)),
+        (("contact", ""), _contact),
+        (("friction", ""), _friction),
+    ]
+    if about.properties.tendons:
+        columns.append((("tendons", ""), _tendons))
+    if about.properties.elements:
+        columns.append((("re-centring", ""), _residual))
+    columns.append((("energy balance", ""), _energy))
+    return Table(
+        [("model", ""), *(head for head, _ in columns)],
+        [[Cell(run.label), *(check(run) for _, check in columns)] for run in runs],
+    )
+
+
+def _uplift(run: Run) -> Cell:
+    if not run.history.model.lifts:
+        return Cell("fixed base")
+    times = run.history.uplift_times
+    if run.response.n_uplifts == 0 or not times.size:
+        return Cell("none" if run.response.status == "no_uplift" else "starts uplifted", 0.0, "n_uplifts")
+    return Cell(f"{run.response.n_uplifts}×, first at {rounded(float(times[0]))} s", float(times[0]), "first_uplift")
+
+
+def _overturning(about: Given, run: Run) -> Cell:
+    """Compare the rotation with the nominal limit 0.7 α of Section 3.3."""
+    if not run.history.model.lifts:
+        return Cell("–")
+    limit = about.properties.nominal_overturning_rotation
+    if run.response.status == "overturned":
+        return Cell(f"overturned at {rounded(run.response.end_time)} s", run.response.end_time, "end_time", True)
+    peak = run.response.max_rotation
+    if peak == 0.0:
+        return Cell("no rotation", 0.0, "max_rotation")
+    margin = limit / peak
+    sign = "<" if run.response.nominal_overturning else "≥"
+    return Cell(f"{rounded(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning)
+
+
+def _contact(run: Run) -> Cell:
+    least = run.response.min_vertical_reaction
+    if isinstance(run.history.model, SpringModel):
+        return Cell("springs only push", least, "min_vertical_reaction")
+    held = least >= 0.0
+    words = "N ≥ 0" if held else f"N < 0 at {rounded(run.response.time_of_min_vertical_reaction)} s"
+    return Cell(words, least, "min_vertical_reaction", not held)
+
+
+def _friction(run: Run) -> Cell:
+    """Compare |ΣF_x|/ΣF_z with the coefficient; a base that slides shows how far."""
+    limits = ground_friction(run.history.model)
+    if limits is not None:
+        moved = run.response.max_slip
+        return Cell(f"slides {rounded(1e3 * moved)} mm" if moved else "does not slide", moved, "max_slip")
+    if not run.long:
+        return Cell(OMITTED)
+    try:
+        whole = run.history.required_friction
+        needed = run.history.required_friction_excluding_impacts()
+    except InputError:
+        return Cell(OMITTED)
+    spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded(whole)} with impacts)"
+    if run.friction is None:
+        return Cell(f"μ ≥ {rounded(needed)}{spikes}", needed, "required_friction")
+    holds = needed <= run.friction
+    sign = "≤" if holds else ">"
+    return Cell(f"{rounded(needed)}{spikes} {sign} {run.friction:.4g}", needed, "required_friction", not holds)
+
+
+def _tendons(run: Run) -> Cell:
+    if not run.history.model.lifts:
+        return Cell("–")
+    used, force = run.response.tendon_utilisation, run.response.max_tendon_force
+    if math.isnan(used):
+        return Cell(f"{rounded(force / 1e3)} kN", force, "max_tendon_force")
+    sign = ">" if used > 1.0 else "≤"
+    words = ", yields" if run.response.tendon_yield and not run.response.tendon_overload else ""
+    return Cell(f"F/F_y = {rounded(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
+
+
+def _residual(run: Run) -> Cell:
+    left = run.response.residual_rotation
+    if not run.history.model.lifts or math.isnan(left):
+        return Cell("–")
+    if left == 0.0:
+        return Cell("closed at the end", left, "residual_rotation")
+    return Cell(f"θ = {rounded(1e3 * left)} mrad left", left, "residual_rotation", run.response.settled)
+
+
+def _energy(run: Run) -> Cell:
+    """Show the error of the energy balance over the input."""
+    if not run.long:
+        return Cell(OMITTED)
+    try:
+        error = run.history.energy.closing_error
+    except InputError:
+        return Cell(OMITTED)
+    if error < BALANCED:
+        return Cell(f"closes to {_power(error)}", error, "closing_error")
+    return shows(error, "closing_error", wrong=error > 1e-3)
+
+
+def _power(value: float) -> str:
+    """Write a small error as a power of ten that it does not exceed."""
+    return "0" if value == 0.0 else f"10^{math.ceil(math.log10(value))}".replace("-", "−")
+
+
+def legend(friction: float | None, *, omitted: bool) -> list[str]:
+    """Return what the columns mean, in sentences."""
+    limit = "" if friction is None else f", to be below the μ = {friction:.4g} given"
+    lines = [
+        "Overturning: nominal limit 0.7 α over θ_max.",
+        f"Friction: largest |ΣF_x|/N without the {IMPACT_WINDOW:g} s after each impact{limit}.",
+        "Energy balance: its largest error over the input energy.",
+    ]
+    if omitted:
+        lines.append(f"{OMITTED.capitalize()}: energies and friction of a run that would take too long here.")
+    return lines

@@ -1,0 +1,220 @@
+"""The report of a run: its numbers are those of the responses, and the page needs nothing else."""
+
+import dataclasses
+import datetime as dt
+import math
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import rockflex as rf
+from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
+from rockflex.report.run._numbers import rounded
+
+MODELS = ("2DOF-S", "MDOF-S", "fixed")
+VOID = {"meta", "br", "path", "use", "rect", "circle"}
+SIZES = {
+    "max_rotation": 1e-3,
+    "max_top_displacement": 1e-3,
+    "max_total_top_displacement": 1e-3,
+    "max_base_shear": 1e3,
+    "max_base_moment": 1e3,
+    "max_horizontal_reaction": 1e3,
+    "min_vertical_reaction": 1e3,
+}
+
+
+class Reader(HTMLParser):
+    """The tables of a page as lists of rows of (text, name, value), and whether all tags close."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.tables, self.text, self.facts = [], {}, "", {}
+        self.cell = None
+
+    def handle_starttag(self, tag, attrs):
+        known = dict(attrs)
+        if tag == "table":
+            self.rows = self.tables[known["id"]] = []
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th", "dd"):
+            self.cell = ["", known.get("data-of", ""), float(known.get("data-value", "nan"))]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        pass
+
+    def handle_endtag(self, tag):
+        if tag in VOID:
+            return
+        assert self.open.pop() == tag
+        if tag in ("td", "th"):
+            self.rows[-1].append(tuple(self.cell))
+        if tag == "dd" and self.cell[1]:
+            self.facts[self.cell[1]] = tuple(self.cell)
+        if tag in ("td", "th", "dd"):
+            self.cell = None
+
+    def handle_data(self, data):
+        self.text += data
+        if self.cell is not None:
+            self.cell[0] += data
+
+
+def read(path):
+    reader = Reader()
+    reader.feed(path.read_text("utf-8"))
+    reader.close()
+    assert reader.open == []
+    return reader
+
+
+def number(text):
+    return float(text.replace("−", "-").replace("\u202f", ""))
+
+
+@pytest.fixture(scope="module")
+def three():
+    return runs(FRAME, PULSE, MODELS, free_vibration=3.0)
+
+
+@pytest.fixture(scope="module")
+def page(three, tmp_path_factory):
+    path = tmp_path_factory.mktemp("report") / "run.html"
+    assert rf.write_report(three, path, structure=FRAME, motion=PULSE, friction=0.5, date="2030-01-02") == path
+    return path
+
+
+def test_the_peaks_are_those_of_the_responses(page, three):
+    _, *rows = read(page).tables["peaks"]
+    assert [row[0][0] for row in rows] == list(MODELS)
+    for row, response in zip(rows, three, strict=True):
+        cells = {name: (text, value) for text, name, value in row}
+        for name, size in SIZES.items():
+            text, value = cells[name]
+            assert value == getattr(response, name)
+            assert number(text) == pytest.approx(value / size, rel=5.1e-3)
+        assert int(cells["n_uplifts"][0]) == response.n_uplifts
+        assert cells["floor_acceleration"][1] == response.floors.floor_acceleration.max()
+        assert number(cells["floor_acceleration"][0]) == pytest.approx(cells["floor_acceleration"][1] / 9.81, rel=6e-3)
+
+
+def test_the_checks_follow_from_the_responses(page, three):
+    head, *rows = read(page).tables["checks"]
+    assert [cell[0] for cell in head] == ["model", "uplift", "overturning", "contact", "friction", "energy balance"]
+    limit = FRAME.rocking().nominal_overturning_rotation
+    for row, response in zip(rows, three, strict=True):
+        cells = {name: (text, value) for text, name, value in row}
+        text, needed = cells["required_friction"]
+        assert needed == response.required_friction_excluding_impacts()
+        assert ("> 0.5" in text) == (needed > 0.5)
+        assert cells["closing_error"][1] == response.energy.closing_error
+        if response.model != "fixed":
+            assert cells["overturning_margin"][1] == pytest.approx(limit / response.max_rotation)
+            assert cells["first_uplift"][1] == response.uplift_times[0]
+
+
+def test_the_structure_and_the_record(page):
+    reader, p = read(page), FRAME.rocking()
+    assert number(reader.facts["m_tot"][0]) == pytest.approx(p.m_tot / 1e3)
+    assert number(reader.facts["uplift_acceleration"][0]) == pytest.approx(p.uplift_acceleration / 9.80665, rel=5e-3)
+    assert number(reader.facts["alpha"][0]) == pytest.approx(
+        1e3 * math.atan(p.half_width / p.effective_height[0]), 5e-3
+    )
+    assert number(reader.facts["pga"][0]) == pytest.approx(PULSE.pga / 9.80665, rel=5e-3)
+    assert number(reader.facts["pgv"][0]) == pytest.approx(PULSE.pgv, rel=5e-3)
+    _, *modes = reader.tables["modes"]
+    beyond = rf.uplifted_modes(p).omega
+    for n in range(2):
+        assert modes[n][1][2] == pytest.approx(2.0 * np.pi / p.omega[n])
+        assert modes[n][2][2] == pytest.approx(2.0 * np.pi / beyond[n])
+    assert modes[-1][3][2] == pytest.approx(1.0)  # all of the mass above the base
+    assert "2030-01-02" in reader.text
+
+
+def test_the_page_needs_nothing_else(page):
+    text = page.read_text("utf-8")
+    assert "http" not in text
+    assert "<script" not in text
+    assert not re.search(r"url\((?!#)|@import|<link|<img", text)
+    assert text.count("<svg") == 2
+    assert "@page { size: A4;" in text
+    assert re.search(r"rockflex [\d.]+\S*, numpy [\d.]+, numba [\d.]+, Python [\d.]+", text)
+
+
+def test_equal_inputs_give_equal_pages(page, three, tmp_path):
+    again = rf.write_report(three, tmp_path / "a.html", structure=FRAME, motion=PULSE, friction=0.5, date="2030-01-02")
+    assert again.read_bytes() == page.read_bytes()
+
+
+def test_the_scale_is_found(tmp_path):
+    found = runs(FRAME, PULSE.scaled(1.3), ["2DOF-S"])
+    for motion in (PULSE, PULSE.scaled(1.3)):
+        facts = read(rf.write_report(found, tmp_path / "r.html", motion=motion)).facts
+        assert facts["scale"][2] == pytest.approx(1.3 if motion is PULSE else 1.0)
+        assert facts["pga"][2] == pytest.approx(1.3 * PULSE.pga)
+
+
+def test_without_motion_and_structure_the_history_tells(three, tmp_path):
+    facts = read(rf.write_report(three[0], tmp_path / "r.html", date=dt.date(2030, 1, 2))).facts
+    assert facts["pga"][2] == pytest.approx(PULSE.pga, rel=1e-6)
+    assert facts["pgv"][2] == pytest.approx(PULSE.pgv, rel=1e-6)
+    assert facts["n_modes"][2] == 1
+
+
+def test_a_page_of_elements_springs_and_slip(tmp_path):
+    found = runs(HELD, PULSE.scaled(2.0), ["2DOF-S"], ground=SPRINGS)
+    reader = read(rf.write_report(found, tmp_path / "r.html", structure=HELD, motion=PULSE))
+    _, *rows = reader.tables["elements"]
+    assert [row[0][0] for row in rows][-1] == "and 1 more"
+    for k, row in enumerate(rows[:-1]):
+        assert row[3][2] == found[0].max_element_force[k]
+        assert row[4][2] == found[0].max_element_elongation[k]
+    assert "12 springs without tension" in reader.text
+    assert "the base slides at μ = 0.4" in reader.text
+    head, cells = reader.tables["peaks"]
+    assert {"slipmm", "edge up"} & {cell[0].split("[")[0] for cell in head}
+    assert {name: value for _, name, value in cells}["max_edge_settlement"] == found[0].max_edge_settlement
+
+
+def test_a_run_that_overturns_says_so(tmp_path):
+    (fell,) = runs(FRAME, rf.one_sine_pulse(8.0, 2.5), ["2DOF-S"], free_vibration=10.0)
+    assert fell.status == "overturned"
+    reader = read(rf.write_report(fell, tmp_path / "r.html"))
+    assert "overturned †" in reader.tables["peaks"][1][1][0]
+    assert "include its fall" in reader.text
+    assert f"overturned at {fell.end_time:.2f} s" in reader.tables["checks"][1][2][0]
+
+
+def test_warnings_and_notes_are_on_the_page(tmp_path):
+    tonnes = dataclasses.replace(PIER, tip_mass=60.0)
+    found = runs(tonnes, PULSE, ["2DOF-S"])
+    text = read(rf.write_report(found, tmp_path / "r.html", structure=tonnes, notes=["Note <1>.", "Note 2."])).text
+    assert rf.structure_warnings(tonnes)[0] in text
+    assert "Note <1>." in text
+    assert "Note 2." in text
+
+
+def test_names_that_are_markup_and_models_that_occur_twice(tmp_path):
+    odd = rf.GroundMotion(PULSE.acceleration, PULSE.dt, name="<b>a_b</b> & $x$")
+    found = runs(FRAME, odd, ["2DOF-S"]) + runs(FRAME, odd, ["2DOF-S"], impact=rf.Restitution(0.8))
+    reader = read(rf.write_report(found, tmp_path / "r.html", title="<i>"))
+    assert odd.name in reader.text
+    assert [row[0][0] for row in reader.tables["peaks"][1:]] == ["2DOF-S (1)", "2DOF-S (2)"]
+    assert "VVELSimplified (2DOF-S (1)); Restitution, e = 0.800 (2DOF-S (2))" in reader.text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (12347.0, "12\u202f300"), (1234.5, "1230"), (0.02, "0.0200"), (20.04, "20.0"), (-3.14159, "−3.14"), (0.0, "0"),
+        (999.6, "1000"), (9.9996, "10.0"), (math.nan, "–"), (None, "–"), (math.inf, "∞"), (-math.inf, "−∞"),
+        (1.2345e-7, "1.23e−07"),
+    ],
+)  # fmt: skip
+def test_numbers_have_three_digits(value, text):
+    assert rounded(value) == text
