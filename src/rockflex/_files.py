@@ -2,6 +2,8 @@
 
 import os
 import stat
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
 
@@ -69,19 +71,28 @@ def check_regular(path: Path, name: str = "") -> None:
 
 def write_whole(path: Path, content: bytes) -> Path:
     """Write `content` to a temporary file, flush it to disk and move it to `path`; on failure `path` is unchanged."""
+    with writing(path) as temporary, temporary.open("xb") as file:
+        file.write(content)
+    return path
+
+
+@contextmanager
+def writing(path: Path) -> Generator[Path]:
+    """Yield the path of a temporary file; what was written to it is flushed to disk and moved to `path` at the end.
+
+    The temporary file has the same suffix. On failure it is removed, and `path` is unchanged.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}-{uuid4().hex}")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}-{uuid4().hex}{path.suffix}")
     try:
-        with temporary.open("xb") as file:
-            file.write(content)
-            file.flush()
+        yield temporary
+        with temporary.open("rb+") as file:
             os.fsync(file.fileno())  # before the move: network file systems report a full disk only here
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
     _sync_names(path.parent)
-    return path
 
 
 def sweep(folder: Path, pattern: str) -> None:

@@ -36,7 +36,7 @@ ALLOWED = {
         "store",
         "fragility",
     },
-    "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
+    "plot": {"motion", "modal", "structure", "response", "study", "fragility", "progress"},
     "report": {"plot", "response", "models", "modal", "motion", "structure"},
     "papers": {
         "motion",
@@ -109,11 +109,13 @@ HOME = {
     "obspy": {"motion"},
     "openpyxl": {"motion"},
     "xarray": {"response"},
+    "PIL": {"plot"},
+    "imageio_ffmpeg": {"plot"},
 }
-NEVER_AT_IMPORT = {"pandas", "obspy", "openpyxl"}  # only inside functions, or for the type checker
+NEVER_AT_IMPORT = {"pandas", "obspy", "openpyxl", "imageio_ffmpeg"}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
-    *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray"),
+    *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray", "PIL"),
 }  # by `import rockflex`
 LONGEST = 300  # lines
 

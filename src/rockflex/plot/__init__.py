@@ -23,8 +23,10 @@ from rockflex.plot._spread import plot_spread
 from rockflex.plot._stripes import plot_stripes
 from rockflex.plot._tower import plot_tower
 from rockflex.plot._yielding import plot_hysteresis, plot_yielding
+from rockflex.plot.animation import animate
 
 __all__ = [
+    "animate",
     "plot_clouds",
     "plot_design",
     "plot_design_search",

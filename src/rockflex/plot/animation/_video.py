@@ -1,0 +1,51 @@
+"""Frames as MP4, by the ffmpeg that imageio-ffmpeg brings along."""
+
+from collections.abc import Callable
+from contextlib import closing
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from rockflex._errors import InputError
+from rockflex._files import writing
+from rockflex.plot.animation._clock import Clock
+from rockflex.plot.animation._scene import Scene
+
+# H.264 in the format that every browser plays; the index at the front, so that it plays while it loads.
+_OPTIONS = ["-crf", "20", "-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart"]
+
+
+def check_encoder() -> None:
+    """Raise an InputError if MP4 cannot be written here."""
+    if find_spec("imageio_ffmpeg") is None:
+        raise InputError(
+            "An .mp4 file needs imageio-ffmpeg, which is not installed. Install it: pip install 'rockflex[video]', or "
+            "write a .gif file, which needs nothing else.",
+            field="path",
+        )
+
+
+def write_video(target: Path, scene: Scene, clock: Clock, advance: Callable[[int], None]) -> Path:
+    """Write the frames of a scene to an MP4; return its path."""
+    from imageio_ffmpeg import count_frames_and_secs, write_frames
+
+    count = clock.times.size
+    with writing(target) as temporary:
+        look: dict[str, Any] = {"pix_fmt_in": "rgb24", "pix_fmt_out": "yuv420p", "codec": "libx264"}
+        look |= {
+            "macro_block_size": 1,
+            "quality": None,
+            "fps": clock.frames_per_second,
+            "output_params": _OPTIONS,
+            "ffmpeg_log_level": "error",
+        }
+        with closing(write_frames(str(temporary), scene.size, **look)) as encoder:
+            encoder.send(None)
+            for picture in scene.pictures(count):
+                encoder.send(picture)
+                advance(1)
+        # A full disk shows only here: the encoder ends without an error.
+        written = count_frames_and_secs(str(temporary))[0] if temporary.is_file() else 0
+        if written != count:
+            raise OSError(f"Only {written} of {count} frames could be written to {target}; is the disk full?")
+    return target
