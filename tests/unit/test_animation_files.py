@@ -139,7 +139,7 @@ def test_peaks_alone_cannot_move(tmp_path):
         ({"speed": 1e-6}, r"3\.4 s at speed 1e-06 and 25 frames per second are 8\.5e\+07 frames, above the limit of "
          r"20000\. Raise the speed, lower frames_per_second, or give start and stop\."),
         ({"frames_per_second": 0.5}, r"frames_per_second must be from 1 to 50 for \.gif, but 0\.5 was given\. Give 25"),
-        ({"frames_per_second": 60}, r"from 1 to 50 for \.gif, but 60 was given\. Give 25, which is smooth, or write \.mp4"),
+        ({"frames_per_second": 60}, r"but 60 was given\. Give 25, which is smooth, or write \.mp4\."),
         ({"start": 1.0, "stop": 1.0}, r"start and stop must be times within the responses, from 0 to 3\.4 s, start "
          r"before stop, but 1 and 1 s were given\."),
         ({"start": -1.0}, "but -1 and"),
