@@ -2,7 +2,7 @@
 
 import { drawAxes, FONT, layout, line, ranges } from "./axes.js";
 import { color, context, h, number } from "./dom.js";
-import { drawMarks, drawReadout, drawTrails, readings } from "./marks.js";
+import { drawMarks, drawReadout, drawStrip, drawTrails, readings } from "./marks.js";
 
 const KEYS = "ArrowLeft ArrowRight Home End + - Escape";
 
@@ -20,7 +20,8 @@ export class Chart {
     this.data = { series: [] };
     this.zooms = []; // intervals of x, each within the one before; the last is shown
     this.cursor = null; // x of the line set from outside
-    this.hover = null; // pixel of the line that follows the pointer or the keys
+    this.hover = null; // x of the line that follows the pointer or the keys, here or in another chart of the group
+    this.by = null; // what it follows: "pointer", "keys", or "group"
     new ResizeObserver(() => this.draw()).observe(this.element);
     this.over.addEventListener("pointermove", (event) => this.#move(event));
     this.over.addEventListener("pointerleave", () => this.#leave());
@@ -86,18 +87,40 @@ export class Chart {
       g.fillRect(Math.min(...this.drag), box.y, Math.abs(this.drag[1] - this.drag[0]), box.h);
       g.globalAlpha = 1;
     } else if (this.hover !== null) {
-      const rows = this.#rows();
-      if (rows.length > 1) drawReadout(g, rows, this.hover, box);
-      if (this.keyed) {
-        g.strokeStyle = color("focus");
-        line(g, this.hover, box.y, this.hover, box.y + box.h);
-      }
+      this.#hovered(g);
     }
   }
 
-  #rows() {
-    const x = this.frame.ix(this.hover);
-    return [{ color: "text", text: `${this.options.xName ?? "x"} = ${number(x, 4)}` }, ...readings(this.data.series, x)];
+  // Charts of curves have a line with the values on it; the keys move one in every chart.
+  #hovered(g) {
+    const { box, px } = this.frame;
+    const at = px(this.hover);
+    const rows = this.readout;
+    const outside = at < box.x - 0.5 || at > box.x + box.w + 0.5;
+    if (outside || (rows.length < 2 && this.by !== "keys")) return;
+    g.strokeStyle = color(this.by === "keys" ? "focus" : "muted");
+    g.lineWidth = this.by === "keys" ? 1 : 0.7;
+    line(g, at, box.y, at, box.y + box.h);
+    g.lineWidth = 1;
+    if (rows.length < 2) return;
+    if (this.by === "group") drawStrip(g, rows.slice(1), at, box);
+    else drawReadout(g, rows, at, box);
+  }
+
+  // The rows of x and of the values there, of which each has a text.
+  get readout() {
+    if (this.hover === null) return [];
+    const { xName = "x" } = this.options;
+    return [{ color: "text", text: `${xName} = ${number(this.hover, 4)}` }, ...readings(this.data.series, this.hover)];
+  }
+
+  // All charts of a group show the line, and their values there.
+  #point(x, by) {
+    for (const chart of this.options.group ?? [this]) {
+      chart.hover = x;
+      chart.by = chart === this ? by : "group";
+      chart.#overlay();
+    }
   }
 
   #at(event) {
@@ -107,18 +130,15 @@ export class Chart {
 
   #move(event) {
     if (!this.frame) return;
-    this.keyed = false;
-    this.hover = this.#at(event);
-    const far = this.start !== undefined && Math.abs(this.hover - this.start) > 6;
-    if (far && event.pointerType !== "touch") this.drag = [this.start, this.hover];
-    this.#overlay();
+    const at = this.#at(event);
+    const far = this.start !== undefined && Math.abs(at - this.start) > 6;
+    if (far && event.pointerType !== "touch") this.drag = [this.start, at];
+    this.#point(this.frame.ix(at), "pointer");
   }
 
   #leave() {
-    this.hover = null;
-    this.keyed = false;
     this.start = this.drag = undefined;
-    this.#overlay();
+    this.#point(null, null);
   }
 
   #down(event) {
@@ -140,14 +160,13 @@ export class Chart {
     const { box, ix, px } = this.frame;
     const right = box.x + box.w;
     const inside = this.cursor !== null && px(this.cursor) >= box.x && px(this.cursor) <= right;
-    const now = this.hover ?? (inside ? px(this.cursor) : box.x + box.w / 2);
+    const now = this.hover !== null ? px(this.hover) : inside ? px(this.cursor) : box.x + box.w / 2;
     const step = (box.w / 100) * (event.shiftKey ? 10 : 1);
     const to = { ArrowLeft: now - step, ArrowRight: now + step, Home: box.x, End: right }[event.key];
     if (to !== undefined) {
-      this.hover = Math.min(Math.max(to, box.x), right);
-      this.keyed = true;
-      this.options.onpick?.(ix(this.hover));
-      this.said.textContent = this.#rows().map((row) => row.text).join("; ");
+      this.#point(ix(Math.min(Math.max(to, box.x), right)), "keys");
+      this.options.onpick?.(this.hover);
+      this.said.textContent = this.readout.map((row) => row.text).join("; ");
     } else if (event.key === "+" || event.key === "=") this.#zoomTo(ix(now - box.w / 4), ix(now + box.w / 4));
     else if (event.key === "-") this.#zoom((zooms) => zooms.slice(0, -1));
     else if (event.key === "Escape") this.#zoom(() => []);

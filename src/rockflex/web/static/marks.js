@@ -111,14 +111,38 @@ export function readings(series, x) {
   const labelled = series.filter((s) => s.label && s.kind !== "points" && !s.parametric);
   return labelled.map((s) => {
     const value = s.kind === "band" ? interpolate(s.x, s.high, x) - interpolate(s.x, s.low, x) : interpolate(s.x, s.y, x);
-    return { color: s.color, text: `${s.label}: ${number(value, 4)}` };
+    const text = number(value, 4);
+    return { color: s.color, value: text, text: `${s.label}: ${text}` };
   });
 }
 
 // A box with these rows next to a point on the chart.
 export function drawReadout(g, rows, at, box) {
-  const width = 10 + Math.max(...rows.map((row) => g.measureText(row.text).width));
-  const height = 15 * rows.length + 5;
+  const left = drawPanel(g, 10 + Math.max(...rows.map((row) => g.measureText(row.text).width)), 15 * rows.length + 5, at, box);
+  rows.forEach((row, i) => {
+    g.fillStyle = color(row.color);
+    g.fillText(row.text, left + 5, box.y + 6 + 15 * i);
+  });
+}
+
+// The same on one line, which hides less: without names if they would fill half of the chart, below each other if the
+// values alone do not fit.
+export function drawStrip(g, rows, at, box) {
+  const parts = (key) => rows.map((row) => [row[key], row.color, g.measureText(row[key]).width + 10]);
+  const length = (row) => row.reduce((sum, [, , width]) => sum + width, 0);
+  const named = parts("text");
+  const row = length(named) < box.w / 2 ? named : parts("value");
+  if (length(row) > box.w) return drawReadout(g, rows, at, box);
+  let left = drawPanel(g, length(row), 20, at, box) + 5;
+  for (const [text, tone, width] of row) {
+    g.fillStyle = color(tone);
+    g.fillText(text, left, box.y + 6);
+    left += width;
+  }
+}
+
+// The empty box of a readout beside a point; where it begins.
+function drawPanel(g, width, height, at, box) {
   const left = at + width + 12 > box.x + box.w ? Math.max(at - width - 8, 1) : at + 8;
   g.globalAlpha = 0.92;
   g.fillStyle = color("bg");
@@ -128,10 +152,7 @@ export function drawReadout(g, rows, at, box) {
   g.strokeRect(left, box.y + 3, width, height);
   g.textBaseline = "top";
   g.textAlign = "left";
-  rows.forEach((row, i) => {
-    g.fillStyle = color(row.color);
-    g.fillText(row.text, left + 5, box.y + 6 + 15 * i);
-  });
+  return left;
 }
 
 export function legend(items) {
