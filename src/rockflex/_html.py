@@ -1,6 +1,6 @@
 """Values as short tables in notebooks."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -28,6 +28,13 @@ def html_table(title: str, rows: Mapping[str, Any]) -> str:
     row = Markup('<tr><th style="text-align: left">{}</th><td style="text-align: left">{}</td></tr>')
     body = Markup("").join(row.format(name, _text(value)) for name, value in rows.items() if value is not None)
     return str(Markup("<table><caption>{}</caption><tbody>{}</tbody></table>").format(title, body))
+
+
+def span(values: Iterable[float]) -> str:
+    """Write the smallest and the largest of some values; once if they are the same."""
+    known = list(values)
+    ends = dict.fromkeys(f"{end:.4g}" for end in (min(known), max(known)))
+    return " to ".join(ends)
 
 
 def _text(value: Any) -> str:

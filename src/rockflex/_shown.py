@@ -2,9 +2,11 @@
 
 import math
 import reprlib
+from collections.abc import Sequence
 from itertools import islice
 
 WIDTH = 160  # most characters of a value
+FEW = 8  # texts that are all shown
 
 
 def shown(value: object) -> str:
@@ -16,6 +18,11 @@ def shortened(text: str, most: int = WIDTH) -> str:
     """Return `text`, without the middle part if it is longer than `most` characters."""
     half = most // 2 - 3
     return text if len(text) <= most else f"{text[:half]} ... {text[-half:]}"
+
+
+def few(texts: Sequence[str]) -> str:
+    """Return some texts separated by commas; of many the first four and the last two."""
+    return ", ".join(texts if len(texts) <= FEW else [*texts[:4], "...", *texts[-2:]])
 
 
 class _Short(reprlib.Repr):

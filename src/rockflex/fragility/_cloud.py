@@ -15,7 +15,7 @@ from rockflex.fragility._predictor import standard_error
 from rockflex.fragility._regression import fit_lines
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CloudFit(HtmlTable, Value):
     """The line log(y) = c1 + c2 log(IM), with natural logarithms, and the scatter about it.
 
@@ -52,6 +52,10 @@ class CloudFit(HtmlTable, Value):
     r2: float
     n: int
     covariance: Array
+
+    def __repr__(self) -> str:
+        line = f"c1={self.c1:.4g}, c2={self.c2:.4g}, dispersion={self.dispersion:.4g}"
+        return f"CloudFit({line}, r2={self.r2:.4g}, n={self.n})"
 
     def median(self, im: ArrayLike) -> Array:
         """Median response exp(c1) IM^c2, of the shape of `im`."""

@@ -1,17 +1,19 @@
 """The fits of a whole cloud study: one set for each structure and model."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rockflex._arrays import Array
 from rockflex._cases import cases
 from rockflex._errors import InputError, SolverError
+from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
+from rockflex.fragility._words import power_law
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,8 +21,8 @@ if TYPE_CHECKING:
 DISPLACEMENTS = ("max_top_displacement", "max_total_top_displacement")
 
 
-@dataclass(frozen=True, eq=False)
-class CloudFits(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class CloudFits(HtmlTable, Value):
     """Fits of the cloud of one structure and one model.
 
     Attributes
@@ -58,6 +60,23 @@ class CloudFits(Value):
     top_displacement: CloudFit | None
     total_top_displacement: CloudFit | None
     n_failed: int
+
+    def __repr__(self) -> str:
+        return (
+            f"CloudFits({self.structure!r}, {self.model!r}, {self.measure!r}: {self.outcomes.counts}, "
+            f"{self.n_failed} failed)"
+        )
+
+    def _shown_as(self) -> Mapping[str, Any]:
+        tops = {name: getattr(self, name) for name in ("top_displacement", "total_top_displacement")}
+        return {
+            "structure": self.structure,
+            "model": self.model,
+            "measure": self.measure,
+            **self.outcomes._shown_as(),  # pyright: ignore[reportPrivateUsage]
+            **{name: None if fit is None else power_law(fit, "m") for name, fit in tops.items()},
+            "failed": self.n_failed,
+        }
 
 
 def fit_clouds(

@@ -1,8 +1,9 @@
 """Logistic regression of a yes-or-no outcome on the logarithm of an intensity measure."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +21,7 @@ Method = Literal["maximum likelihood", "Firth"]
 CONVERGED = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LogisticFit(HtmlTable, Value):
     """The curve P = 1/(1 + exp(-(b0 + b1 log IM))), with the natural logarithm.
 
@@ -58,6 +59,25 @@ class LogisticFit(HtmlTable, Value):
     method: Method
     separated: bool
     note: str
+
+    def __repr__(self) -> str:
+        rises = f"median={self.median:.4g}, dispersion={self.dispersion:.4g}, " if self.b1 > 0.0 else ""
+        separated = ", separated" if self.separated else ""
+        return (
+            f"LogisticFit(b0={self.b0:.4g}, b1={self.b1:.4g}, {rises}{self.n_events} of {self.n} runs, "
+            f"{self.method}{separated})"
+        )
+
+    def _shown_as(self) -> Mapping[str, Any]:
+        return {
+            "b0": self.b0,
+            "b1": self.b1,
+            "median": self.median,
+            "dispersion": self.dispersion,
+            "events": f"{self.n_events} of {self.n} runs",
+            "method": f"{self.method}, separated" if self.separated else self.method,
+            "note": self.note or None,
+        }
 
     @property
     def median(self) -> float:

@@ -1,9 +1,9 @@
 """The three outcomes of a run: no rocking, rocking, overturning."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Self, overload
+from typing import Any, Self, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array, Bools
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError, SolverError
+from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import flags, log_at, log_measures, same_length
@@ -18,6 +19,7 @@ from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._limit_states import ROCKED
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
 from rockflex.fragility._unanimous import UnanimousOutcome
+from rockflex.fragility._words import curve_words, power_law
 
 FEW = 10  # fewer runs give a note
 
@@ -64,8 +66,8 @@ class OutcomeProbabilities(Value, Sequence[Array]):
         return (self.no_rocking, self.rocking, self.overturning)[index]
 
 
-@dataclass(frozen=True, eq=False)
-class OutcomeFragility(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class OutcomeFragility(HtmlTable, Value):
     """Fits of the three outcomes of Silva & Stojadinović 2024, Section 3.2.
 
     Attributes
@@ -112,6 +114,25 @@ class OutcomeFragility(Value):
     n_rocking: int
     n_overturned: int
     notes: tuple[Note, ...]
+
+    def __repr__(self) -> str:
+        notes = f"; see {len(self.notes)} in notes" if self.notes else ""
+        return f"OutcomeFragility({self.counts}; overturning: {curve_words(self.overturning)}{notes})"
+
+    def _shown_as(self) -> Mapping[str, Any]:
+        curves = {name: getattr(self, name) for name in ("overturning", "rocking", "initiation")}
+        return {
+            "runs": self.counts,
+            **{name: None if curve is None else curve_words(curve) for name, curve in curves.items()},
+            "rotation": None if self.rotation is None else power_law(self.rotation, "rad"),
+            "threshold": f"{self.threshold:g} rad",
+            "notes": " ".join(self.notes) or None,
+        }
+
+    @property
+    def counts(self) -> str:
+        """How many runs had each outcome, in words."""
+        return f"{self.n_no_rocking} no rocking, {self.n_rocking} rocking, {self.n_overturned} overturned"
 
     def probabilities(self, im: ArrayLike) -> OutcomeProbabilities:
         """Probabilities of no rocking, rocking, and overturning, each of the shape of `im`."""

@@ -1,7 +1,8 @@
 """Vibration modes of a structure on a fixed base."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import SupportsIndex
+from typing import Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,6 +11,7 @@ from rockflex._arrays import Array
 from rockflex._checks import mode_count
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._html import HtmlTable
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
 from rockflex._values import Value
 
@@ -19,7 +21,7 @@ _NO_TOP_ORDINATE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class ModalProperties(Value):
+class ModalProperties(HtmlTable, Value):
     """Vibration modes of a structure on a fixed base, in ascending order of frequency.
 
     The quantities are defined in Silva & Stojadinović 2024, Section 2.1 (after Eq. 12), with
@@ -62,6 +64,10 @@ class ModalProperties(Value):
     participation: Array
     shapes: Array
     heights: Array
+
+    def _shown_as(self) -> Mapping[str, Any]:
+        columns = ("period", "omega", "effective_mass", "effective_height", "participation")
+        return {"n_modes": self.n_modes, **{name: getattr(self, name) for name in columns}}
 
     @property
     def n_modes(self) -> int:

@@ -16,11 +16,12 @@ from rockflex.motion import _processing, _vertical
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._samples import Samples
 from rockflex.motion._scaling import factor_to
+from rockflex.motion._shown_motion import ShownMotion
 from rockflex.motion._target import TargetSpectrum
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class GroundMotion(Samples):
+class GroundMotion(ShownMotion, Samples):
     """A ground acceleration sampled at equal steps and linear between samples.
 
     The ground is at rest before t = 0, the time of the first sample; after the last sample the

@@ -1,14 +1,16 @@
 """Records chosen and scaled for a target spectrum."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
+from rockflex._html import HtmlTable, span
+from rockflex._shown import few
 from rockflex._values import Value
 from rockflex.motion._choice import misfit
 from rockflex.motion._ground_motion import GroundMotion
@@ -22,7 +24,7 @@ S = TypeVar("S", bound=Sequence[GroundMotion])
 
 
 @dataclass(frozen=True, eq=False)
-class Selection(Value, Generic[S]):
+class Selection(HtmlTable, Value, Generic[S]):
     """Records chosen for a target spectrum, each scaled by one factor; see `Suite.select`.
 
     Parameters
@@ -66,6 +68,17 @@ class Selection(Value, Generic[S]):
             f"Selection({len(self.names)} records, misfit of the mean {self.misfit:.2g}, "
             f"least mean/target {self.least_ratio:.2g})"
         )
+
+    def _shown_as(self) -> Mapping[str, Any]:
+        return {
+            "records": f"{len(self.names)}: {few([' + '.join(names) for names in self.names])}",
+            "measure": self.measure,
+            "periods": f"{span(self.periods)} s",
+            "factors": span(self.factors),
+            "misfit of the mean": self.misfit,
+            "least mean/target": self.least_ratio,
+            "mean/target at a period of zero": None if math.isnan(self.zero_period_ratio) else self.zero_period_ratio,
+        }
 
     @property
     def mean(self) -> Array:

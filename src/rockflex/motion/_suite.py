@@ -1,16 +1,17 @@
 """Sets of ground motions."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import overload
+from typing import Any, overload
 
 from numpy.typing import ArrayLike
 
 from rockflex._checks import instance
 from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex._html import HtmlTable, span
+from rockflex._shown import few, shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._recordings import Combination
@@ -20,7 +21,7 @@ from rockflex.motion._target import TargetSpectrum
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class Suite(Value, Sequence[GroundMotion]):
+class Suite(HtmlTable, Value, Sequence[GroundMotion]):
     """An ordered set of motions with unique names: a sequence, and a mapping by name.
 
     ``suite[0]`` and ``suite["FF-12-a"]`` are motions, ``suite[:10]`` is a suite, ``"FF-12-a" in suite`` checks
@@ -78,6 +79,20 @@ class Suite(Value, Sequence[GroundMotion]):
 
     def __repr__(self) -> str:
         return f"Suite({self.name!r}, {len(self)} motions: {self.names[0]!r} ... {self.names[-1]!r})"
+
+    def _shown_as(self) -> Mapping[str, Any]:
+        known = [motion.metadata for motion in self if motion.metadata is not None]
+        facts = {name: [getattr(info, name) for info in known] for name in ("magnitude", "distance_km")}
+        vertical = sum(motion.vertical is not None for motion in self)
+        return {
+            "name": self.name or None,
+            "motions": f"{len(self)}: {few(self.names)}",
+            "pga": f"{span(motion.pga for motion in self)} m/s²",
+            "pgv": f"{span(motion.pgv for motion in self)} m/s",
+            "duration": f"{span(motion.duration for motion in self)} s",
+            **{name: span(values) for name, values in facts.items() if values and None not in values},
+            "vertical components": vertical or None,
+        }
 
     def __len__(self) -> int:
         return len(self.motions)

@@ -11,9 +11,10 @@ from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._files import path_of, sweep, write_whole
 from rockflex.store._frames import in_pandas
-from rockflex.store._lock import Lock
+from rockflex.store._lock import LOCK, Lock
 from rockflex.store._manifest import MANIFEST, SPEC, Manifest
-from rockflex.store._parts import DamagedPart, Part, PartError, PartMaker, check, read, schema_at, verify
+from rockflex.store._overview import Overview
+from rockflex.store._parts import PARTS, DamagedPart, Part, PartError, PartMaker, check, read, schema_at, verify
 from rockflex.store._refusals import refuse_foreign, refuse_other_columns, reported
 from rockflex.store._spec import listed
 
@@ -21,17 +22,15 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-PARTS, LOCK = "parts", "lock"
 
-
-@dataclass(frozen=True)
-class StudyFolder:
+@dataclass(frozen=True, repr=False)
+class StudyFolder(Overview):
     """A study on disk, one Parquet file per chunk.
 
     Created by `open` for writing, or by `load` for reading. Every file is complete or absent at any moment, so other
     programs that read ``parts/*.parquet`` see finished chunks only.
 
-    Use it as a context manager, or call `close`, to let another process write.
+    Use it as a context manager, or call `close`, to let another process write. Printed, it tells its state on a screen.
 
     Examples
     --------

@@ -14,6 +14,7 @@ from uuid import uuid4
 from rockflex._errors import InputError
 from rockflex._shown import shortened
 
+LOCK = "lock"  # the name of the file
 UNREADABLE_FOR = 1.0  # s; a file that stays empty for longer was left by a process killed between two calls
 
 
@@ -61,6 +62,21 @@ class Lock:
         _release(self.path, self.content)
 
 
+def holder_of(path: Path) -> str | None:
+    """Return which process holds a lock, in words; None if none does, or the file cannot be read."""
+    try:
+        holder = _parsed(_text(path))
+    except OSError:
+        return None
+    if holder is None or _dead(holder):
+        return None
+    return _described(holder)
+
+
+def _described(holder: dict[str, Any]) -> str:
+    return f"process {holder['pid']} on {shortened(holder['host'])} since {shortened(holder['since'])}"
+
+
 def _release(path: Path, content: str) -> None:
     # A forked child inherits the object, but not the right.
     if json.loads(content)["pid"] == os.getpid() and _text(path) == content:
@@ -84,8 +100,7 @@ def _take_away_if_stale(path: Path, waited: float) -> None:
             return
     elif not _dead(holder):
         raise InputError(
-            f"{path.parent} is in use by process {holder['pid']} on {shortened(holder['host'])} since "
-            f"{shortened(holder['since'])}. "
+            f"{path.parent} is in use by {_described(holder)}. "
             f"Wait until it has finished, or end it. If it no longer runs, delete {path} and try again."
         )
     aside = path.with_name(f".{path.name}.{uuid4().hex}")

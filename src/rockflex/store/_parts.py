@@ -14,6 +14,8 @@ from rockflex._files import irregular
 if TYPE_CHECKING:
     import pyarrow as pa
 
+PARTS = "parts"  # the folder of the files
+
 # The checksum stands in the footer, as a value of fixed length: it is taken with zeros in its own place.
 MARKER, BLANK = b"rockflex-crc32:", b"00000000"
 
