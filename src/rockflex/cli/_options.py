@@ -102,6 +102,18 @@ OnError = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="Print only one JSON document, in SI units.")]
 Out = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables and figures to a folder.")]
 Force = Annotated[bool, typer.Option("--force", help="Let --out replace earlier results in a folder.")]
+ForceBoth = Annotated[
+    bool, typer.Option("--force", help="Let --out replace earlier results in a folder, and --report an earlier page.")
+]
+Report = Annotated[
+    Path | None,
+    typer.Option(
+        "--report",
+        metavar="FILE.html",
+        help="Write a report on one sheet of A4, of one motion at one scale.",
+        show_default=False,
+    ),
+]
 Figures = Annotated[
     int,
     typer.Option(

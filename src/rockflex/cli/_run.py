@@ -12,6 +12,8 @@ rockflex run structure.toml el-centro-1940
 
 rockflex run structure.toml fema-p695-far-field --model MDOF-S,fixed --out results
 
+rockflex run structure.toml el-centro-1940 --friction 0.5 --report run.html
+
 rockflex run structure.toml record.csv --units g --free-vibration settle --times
 
 rockflex run structure.toml RSN6-180.AT2 --vertical RSN6-UP.AT2
@@ -50,7 +52,8 @@ def run(
     json: options.Json = False,
     out: options.Out = None,
     figures: options.Figures = 4,
-    force: options.Force = False,
+    force: options.ForceBoth = False,
+    report: options.Report = None,
     friction: options.Friction = None,
     units: options.Units = None,
     dt: options.Dt = None,
@@ -68,18 +71,23 @@ def run(
     from rockflex.cli._output import check_folder, to_json, versions
     from rockflex.cli._preparation import FLAGS, Asked, prepare
     from rockflex.cli._run_output import UNITS, write_runs
+    from rockflex.cli._run_report import check_page, check_runs, write_page
     from rockflex.cli._run_tables import print_failures, print_runs, print_warnings
     from rockflex.cli._simulations import perform, warm_up
     from rockflex.cli._structures import describe_properties
 
-    check_folder(out, force=force)
+    check_folder(out, force=force and (out is not None or report is None))
+    page = None if report is None else check_page(report, force=force)
     asked = Asked(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
         free_vibration=free_vibration, work_limit=work_limit, workers=workers, friction=friction, units=units, dt=dt,
         on_error=on_error, vertical=vertical,
     )  # fmt: skip
-    prepared = prepare(context, asked, histories=0 if out is None else figures)
+    drawn = 0 if out is None else figures
+    prepared = prepare(context, asked, histories=drawn if page is None else max(drawn, 1))
     loaded, found, batch = prepared.loaded, prepared.found, prepared.batch
+    if page is not None:
+        check_runs(batch)
     with naming(FLAGS):
         warm_up(batch)
     start = perf_counter()
@@ -97,7 +105,9 @@ def run(
         "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
-        write_runs(out, document, batch, runs, force=force)
+        write_runs(out, document, batch, runs, figures=figures, force=force)
+    if page is not None:
+        write_page(page, loaded, batch, runs)
     if json:
         typer.echo(to_json(document))
     else:

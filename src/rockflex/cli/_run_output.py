@@ -56,8 +56,10 @@ UNITS = {
 }
 
 
-def write_runs(folder: Path, document: dict[str, Any], batch: Batch, runs: Sequence[Run], *, force: bool) -> None:
-    """Write results.csv, summary.json and, of a batch with histories, one CSV file and one figure for each motion.
+def write_runs(
+    folder: Path, document: dict[str, Any], batch: Batch, runs: Sequence[Run], *, figures: int, force: bool
+) -> None:
+    """Write results.csv, summary.json and, of up to `figures` motions, one CSV file and one figure for each motion.
 
     Raises
     ------
@@ -66,13 +68,12 @@ def write_runs(folder: Path, document: dict[str, Any], batch: Batch, runs: Seque
     """
     import pandas as pd
 
+    histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
     with staged(folder, document, force=force) as stage:
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
-        if batch.history:
+        if histories:
             _write_histories(stage, batch, runs)
-    note(
-        f"Written to {folder}" + ("" if batch.history else "; no histories and figures of more than --figures motions")
-    )
+    note(f"Written to {folder}" + ("" if histories else "; no histories and figures of more than --figures motions"))
 
 
 def _write_histories(stage: Path, batch: Batch, runs: Sequence[Run]) -> None:
