@@ -1,5 +1,6 @@
 """Style of all figures: sizes, colours and line styles, without changing the settings of the caller."""
 
+import io
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,6 +17,8 @@ BLUE, ORANGE, SKY, PURPLE = "#0072b2", "#e69f00", "#56b4e9", "#cc79a7"
 YELLOW = "#f0e442"
 SHADE = "#e9edf2"
 SMALL = 7.5
+
+COARSE, FINE = 100, 2  # points of a notebook an inch, and dots a point: sharp on screens of many dots
 
 _STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
@@ -40,6 +43,7 @@ _STYLE: dict[Any, Any] = {
     "mathtext.fontset": "dejavusans",
     "path.simplify": True,
     "pdf.fonttype": 42,
+    "savefig.bbox": "standard",
     "svg.hashsalt": "rockflex",
 }
 _INK, _NIGHT = "#d7dbe0", "#14181d"
@@ -83,9 +87,23 @@ def literal(text: str) -> str:
     return text.replace("$", r"\$")
 
 
+class NotebookFigure(Figure):
+    """A figure that a notebook shows when it is the last expression of a cell, without pyplot and without a magic.
+
+    Where matplotlib's inline backend is active, its own way of showing figures comes first, so none is shown twice.
+    """
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        content = io.BytesIO()
+        with styled():
+            self.savefig(content, format="png", dpi=FINE * COARSE)
+        width, height = (round(COARSE * inches) for inches in self.get_size_inches())
+        return content.getvalue(), {"width": width, "height": height}
+
+
 def new_figure(width: float, height: float) -> Figure:
     """Empty figure of a size in inches, without a window or an entry in the global list of figures."""
-    return Figure(figsize=(width, height), layout="constrained")
+    return NotebookFigure(figsize=(width, height), layout="constrained")
 
 
 def letter(axes: Axes, text: str) -> None:

@@ -61,4 +61,5 @@ def telling_parts(progress: PartProgress) -> Generator[Callable[[Progress], obje
 
 def pace(now: Progress, seconds: float) -> str:
     """Write how many rows a second were computed; empty before the first."""
-    return f"{now.runs / max(seconds, 1e-9):.0f} rows/s" if now.runs else ""
+    rate = now.runs / max(seconds, 1e-9)
+    return f"{rate:.{0 if rate >= 10.0 else 2}f} rows/s" if now.runs else ""
