@@ -236,6 +236,7 @@ def test_an_old_link_still_opens() -> None:
     content = json.loads(base64.urlsafe_b64decode(LINK + "=" * (-len(LINK) % 4)))
     state = parse_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
+    content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
     assert plain(state.model_dump(exclude_none=True)) == content

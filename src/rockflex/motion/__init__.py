@@ -27,7 +27,7 @@ from rockflex.motion._selection import Selection
 from rockflex.motion._shaking import Shaking
 from rockflex.motion._stations import StationRecord, group_stations
 from rockflex.motion._suite import Suite
-from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_records
+from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_plain, survey_records
 from rockflex.motion._target import TargetSpectrum
 from rockflex.motion._velocity_pulse import mavroeidis_papageorgiou_pulse
 
@@ -76,6 +76,7 @@ __all__ = [
     "ricker_pulse",
     "rotated_spectrum",
     "suite_names",
+    "survey_plain",
     "survey_records",
     "vertical_measures",
 ]

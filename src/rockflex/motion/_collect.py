@@ -32,9 +32,14 @@ class FileRead:
 
 
 def collect(
-    files: Iterable[Path], units: Units | None, dt: float | None, table: str | Path | None = None
+    files: Iterable[Path],
+    units: Units | None,
+    dt: float | None,
+    table: str | Path | None = None,
+    *,
+    foreign: bool = True,
 ) -> list[FileRead]:
-    """Read files, in their order; those that cannot be read have a fault.
+    """Read files, in their order; those that cannot be read have a fault. `foreign` as in `parts_of`.
 
     Raises
     ------
@@ -56,7 +61,9 @@ def collect(
         if each.table is not None:
             given = given.joined(each.table)
     common = declared(units) if isinstance(units, str) else None
-    return [each if each.table or each.fault else _read(each.file, given, common, step) for each in found]
+    return [
+        each if each.table or each.fault else _read(each.file, given, common, step, foreign=foreign) for each in found
+    ]
 
 
 def _given(units: Units | None) -> RecordTable:
@@ -72,11 +79,13 @@ def _given(units: Units | None) -> RecordTable:
     return RecordTable(units={str(name).casefold(): declared(unit) for name, unit in units.items()})
 
 
-def _read(file: Path, given: RecordTable, common: Unit | None, dt: float | None) -> FileRead:
+def _read(file: Path, given: RecordTable, common: Unit | None, dt: float | None, *, foreign: bool) -> FileRead:
     own = given.unit_of(file)
     step = given.step_of(file)
     try:
-        found = parts_of(file, own or common, dt if step is None else step, common=own is None and step is None)
+        found = parts_of(
+            file, own or common, dt if step is None else step, foreign=foreign, common=own is None and step is None
+        )
     except InputError as error:
         return FileRead(file, fault=error)
     motions: dict[Path, GroundMotion] = {}

@@ -1,6 +1,6 @@
 """A report of what is taken from a folder of records, and what is not, and why."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -180,9 +180,32 @@ def survey_records(
     """
     check_vertical(vertical)
     name, files = files_of(paths)
-    found = collect(files, units, dt, table)
-    result = sort_out(found, pair=vertical is not None)
-    names = [file.name for file in files]
+    return _survey(paths, name, collect(files, units, dt, table), pair=vertical is not None)
+
+
+def survey_plain(folder: Path, units: str | None = None, dt: float | None = None) -> tuple[RecordSurvey, RecordSurvey]:
+    """Survey a folder as `survey_records` does, but without ObsPy, whose readers are not made for files of strangers.
+
+    Returns
+    -------
+    tuple of RecordSurvey
+        That of the horizontal components, and that with the vertical ones of their stations.
+
+    Raises
+    ------
+    InputError
+        As for `survey_records`.
+    """
+    name, files = files_of(folder)
+    found = collect(files, units, dt, foreign=False)
+    return _survey(folder, name, found, pair=False), _survey(folder, name, found, pair=True)
+
+
+def _survey(
+    paths: str | Path | Iterable[str | Path], name: str, found: Sequence[FileRead], *, pair: bool
+) -> RecordSurvey:
+    result = sort_out(found, pair=pair)
+    names = [each.file.name for each in found]
     entries = [entry for each in found for entry in _entries(each, result, names)]
     if isinstance(paths, str | Path):
         others = (file for file in Path(paths).iterdir() if file.is_file() and not is_record(file))

@@ -23,11 +23,12 @@ from rockflex._json import plain
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web._download import download, study_file
 from rockflex.web._exchange import file_answer, file_of, question_of, state_of, step_of
+from rockflex.web._folder_requests import folder_routes
 from rockflex.web._forms import forms
 from rockflex.web._headers import Headers
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limit_states import limit_states
-from rockflex.web._limits import DURATION, FILE, FREEDOMS, MODELS, MOST_ELEMENTS, RUNS
+from rockflex.web._limits import DURATION, FILE, FILES, FOLDER, FREEDOMS, MODELS, MOST_ELEMENTS, RUNS
 from rockflex.web._measures import measures
 from rockflex.web._pages import PAGES
 from rockflex.web._presets import PRESETS
@@ -43,7 +44,7 @@ LOOK = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
 LOOPBACK = ("127.0.0.1", "localhost")
 THREADS = 4  # answers computed at once: the kernels release the lock, and short answers must not wait for long ones
-FILES = 2  # files written at once: they take long and mostly hold the lock
+WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 LONGEST = 1000  # characters of a message: some repeat an input
 Answer = Callable[[], Any]
 
@@ -64,14 +65,14 @@ class Server:
         response_view(state, self.uploads)
         self._ready.set()
 
-    async def _answer(self, work: Answer, most: int = THREADS) -> Any:
+    async def answer(self, work: Answer, most: int = THREADS) -> Any:
         """Compute outside the event loop, with a limited number of answers at once."""
         if most not in self._limiters:
             self._limiters[most] = anyio.CapacityLimiter(most)
         return await anyio.to_thread.run_sync(work, limiter=self._limiters[most])
 
     async def _run(self, request: Request, work: Answer, most: int = THREADS) -> Any:
-        """Compute as `_answer` does, and stop its runs when the visitor no longer waits for them."""
+        """Compute as `answer` does, and stop its runs when the visitor no longer waits for them."""
         gone = Event()
 
         def guarded() -> Any:
@@ -85,7 +86,7 @@ class Server:
 
         watching = asyncio.create_task(watch())
         try:
-            return await self._answer(guarded, most)
+            return await self.answer(guarded, most)
         except RunStoppedError as error:
             raise Refusal("The run was stopped because nobody waits for its answer.", 499) from error
         finally:
@@ -108,7 +109,7 @@ class Server:
     async def structure(self, request: Request) -> Response:
         """Structure tab."""
         state = await state_of(request)
-        return JSONResponse(await self._answer(lambda: structure_view(state.structure, state.ground)))
+        return JSONResponse(await self.answer(lambda: structure_view(state.structure, state.ground)))
 
     async def record(self, request: Request) -> Response:
         """Earthquake tab."""
@@ -121,7 +122,7 @@ class Server:
                 built = None  # the record can be shown before the structure is complete
             return record_view(state, built, self.uploads)
 
-        return JSONResponse(await self._answer(work))
+        return JSONResponse(await self.answer(work))
 
     async def response(self, request: Request) -> Response:
         """Response tab."""
@@ -144,19 +145,19 @@ class Server:
             facts = {"samples": motion.acceleration.size, "pga": motion.pga, "pva": motion.pva}
             return plain({"upload": key, "name": motion.name, **facts})
 
-        return JSONResponse(await self._answer(work))
+        return JSONResponse(await self.answer(work))
 
     async def matrices(self, request: Request) -> Response:
         """Matrices from a file."""
         body, query = await file_of(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
-        return JSONResponse(await self._answer(lambda: read_matrices(name, body, part)))
+        return JSONResponse(await self.answer(lambda: read_matrices(name, body, part)))
 
     async def download(self, request: Request) -> Response:
         """A file of the results on the page."""
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self._run(request, lambda: download(state, what, self.uploads), FILES))
+        return file_answer(*await self._run(request, lambda: download(state, what, self.uploads), WRITTEN))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
@@ -164,22 +165,22 @@ class Server:
         state = await state_of(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(planned(PAGES[kind].study(state), kind), kind)}
+            return {"token": self.jobs.start(planned(PAGES[kind].study(state, self.uploads), kind), kind)}
 
-        return JSONResponse(await self._answer(work))
+        return JSONResponse(await self.answer(work))
 
     async def progress(self, request: Request) -> Response:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
         state = await state_of(request)
-        return JSONResponse(await self._answer(lambda: PAGES[kind].view(job, state)))
+        return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Table or figure of a study."""
         kind, job = self._job(request)
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self._answer(lambda: study_file(PAGES[kind], job, state, what), FILES))
+        return file_answer(*await self.answer(lambda: study_file(PAGES[kind], job, state, what), WRITTEN))
 
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
@@ -222,6 +223,7 @@ def create(host: str) -> Starlette:
         Route("/api/record", server.record, methods=["POST"]),
         Route("/api/response", server.response, methods=["POST"]),
         Route("/api/upload", server.upload, methods=["POST"]),
+        *folder_routes(server.answer, server.uploads.folders),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/download/{what}", server.download, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
@@ -249,6 +251,8 @@ def _about() -> dict[str, Any]:
     pulses = {name: {"title": each.title, "fields": (*usual, *each.fields)} for name, each in PULSES.items()}
     limits = {
         "file": FILE,
+        "files": FILES,
+        "folder": FOLDER,
         "freedoms": FREEDOMS,
         "duration": DURATION,
         "models": MODELS,

@@ -28,6 +28,7 @@ from rockflex.web._script import cloud_script
 from rockflex.web._state import CloudChoice, State
 from rockflex.web._structures import build
 from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of
+from rockflex.web._uploads import Uploads
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,8 +40,8 @@ RESAMPLES = 60
 BINS = 8  # groups of the observed fractions
 
 
-def cloud_study(state: State) -> CloudStudy:
-    """Return the study of a state, as `rockflex cloud` runs it.
+def cloud_study(state: State, uploads: Uploads) -> CloudStudy:
+    """Return the study of a state, as `rockflex cloud` runs it; `uploads` are the records of visitors.
 
     Raises
     ------
@@ -48,9 +49,9 @@ def cloud_study(state: State) -> CloudStudy:
         If the state does not describe a valid study.
     """
     build(state.structure)  # for its messages, which are shown next to the fields
-    choice = state.cloud
+    content = shared(state, uploads, "cloud", state.cloud.models, "Cloud")
     with refusing("cloud"):
-        return CloudStudy(**shared(state, choice, choice.models, "Cloud"))
+        return CloudStudy(**content)
 
 
 def cloud_view(job: Job, state: State) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from rockflex.web._script import design_script
 from rockflex.web._state import DesignChoice, State
 from rockflex.web._structures import build
 from rockflex.web._studies import StudyPage, none_solved, progress, runs_of, shared, some_runs_of
+from rockflex.web._uploads import Uploads
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,8 +28,8 @@ def limit_of(choice: DesignChoice) -> float | str:
     return choice.rotation if choice.limit == ROTATION else choice.limit
 
 
-def design_study(state: State) -> DesignStudy:
-    """Return the study of a state, as `rockflex design` runs it.
+def design_study(state: State, uploads: Uploads) -> DesignStudy:
+    """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors.
 
     Raises
     ------
@@ -47,7 +48,7 @@ def design_study(state: State) -> DesignStudy:
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0
             levels.append({"prestress_ratio": force, "stiffness_ratio": stiffness, "name": name})
-    content: dict[str, Any] = shared(state, choice, [choice.model], "Design") | {
+    content: dict[str, Any] = shared(state, uploads, "design", [choice.model], "Design") | {
         "half_widths": [float(f"{width:.6g}") for width in widths],
         "tendons": levels,
         "measure": choice.measure,

@@ -13,8 +13,10 @@ import tomli_w
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
+from rockflex.web._given import FOLDER, HEAD, given_suite
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
+from rockflex.web._record_files import packed_records, record_table
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._response import check_energy, responses
@@ -35,8 +37,8 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     state
         The state of the page.
     what
-        ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``, ``"study"``,
-        ``"structure"``, ``"python"``, and ``"cloud-study"``, ``"cloud-python"``, ``"design-study"``,
+        ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``, ``"records"``,
+        ``"study"``, ``"structure"``, ``"python"``, and ``"cloud-study"``, ``"cloud-python"``, ``"design-study"``,
         ``"design-python"``.
     uploads
         Records of visitors.
@@ -50,7 +52,13 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     if maker is None:
         raise Refusal(f"There is no download named {what[:40]!r}.", 404)
     name, content = maker(state, uploads)
-    kinds = {".svg": "image/svg+xml", ".csv": "text/csv", ".toml": "application/toml", ".py": "text/x-python"}
+    kinds = {
+        ".zip": "application/zip",
+        ".svg": "image/svg+xml",
+        ".csv": "text/csv",
+        ".toml": "application/toml",
+        ".py": "text/x-python",
+    }
     data = content if isinstance(content, bytes) else content.encode()
     return name, kinds[Path(name).suffix], data
 
@@ -146,12 +154,11 @@ def _of_elements(response: Response) -> dict[str, Any]:
 
 def _record(state: State, uploads: Uploads) -> tuple[str, str]:
     motion = motion_of(state.record, uploads)
-    columns = {"time (s)": motion.time, "acc (m/s2)": motion.acceleration}
-    if motion.vertical is not None:
-        columns["vertical (m/s2)"] = motion.vertical
-    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    lines = [",".join(map(repr, row)) for row in rows]
-    return f"{_file_name(motion)}.csv", "\n".join([",".join(columns), *lines, ""])
+    return f"{_file_name(motion)}.csv", record_table(motion)
+
+
+def _records(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    return f"{FOLDER}.zip", packed_records(given_suite(state, uploads))
 
 
 def _file_name(motion: GroundMotion) -> str:
@@ -185,7 +192,8 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
 
 
 def _python(state: State, uploads: Uploads) -> tuple[str, str]:
-    name = clean_name(motion_of(state.record, uploads).name) if state.record.source == "upload" else ""
+    own = state.record.source in ("upload", "folder")
+    name = _file_name(motion_of(state.record, uploads)) if own else ""
     return "response.py", response_script(state, name)
 
 
@@ -196,12 +204,14 @@ def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str]] | Non
     if page is None:
         return None
 
-    def toml(state: State, _: Uploads) -> tuple[str, str]:
+    def toml(state: State, uploads: Uploads) -> tuple[str, str]:
+        study = page.study(state, uploads)
         head = f"# rockflex {KINDS[kind].command} {kind}.toml --out study\n"
-        return f"{kind}.toml", head + tomli_w.dumps(page.study(state).model_dump(exclude_none=True))
+        head += HEAD if study.records.folder else ""
+        return f"{kind}.toml", head + tomli_w.dumps(study.model_dump(exclude_none=True))
 
-    def python(state: State, _: Uploads) -> tuple[str, str]:
-        return f"{kind}.py", page.script(state, page.study(state))
+    def python(state: State, uploads: Uploads) -> tuple[str, str]:
+        return f"{kind}.py", page.script(state, page.study(state, uploads))
 
     return {"study": toml, "python": python}.get(form)
 
@@ -227,6 +237,7 @@ _MAKERS: dict[str, Any] = {
     "peaks": _peaks,
     "histories": _histories,
     "record": _record,
+    "records": _records,
     "structure": _structure_toml,
     "study": _study,
     "python": _python,

@@ -41,12 +41,12 @@ async def question_of(request: Request) -> tuple[State, dict[str, Any]]:
     return await anyio.to_thread.run_sync(_question, body)
 
 
-async def file_of(request: Request) -> bytes:
-    """Return the bytes of an uploaded file."""
-    return await _body_of(request, "application/octet-stream")
+async def file_of(request: Request, most: int = BODY, said: int = FILE) -> bytes:
+    """Return the bytes of an uploaded file, of at most `most`; messages name the limit `said`."""
+    return await _body_of(request, "application/octet-stream", most, said)
 
 
-async def _body_of(request: Request, wanted: str) -> bytes:
+async def _body_of(request: Request, wanted: str, most: int = BODY, said: int = FILE) -> bytes:
     """Return the body of a request, within the limits of its size and its time.
 
     Another content type would let foreign pages send it unasked, without the browser's preflight.
@@ -58,14 +58,14 @@ async def _body_of(request: Request, wanted: str) -> bytes:
         with anyio.fail_after(PATIENCE):
             async for chunk in request.stream():
                 size += len(chunk)
-                if size <= BODY:
+                if size <= most:
                     chunks.append(chunk)
-                elif size > 5 * BODY:
+                elif size > most + 4 * BODY:
                     break
     except TimeoutError as error:
         raise Refusal(f"The request did not arrive within {PATIENCE:g} s.", 408) from error
-    if size > BODY:  # the rest was read and dropped, because most clients lose an answer that comes before the end
-        raise Refusal(f"More than {FILE / 1e6:g} MB were sent, which is more than the page takes.", 413)
+    if size > most:  # the rest was read and dropped, because most clients lose an answer that comes before the end
+        raise Refusal(f"More than {said / 1e6:g} MB were sent, which is more than the page takes.", 413)
     return b"".join(chunks)
 
 
@@ -76,8 +76,8 @@ def _question(body: bytes) -> tuple[State, dict[str, Any]]:
     return parse_state(content.get("state")), content
 
 
-def step_of(text: str) -> float | None:
-    """Return the sampling step in a query; None for the file's own.
+def step_of(text: str, field: str = "record.upload") -> float | None:
+    """Return the sampling step in a query; None for the file's own. Messages are about `field`.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def step_of(text: str) -> float | None:
         return float(text)
     except ValueError as error:
         message = f"the sampling step must be a number in s, but {text[:40]!r} was given."
-        raise Refusal({"record.upload": message}) from error
+        raise Refusal({field: message}) from error
 
 
 def file_answer(name: str, kind: str, content: bytes) -> Response:

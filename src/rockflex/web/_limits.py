@@ -20,11 +20,15 @@ if TYPE_CHECKING:
     from rockflex.study.cloud import CloudPlan
 
 FILE = 5_000_000  # bytes of an upload
-BODY = 6_000_000  # bytes of any request
+BODY = 6_000_000  # bytes of any request, except one with a folder
+FILES = 500  # of a folder
+FOLDER = 80_000_000  # bytes of its files, unpacked
 FREEDOMS = 200  # stories, masses, rows of a matrix
 MOST_ELEMENTS = 20  # between the base and the ground: each can change its branch at every turn of the base
 SAMPLES = 200_000
 DURATION = 300.0  # s of a record
+SAMPLES_TOGETHER = 8_000_000  # of the records of a folder
+SAMPLES_KEPT = 30_000_000  # of all folders in memory, 240 MB
 MODELS = 4  # at once
 RUNS = 20_000  # of a study
 RUN = 1.5  # s of estimated computing time of one run (`rockflex.solve.Pace`)

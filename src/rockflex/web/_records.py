@@ -81,6 +81,8 @@ def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
     """
     if choice.source == "upload":
         return uploads.get(choice.upload)
+    if choice.source == "folder":
+        return given_motion(choice, uploads)
     if choice.source == "pulse":
         pulse = PULSES[choice.pulse.shape]
         with refusing("record.pulse"):
@@ -88,6 +90,19 @@ def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
     suite = _suite(choice.suite)
     with refusing("record.name"):
         return suite[choice.name]
+
+
+def given_motion(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
+    """Return the chosen record of the folder, with its vertical component if that is wanted and there.
+
+    Raises
+    ------
+    Refusal
+        If the server does not have the folder, or it has no such record.
+    """
+    suite = uploads.folders.get(choice.folder).suite(vertical=choice.vertical)
+    with refusing("record.folder"):
+        return suite[choice.given]
 
 
 @lru_cache(maxsize=8)

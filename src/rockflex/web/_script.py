@@ -15,6 +15,7 @@ from rockflex.study._ground_table import BedTable, GroundTable, SpringsTable
 from rockflex.study._yielding import yielding
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
+from rockflex.web._given import FOLDER, GIVEN
 from rockflex.web._limit_states import ROTATION
 from rockflex.web._records import PULSES
 from rockflex.web._state import PulseChoice, State
@@ -164,7 +165,11 @@ def _program(state: State, motions: list[str], lines: list[str], *, yields: bool
 
 
 def _motions(suites: Sequence[str]) -> str:
-    return f"motions = {' + '.join(f'list(rf.load_suite({name!r}))' for name in suites)}"
+    embedded = [f"list(rf.load_suite({name!r}))" for name in suites if name != GIVEN]
+    if len(embedded) == len(suites):
+        return f"motions = {' + '.join(embedded)}"
+    note = "# unpacked from the file that the page saves: Records (ZIP)"
+    return f"motions = {' + '.join([*embedded, f'list(rf.read_suite({FOLDER!r}))'])}  {note}"
 
 
 def _structure(entry: StructureEntry) -> list[str]:
@@ -180,7 +185,7 @@ def _structure(entry: StructureEntry) -> list[str]:
 
 def _motion(state: State, upload_name: str) -> list[str]:
     choice = state.record
-    if choice.source == "upload":
+    if choice.source in ("upload", "folder"):
         line = f"motion = rf.read_motion({record_file(upload_name)!r})  # saved by the page: Record (CSV)"
     elif choice.source == "pulse":
         line = f"motion = {_pulse(choice.pulse)}"

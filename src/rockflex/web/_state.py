@@ -20,6 +20,7 @@ from rockflex.web._refusal import Refusal, refusing
 Name = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 Scale = Annotated[float, Field(ge=0.01, le=20.0, description="a number from 0.01 to 20")]
 Labels = Annotated[list[Name], Field(min_length=1, max_length=MODELS, description="a list of one to four models")]
+Checksum = Annotated[str, StringConstraints(pattern=r"^([0-9a-f]{64})?$")]
 Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a list of one to four suites")]
 
 
@@ -42,15 +43,21 @@ class PulseChoice(Table):
 
 
 class RecordChoice(Table):
-    """A ground motion: one of a suite, a pulse, or an upload by its checksum."""
+    """A ground motion: one of a suite, a pulse, an upload by its checksum, or one of the folder with its checksum.
 
-    source: Literal["suite", "pulse", "upload"] = Field("suite", description='"suite", "pulse" or "upload"')
+    The folder is that of the studies too, and `vertical` says whether its vertical components are used.
+    """
+
+    source: Literal["suite", "pulse", "upload", "folder"] = Field(
+        "suite", description='"suite", "pulse", "upload" or "folder"'
+    )
     suite: Name = Field("el-centro-1940", description="the name of a suite")
     name: Name = Field("EL-CENTRO-1940-NS", description="the name of a record")
     pulse: PulseChoice = Field(default_factory=lambda: PulseChoice.model_validate({}), description="a table")
-    upload: Annotated[str, StringConstraints(pattern=r"^([0-9a-f]{64})?$")] = Field(
-        "", description="the checksum of a file"
-    )
+    upload: Checksum = Field("", description="the checksum of a file")
+    folder: Checksum = Field("", description="the checksum of a folder")
+    given: Name = Field("", description="the name of a record of the folder")
+    vertical: bool = Field(False, description="true or false")
 
 
 class CloudChoice(Table):

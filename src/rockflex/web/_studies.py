@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 from rockflex.motion import MEASURES
 from rockflex.study._yielding import yielding
 from rockflex.study.cloud import CloudPlan, CloudStudy
 from rockflex.study.design import DesignStudy
 from rockflex.study.plan import to_frame
+from rockflex.web._given import records_of
 from rockflex.web._jobs import Job
 from rockflex.web._limits import RUN, check_runs
 from rockflex.web._refusal import Refusal, refusing
-from rockflex.web._state import CloudChoice, DesignChoice, State
+from rockflex.web._state import State
+from rockflex.web._uploads import Uploads
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +30,7 @@ class StudyPage:
     Attributes
     ----------
     study : callable
-        Returns the study of a state.
+        Returns the study of a state, with the records of visitors.
     view : callable
         Returns what its tab shows of the runs so far, for the choices of a state.
     table, figure : callable
@@ -37,7 +39,7 @@ class StudyPage:
         Returns a Python program that repeats the study.
     """
 
-    study: Callable[[State], Any]
+    study: Callable[[State, Uploads], Any]
     view: "Callable[[Job, State], dict[str, Any]]"
     table: "Callable[[Job, State], pd.DataFrame]"
     figure: "Callable[[Job, State], Any]"
@@ -46,12 +48,21 @@ class StudyPage:
     figure_name: str
 
 
-def shared(state: State, choice: CloudChoice | DesignChoice, labels: Sequence[str], name: str) -> dict[str, Any]:
-    """Return the content that both kinds of study share; `name` is used for a structure without a name."""
+def shared(
+    state: State, uploads: Uploads, kind: Literal["cloud", "design"], labels: Sequence[str], name: str
+) -> dict[str, Any]:
+    """Return the content that both kinds of study share; `name` is used for a structure without a name.
+
+    Raises
+    ------
+    Refusal
+        If the server does not have the records.
+    """
+    choice = state.cloud if kind == "cloud" else state.design
     return {
         "name": state.structure.name or name,
         "structures": [state.structure.model_dump(exclude_none=True)],
-        "records": {"suites": list(choice.suites)},
+        "records": records_of(state, choice.suites, uploads, f"{kind}.suites"),
         "models": list(labels),
         "scales": list(choice.scales),
         "free_vibration": CALM if yielding(labels) else "settle",

@@ -15,6 +15,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_plain
+from rockflex.web._folders import Folders
 from rockflex.web._limits import FILE, FREEDOMS, check_motion
 from rockflex.web._refusal import Refusal, refusing
 
@@ -23,7 +24,7 @@ MATRICES = ("mass", "stiffness", "heights", "rotations")
 
 
 class Uploads:
-    """Records by the checksum of their file; the latest `KEPT` of all visitors.
+    """Records by the checksum of their file; the latest `KEPT` of all visitors. `folders` holds sets of records.
 
     The checksum is known only to those who have the file or a link with it.
     """
@@ -31,6 +32,7 @@ class Uploads:
     def __init__(self) -> None:
         self._kept: OrderedDict[str, GroundMotion] = OrderedDict()
         self._lock = Lock()
+        self.folders = Folders()
 
     def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
         """Store a record, and return its checksum."""

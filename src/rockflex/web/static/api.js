@@ -53,6 +53,17 @@ export async function send(path, file) {
   return (await post(path, "octet-stream", file)).json();
 }
 
+// Several files in one request: a line that lists them, then their contents; those above `most` bytes are only listed.
+export async function sendAll(path, files, most) {
+  const list = files.map((each) => ({
+    name: each.webkitRelativePath || each.name, size: each.size, sent: each.size <= most || isArchive(each),
+  }));
+  const contents = files.filter((_, i) => list[i].sent);
+  return send(path, new Blob([`${JSON.stringify(list)}\n`, ...contents]));
+}
+
+export const isArchive = ({ name }) => /\.zip$/i.test(name);
+
 function post(path, kind, body, signal) {
   return request(path, { method: "POST", headers: { "Content-Type": `application/${kind}` }, body, signal });
 }

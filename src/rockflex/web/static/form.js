@@ -163,15 +163,26 @@ export function fileBox(accept, take, attributes = {}) {
 
 // Chips of which at least one stays chosen.
 export function chips(path, label, options, chosen, change) {
-  const group = h("div", { class: "chips", role: "group", "aria-label": label }, options.map(([value, text]) => {
-    const input = h("input", { type: "checkbox", value, checked: chosen.includes(value), onchange: () => {
+  const group = h("div", { class: "chips", role: "group", "aria-label": label });
+  const element = h("div", { class: "field", "data-path": path }, h("div", { class: "label" }, label), group, trouble());
+  const chip = (now) => ([value, text]) => {
+    const input = h("input", { type: "checkbox", value, checked: now.includes(value), onchange: () => {
       const next = [...group.querySelectorAll("input:checked")].map((each) => each.value);
       if (next.length) change(next);
       else input.checked = true;
     } });
     return h("label", {}, input, text);
-  }));
-  return h("div", { class: "field", "data-path": path }, h("div", { class: "label" }, label), group, trouble());
+  };
+  element.setOptions = (next, now) => {
+    const key = JSON.stringify([next, now]);
+    if (key === element.dataset.drawn) return;
+    element.dataset.drawn = key;
+    const focused = group.contains(document.activeElement) ? document.activeElement.value : null;
+    group.replaceChildren(...next.map(chip(now)));
+    if (focused !== null) group.querySelector(`[value="${CSS.escape(focused)}"]`)?.focus();
+  };
+  element.setOptions(options, chosen);
+  return element;
 }
 
 // A slider with a box for the number.

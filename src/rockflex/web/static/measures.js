@@ -13,8 +13,10 @@ export const unitOf = (about, name) => named(about, name).unit;
 // Short name of a measure with its unit, for an axis.
 export const axisOf = (about, name) => named(about, name).axis;
 
-// Suites of many records, with short names.
-export function suitesOf(about) {
-  const many = about.suites.filter((name) => name !== "el-centro-1940");
-  return many.map((name) => [name, name.replace("fema-p695-", "")]);
+export const GIVEN = "given"; // the folder of the visitor among the suites
+
+// Suites of many records, with short names; the folder if there is one, or it is among those chosen.
+export function suitesOf({ about, state }, chosen = []) {
+  const many = about.suites.filter((name) => name !== "el-centro-1940").map((name) => [name, name.replace("fema-p695-", "")]);
+  return [...many, ...(state.record.folder || chosen.includes(GIVEN) ? [[GIVEN, "your folder"]] : [])];
 }

@@ -3,7 +3,7 @@
 import { ask, attempt, drop } from "./api.js";
 import { h, latest } from "./dom.js";
 import { box, chips, select, trouble } from "./form.js";
-import { suitesOf } from "./measures.js";
+import { GIVEN, suitesOf } from "./measures.js";
 import { yields } from "./models.js";
 
 const SAID = {
@@ -21,16 +21,23 @@ export function assumed({ structure, impact, restitution, bouc_wen, ground }, la
   return [structure, impact, restitution, ground, labels.some(yields) ? bouc_wen : null, labels];
 }
 
+// What determines the records of these suites.
+export function recordsOf({ record }, suites) {
+  return [suites, suites.includes(GIVEN) ? [record.folder, record.vertical] : null];
+}
+
 // Controls of the choices of a study.
 export function choices(app, kind) {
   const now = app.state[kind];
   const put = (patch) => app.change({ [kind]: patch });
   const set = (name) => (value) => put({ [name]: value });
+  const suites = chips(`${kind}.suites`, "Suites of records", suitesOf(app, now.suites), now.suites, set("suites"));
+  suites.refresh = () => suites.setOptions(suitesOf(app, app.state[kind].suites), app.state[kind].suites);
   return {
     put,
     entry: (name, label, extra) => box(`${kind}.${name}`, label, now[name], set(name), extra),
     list: (name, label, options) => select(`${kind}.${name}`, label, options, now[name], set(name)),
-    suites: chips(`${kind}.suites`, "Suites of records", suitesOf(app.about), now.suites, set("suites")),
+    suites,
   };
 }
 
@@ -71,6 +78,7 @@ export class Study {
 
   // Update the tab after a change of the state.
   refresh() {
+    this.ownRecords.hidden = !this.app.state[this.kind].suites.includes(GIVEN);
     if (this.token) this.#watch();
     if (this.answer) this.load();
   }
@@ -82,9 +90,11 @@ export class Study {
 
   // Buttons for files: files of runs once there are any, the others at any time.
   downloads(root, ofRuns, others) {
+    const own = ["records", "Records (ZIP)"]; // of the visitor's folder
     const names = ofRuns.map(([what]) => what);
     const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/download/${what}`);
-    const buttons = this.app.downloads(root, [...ofRuns, ...others], path);
+    const buttons = this.app.downloads(root, [...ofRuns, ...others, own], path);
+    this.ownRecords = [...buttons.children].find((each) => each.dataset.file === "records");
     this.needRuns = [...buttons.children].filter((each) => names.includes(each.dataset.file));
     for (const button of this.needRuns) button.disabled = true;
     return buttons;

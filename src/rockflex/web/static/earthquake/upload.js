@@ -4,7 +4,7 @@ import { attempt, send } from "../api.js";
 import { h, number, tooLarge } from "../dom.js";
 import { box, field, fileBox, select } from "../form.js";
 
-const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
+export const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
 
 // `complain` takes messages by the path of their field.
 export function uploading(app, complain) {

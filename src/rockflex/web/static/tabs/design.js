@@ -5,11 +5,11 @@ import { h, number, symbol, tableOf } from "../dom.js";
 import { look } from "../looks.js";
 import { legend } from "../marks.js";
 import { measuresOf, unitOf } from "../measures.js";
-import { assumed, choices, Remarks, Study } from "../study.js";
+import { assumed, choices, recordsOf, Remarks, Study } from "../study.js";
 
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
-const RUNS = ["suites", "scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
+const RUNS = ["scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
 const WIDTH = "half width of the base B [m]";
 
 const numbers = (values) => values.map((value) => value ?? NaN);
@@ -55,7 +55,7 @@ export default function designTab(app) {
   const results = h("div", { class: "results" }, verdict, drawing);
   const study = new Study(app, "design", {
     verb: "Search", results, show,
-    key: () => JSON.stringify([assumed(app.state, [choice().model]), RUNS.map((name) => choice()[name])]),
+    key: () => JSON.stringify([assumed(app.state, [choice().model]), recordsOf(app.state, choice().suites), RUNS.map((name) => choice()[name])]),
   });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
@@ -98,6 +98,7 @@ export default function designTab(app) {
   }
 
   function refresh() {
+    suites.refresh();
     limit.setValue(choice().limit);
     measure.setValue(choice().measure);
     const offered = new Set([...MODELS, ...(app.state.bouc_wen ? YIELDING : []), choice().model]);

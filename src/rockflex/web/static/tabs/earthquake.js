@@ -3,11 +3,16 @@
 import { get } from "../api.js";
 import { Chart, overTime } from "../chart.js";
 import { decode, h, latest, number } from "../dom.js";
+import { folder } from "../earthquake/folder.js";
 import { records } from "../earthquake/records.js";
 import { uploading } from "../earthquake/upload.js";
 import { select, slider } from "../form.js";
 
-const SOURCES = [["suite", "A recorded suite"], ["pulse", "A pulse"], ["upload", "Your own file"]];
+const SOURCES = [["suite", "A recorded suite"], ["pulse", "A pulse"], ["upload", "Your own file"], ["folder", "Your folder of records"]];
+const MISSING = {
+  upload: "Choose a file; its motion and spectrum will appear here.",
+  folder: "Choose a folder, files or a ZIP archive of records; a report of them will appear here.",
+};
 const PULSE = {
   amplitude: ["Amplitude", { low: 0.1, high: 15, step: 0.05, unit: "m/s²" }],
   period: ["Period", { low: 0.1, high: 5, step: 0.01, unit: "s" }],
@@ -37,10 +42,12 @@ export default function earthquakeTab(app) {
     slider(`record.pulse.${key}`, label, spec, record.pulse[key], (value) => put({ pulse: { [key]: value } }))]));
   const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
+  const given = folder(app, (errors) => app.complain(element, errors));
   const panels = {
     suite: h("div", {}, suite, thumbs.element),
     pulse: h("div", {}, shape, Object.values(sliders)),
     upload: uploading(app, (errors) => app.complain(element, errors)),
+    folder: given.element,
   };
 
   const charts = overTime(HISTORIES.map(([key, yLabel, , height]) => ({ label: `Ground ${key} over time`, yLabel, height })));
@@ -53,14 +60,15 @@ export default function earthquakeTab(app) {
   const drawing = h("div", {},
     title, charts.map((chart) => chart.element), measures,
     h("h2", {}, "Response spectrum, 5 % damping"), spectrum.element);
-  const empty = h("p", { class: "answer", hidden: true }, "Choose a file; its motion and spectrum will appear here.");
-  const results = h("div", { class: "results" }, empty, drawing);
+  const empty = h("p", { class: "answer", hidden: true }, "");
+  const results = h("div", { class: "results" }, empty, given.report, drawing);
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Ground motion"), source, Object.values(panels),
         h("p", { class: "error foot", role: "alert" })),
       h("fieldset", {}, h("legend", {}, "Scale"), scale)),
     results);
+  given.report.append(app.downloads(element, [["records", "Records (ZIP)"]]));
   drawing.append(app.downloads(element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
 
   const load = latest(async () => {
@@ -109,7 +117,9 @@ export default function earthquakeTab(app) {
     sliders.amplitude.querySelector(".hint").textContent = `0.1 to 15 ${unit}${unit === "m/s" ? ", of the velocity" : ""}`;
     for (const [key, panel] of Object.entries(panels)) panel.hidden = key !== now.source;
     if (now.source === "suite") thumbs.refresh();
-    const missing = now.source === "upload" && !now.upload;
+    given.refresh();
+    const missing = now.source in MISSING && !now[now.source];
+    empty.textContent = MISSING[now.source] ?? "";
     drawing.hidden = missing;
     empty.hidden = !missing;
     if (missing) app.complain(element, {});

@@ -7,7 +7,7 @@ import { look } from "../looks.js";
 import { legend } from "../marks.js";
 import { axisOf, measuresOf } from "../measures.js";
 import { models } from "../models.js";
-import { assumed, choices, Remarks, Study } from "../study.js";
+import { assumed, choices, recordsOf, Remarks, Study } from "../study.js";
 
 const CONFIDENCES = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation are drawn
@@ -47,7 +47,7 @@ export default function fragilityTab(app) {
   const results = h("div", { class: "results" }, empty, drawing);
   const study = new Study(app, "cloud", {
     verb: "Run", results, show,
-    key: () => JSON.stringify([assumed(app.state, choice().models), choice().suites, choice().scales]),
+    key: () => JSON.stringify([assumed(app.state, choice().models), recordsOf(app.state, choice().suites), choice().scales]),
   });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
@@ -93,6 +93,7 @@ export default function fragilityTab(app) {
   }
 
   function refresh() {
+    suites.refresh();
     labels.setValue(choice().models, app.state.bouc_wen !== undefined);
     measure.setValue(choice().measure);
     limit.setValue(choice().limit);
