@@ -8,7 +8,7 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _figures, _modes, _motion, _reproduce, _run, _select, _serve, _study, _survey, _warm
+from rockflex.cli import _animate, _figures, _modes, _motion, _reproduce, _run, _select, _serve, _study, _survey, _warm
 from rockflex.cli._console import complain, note, remarks
 from rockflex.cli._flags import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
@@ -62,6 +62,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
+app.command("animate", cls=RunCommand, epilog=_animate.EPILOG, no_args_is_help=True)(_animate.animate)
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
 app.command("survey", epilog=_survey.EPILOG, no_args_is_help=True)(_survey.survey)

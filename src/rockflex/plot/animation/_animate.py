@@ -6,24 +6,24 @@ from typing import Any
 
 from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
-from rockflex._files import path_of
 from rockflex._shown import shown
 from rockflex.plot._curves import Curve, curves_of
 from rockflex.plot._panel import quantities_of, usual_panels
 from rockflex.plot.animation._amplification import usual_amplification
 from rockflex.plot.animation._clock import clock_of
+from rockflex.plot.animation._file import GIF, MP4, file_of
 from rockflex.plot.animation._gif import write_gif
 from rockflex.plot.animation._outline import outline_of
 from rockflex.plot.animation._poses import poses_of
 from rockflex.plot.animation._scene import Scene
-from rockflex.plot.animation._video import check_encoder, write_video
+from rockflex.plot.animation._video import write_video
 from rockflex.progress import ProgressChoice, telling
 from rockflex.response import Response
 
 NARROWEST, WIDEST = 320, 3840  # pixels
 MOST_RESPONSES = 6
 _USUAL = ("rotation", "total_top_displacement", "top_displacement", "base_moment", "slip", "edge_uplift")
-_WRITERS = {".gif": write_gif, ".mp4": write_video}
+_WRITERS = {GIF: write_gif, MP4: write_video}
 
 
 def animate(
@@ -61,8 +61,8 @@ def animate(
     labels
         A name for each response. Default: the models, with the motions if a model occurs twice.
     structure
-        The structure, or one for each response. Only its shape is taken from it: a continuous one, such as a `Beam`,
-        is drawn bent instead of straight. Default: floors where the properties of the response have them, otherwise
+        The structure, or one for each response. Only its shape is taken from it: a tower, a pier or a wall is drawn as
+        a bent line rather than with floors. Default: floors where the properties of the response have them, otherwise
         a straight line to the top.
     speed
         Seconds of the response per second of the animation; 0.5 is slow motion.
@@ -76,7 +76,7 @@ def animate(
     panels
         Which of the quantities of `plot_history`, from the top. Default: the rotation, the displacement of the top and
         the base moment, with the slip if a base can slide and the edges if one is on springs; no rotation if no base
-        can lift.
+        can lift, and no moment of rigid blocks.
     title
         Default: the name of the motion, if there is only one.
     width
@@ -108,7 +108,7 @@ def animate(
     >>> rf.animate(response, file, frames_per_second=10, width=480).name
     'pulse.gif'
     """
-    target, suffix = _target(path)
+    target, suffix = file_of(path)
     curves = curves_of(responses, labels)
     if len(curves) > MOST_RESPONSES:
         raise InputError(
@@ -126,22 +126,6 @@ def animate(
     with telling(progress, clock.times.size, "frames") as advance:
         scene = Scene(curves, poses, quantities, clock, factor, title, pixels)
         return _WRITERS[suffix](target, scene, clock, advance)
-
-
-def _target(path: str | Path) -> tuple[Path, str]:
-    target = path_of("path", path)
-    suffix = target.suffix.lower()
-    if suffix not in _WRITERS:
-        raise InputError(
-            f"An animation can be written as .gif or .mp4, but the path {shown(str(path))} ends in "
-            f"{shown(target.suffix)}. Change the suffix.",
-            field="path",
-        )
-    if target.is_dir():
-        raise InputError(f"{target} is a folder, but a file is expected. Give a file in it.", field="path")
-    if suffix == ".mp4":
-        check_encoder()
-    return target, suffix
 
 
 def _structures(given: Any | Sequence[Any] | None, count: int) -> list[Any]:
@@ -171,4 +155,6 @@ def _usual_panels(curves: list[Curve]) -> list[str]:
     left_out = {"top_displacement"} if "total_top_displacement" in known else set[str]()
     if not any(curve.lifts for curve in curves):
         left_out.add("rotation")
+    if not any(curve.history.model.properties.n_modes for curve in curves):
+        left_out.add("base_moment")  # of elastic forces, which a rigid block does not have
     return [name for name in _USUAL if name in known and name not in left_out]

@@ -2,27 +2,15 @@
 
 from collections.abc import Callable
 from contextlib import closing
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from rockflex._errors import InputError
 from rockflex._files import writing
 from rockflex.plot.animation._clock import Clock
 from rockflex.plot.animation._scene import Scene
 
 # H.264 in the format that every browser plays; the index at the front, so that it plays while it loads.
 _OPTIONS = ["-crf", "20", "-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart"]
-
-
-def check_encoder() -> None:
-    """Raise an InputError if MP4 cannot be written here."""
-    if find_spec("imageio_ffmpeg") is None:
-        raise InputError(
-            "An .mp4 file needs imageio-ffmpeg, which is not installed. Install it: pip install 'rockflex[video]', or "
-            "write a .gif file, which needs nothing else.",
-            field="path",
-        )
 
 
 def write_video(target: Path, scene: Scene, clock: Clock, advance: Callable[[int], None]) -> Path:

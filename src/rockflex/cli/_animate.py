@@ -1,0 +1,137 @@
+"""``rockflex animate``: one structure under one ground motion, by several models side by side, as GIF or MP4."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rockflex._errors import InputError
+from rockflex.cli import _options as options
+
+EPILOG = """[bold]Examples[/bold]
+
+rockflex animate structure.toml el-centro-1940 --out run.gif
+
+rockflex animate structure.toml fema-p695-far-field/FF-2-a --model MDOF-S,fixed --scale 1.5 --out run.mp4
+
+rockflex animate structure.toml el-centro-1940 --model 2DOF-S --speed 0.5 --start 2 --stop 8 --out slow.gif
+
+rockflex animate structure.toml --model 2DOF-C --initial-rotation 0.05 --free-vibration 10 --out released.gif"""
+
+PICTURE = "Picture"
+FLAGS = {
+    "speed": "--speed",
+    "frames_per_second": "--fps",
+    "amplification": "--amplification",
+    "start": "--start",
+    "stop": "--stop",
+    "panels": "--panels",
+    "width": "--width",
+    "path": "--out",
+}
+
+
+def animate(
+    context: typer.Context,
+    arguments: options.Arguments = None,
+    structure: options.StructureFile = None,
+    motion: options.Motions = None,
+    model: options.Models = None,
+    scale: Annotated[float, typer.Option("--scale", metavar="FACTOR", help="Factor on the acceleration.")] = 1.0,
+    free_vibration: options.FreeVibration = "0",
+    work_limit: options.WorkLimit = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE.gif|.mp4", help="The file to write; its suffix tells the format."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
+    speed: Annotated[
+        float,
+        typer.Option(
+            "--speed", metavar="X", help="Seconds of the response in one of the animation.", rich_help_panel=PICTURE
+        ),
+    ] = 1.0,
+    frames_per_second: Annotated[
+        float, typer.Option("--fps", metavar="N", help="Frames per second.", rich_help_panel=PICTURE)
+    ] = 25.0,
+    amplification: Annotated[
+        float | None,
+        typer.Option(
+            "--amplification",
+            metavar="X",
+            help="Factor on what moves in the picture. Default: one with which it can be seen.",
+            rich_help_panel=PICTURE,
+        ),
+    ] = None,
+    start: Annotated[
+        float | None,
+        typer.Option("--start", metavar="S", help="Time at which it begins.", rich_help_panel=PICTURE),
+    ] = None,
+    stop: Annotated[
+        float | None,
+        typer.Option("--stop", metavar="S", help="Time at which it ends.", rich_help_panel=PICTURE),
+    ] = None,
+    panels: Annotated[
+        str | None,
+        typer.Option(
+            "--panels",
+            metavar="NAME,...",
+            help="Histories, separated by commas: rotation, top_displacement, total_top_displacement, base_moment, "
+            "base_shear, horizontal_reaction, slip, edge_uplift.",
+            rich_help_panel=PICTURE,
+        ),
+    ] = None,
+    width: Annotated[
+        int, typer.Option("--width", metavar="PX", help="Width in pixels.", rich_help_panel=PICTURE)
+    ] = 960,
+    units: options.Units = None,
+    dt: options.Dt = None,
+    vertical: options.Vertical = None,
+) -> None:
+    """Show a structure rocking under a ground motion, beside its histories, as GIF or MP4.
+
+    Several models move side by side.
+    """
+    if out is None:
+        raise InputError("An animation is a file. Give its path by --out, such as --out run.gif or --out run.mp4.")
+    from rockflex.cli._console import note, warn
+    from rockflex.cli._flags import naming
+    from rockflex.cli._preparation import Asked, prepare
+    from rockflex.cli._run_tables import print_failures, print_warnings
+    from rockflex.cli._simulations import perform, warm_up
+    from rockflex.plot.animation import animate as draw
+    from rockflex.plot.animation import file_of
+    from rockflex.progress import bar
+
+    with naming(FLAGS):
+        target, _ = file_of(out)
+    if target.exists() and not force:
+        raise InputError(f"The file {target} exists. Give another one by --out, or --force to replace it.")
+    asked = Asked(
+        arguments=arguments or [], structure=structure, motion=motion, model=model, scale=[repr(scale)],
+        free_vibration=free_vibration, work_limit=work_limit, units=units, dt=dt, vertical=vertical,
+    )  # fmt: skip
+    prepared = prepare(context, asked, histories=1)
+    loaded, batch = prepared.loaded, prepared.batch
+    if not batch.history:
+        first = prepared.found[0]
+        raise InputError(
+            f"An animation shows one ground motion, but {len(batch.motions)} were given. Name one of them, such as "
+            f"{first.motion.name} of {first.origin}."
+        )
+    warm_up(batch)
+    runs = perform(batch)
+    responses = [run.response for run in runs if run.response is not None]
+    title = None if scale == 1.0 else f"{batch.motions[0].name} × {scale:g}"
+    with naming(FLAGS), bar("Frames", transient=True) as show:
+        draw(
+            responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,
+            frames_per_second=frames_per_second, amplification=amplification, start=start, stop=stop,
+            panels=None if panels is None else [name.strip() for name in panels.split(",")], title=title, width=width,
+            progress=lambda done, total: show(done, total, ""),
+        )  # fmt: skip
+    note(f"Written to {target}")
+    warn(loaded.warnings)
+    print_warnings(runs)
+    if print_failures(runs):
+        raise typer.Exit(1)
