@@ -24,7 +24,7 @@ def test_downloads_of_each_tab(visitor, tab) -> None:
         with page.expect_download() as got:
             button.click()
         assert got.value.path().stat().st_size > 50
-        assert got.value.suggested_filename.rsplit(".")[-1] in ("svg", "csv", "toml", "py")
+        assert got.value.suggested_filename.rsplit(".")[-1] in ("svg", "html", "csv", "toml", "py")
 
 
 def test_a_link_reopens_the_page(visitor, visit) -> None:
@@ -183,11 +183,12 @@ def test_dark_and_light(visit) -> None:
     page.wait_for_selector("#adequacy")
     assert page.evaluate(theme) == "dark"
     dark = page.evaluate("getComputedStyle(document.body).backgroundColor")
-    line = page.locator(".modes polyline").first.get_attribute("stroke")
+    stroke = "getComputedStyle(document.querySelector('.modes polyline')).stroke"
+    line = page.evaluate(stroke)
     page.click("#theme")
     assert page.evaluate(theme) == "light"
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") != dark
-    page.wait_for_function("c => document.querySelector('.modes polyline').getAttribute('stroke') !== c", arg=line)
+    page.wait_for_function(f"c => {stroke} !== c", arg=line)
     page.reload()  # it is kept, though not in the link
     page.wait_for_selector("#adequacy")
     assert page.evaluate(theme) == "light"

@@ -19,12 +19,21 @@ from rockflex.web._pages import PAGES
 from rockflex.web._record_files import packed_records, record_table
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal, refusing
+from rockflex.web._report import run_report
 from rockflex.web._response import check_energy, responses
 from rockflex.web._script import response_script
 from rockflex.web._state import State
 from rockflex.web._studies import StudyPage
 from rockflex.web._uploads import Uploads, clean_name
 
+KINDS_OF_FILES = {
+    ".zip": "application/zip",
+    ".svg": "image/svg+xml",
+    ".html": "text/html",
+    ".csv": "text/csv",
+    ".toml": "application/toml",
+    ".py": "text/x-python",
+}
 ROWS = 250_000  # of a table of histories
 CELLS = 6_000_000  # of it: a bed has a column for every spring
 
@@ -37,9 +46,9 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     state
         The state of the page.
     what
-        ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``, ``"records"``,
-        ``"study"``, ``"structure"``, ``"python"``, and ``"cloud-study"``, ``"cloud-python"``, ``"design-study"``,
-        ``"design-python"``.
+        ``"report"``, ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``,
+        ``"records"``, ``"study"``, ``"structure"``, ``"python"``, and ``"cloud-study"``, ``"cloud-python"``,
+        ``"design-study"``, ``"design-python"``.
     uploads
         Records of visitors.
 
@@ -52,15 +61,8 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     if maker is None:
         raise Refusal(f"There is no download named {what[:40]!r}.", 404)
     name, content = maker(state, uploads)
-    kinds = {
-        ".zip": "application/zip",
-        ".svg": "image/svg+xml",
-        ".csv": "text/csv",
-        ".toml": "application/toml",
-        ".py": "text/x-python",
-    }
     data = content if isinstance(content, bytes) else content.encode()
-    return name, kinds[Path(name).suffix], data
+    return name, KINDS_OF_FILES[Path(name).suffix], data
 
 
 def svg(figure: Any) -> bytes:
@@ -233,6 +235,7 @@ def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str,
 _MAKERS: dict[str, Any] = {
     "figure": _figure,
     "energy": _energy,
+    "report": run_report,
     "modes": _modes,
     "peaks": _peaks,
     "histories": _histories,

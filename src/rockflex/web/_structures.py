@@ -12,6 +12,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
+from rockflex.structure import structure_warnings
 from rockflex.structure.file import Structure, StructureEntry
 from rockflex.study._ground_table import GroundTable
 from rockflex.web._ground import ground_of, ground_view
@@ -109,6 +110,7 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
             "ground": ground_view(ground_of(table, p), p),
             "shapes": built.shapes[:, :SHOWN].T,
             "properties": _parameters(p),
+            "warnings": structure_warnings(built.structure),
             "modes": modes,
             "adequacy": judged,
         }

@@ -2,6 +2,7 @@
 
 import { drawAxes, FONT, layout, line, ranges } from "./axes.js";
 import { color, context, h, number } from "./dom.js";
+import { redrawn } from "./printing.js";
 import { drawMarks, drawReadout, drawStrip, drawTrails, readings } from "./marks.js";
 
 const KEYS = "ArrowLeft ArrowRight Home End + - Escape";
@@ -9,7 +10,7 @@ const KEYS = "ArrowLeft ArrowRight Home End + - Escape";
 export class Chart {
   constructor(options = {}) {
     this.options = { height: 150, ...options };
-    this.base = h("canvas", { "aria-hidden": "true" });
+    this.base = redrawn(h("canvas", { "aria-hidden": "true" }), () => this.draw());
     this.over = h("canvas", { class: "over", "aria-hidden": "true" });
     this.said = h("p", { class: "hidden", "aria-live": "polite" });
     this.element = h("div", {

@@ -1,5 +1,7 @@
 // Elements, numbers and small tools that every tab uses.
 
+const PAPER = 3; // pixels of a canvas for each CSS pixel of a sheet
+
 export function h(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -77,9 +79,12 @@ export function color(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
+// A colour for a part of the page that follows the theme by itself.
+export const ink = (name) => `var(--${name})`;
+
 // The context of a canvas, made as large as it is shown.
 export function context(canvas, width, height) {
-  const scale = window.devicePixelRatio || 1;
+  const scale = document.documentElement.classList.contains("printing") ? PAPER : window.devicePixelRatio || 1;
   canvas.width = Math.round(width * scale);
   canvas.height = Math.round(height * scale);
   canvas.style.height = `${height}px`;

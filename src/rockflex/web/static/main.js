@@ -1,8 +1,9 @@
 // The page: its state, which is stored in the address, its tabs, and what they share.
 
 import { ask, attempt, file, get, Refusal } from "./api.js";
-import { clone, h, save } from "./dom.js";
+import { clone, h, number, save } from "./dom.js";
 import { showErrors } from "./form.js";
+import { printing } from "./printing.js";
 
 const TABS = [
   ["structure", "Structure",
@@ -99,6 +100,17 @@ function decoded(hash) {
   if (!found) return null;
   const text = atob(found[1].replaceAll("-", "+").replaceAll("_", "/"));
   return JSON.parse(new TextDecoder().decode(Uint8Array.from(text, (c) => c.charCodeAt(0))));
+}
+
+// What a printed sheet says of its tab; Swedish dates are those of ISO 8601.
+function heading() {
+  if (!app.state) return "rockflex";
+  const { structure, record, scale, tab } = app.state;
+  const motion = { suite: record.name, pulse: "a pulse", upload: "an uploaded record" }[record.source];
+  const times = scale === 1 ? "" : ` × ${number(scale)}`;
+  const one = ["earthquake", "response"].includes(tab);
+  const under = tab === "structure" ? "" : one ? ` under ${motion}${times}` : " under many records";
+  return `${structure.name || "Structure"}${under} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
 }
 
 let written = "";
@@ -209,6 +221,7 @@ function copying() {
 themes();
 tabs();
 copying();
+printing(heading);
 try {
   app.about = await get("/api/about");
   await open();

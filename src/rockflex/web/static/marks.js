@@ -2,6 +2,7 @@
 
 import { interpolate, line } from "./axes.js";
 import { color, h, number } from "./dom.js";
+import { redrawn } from "./printing.js";
 
 export function drawMarks(g, data, { box, range, px, py }, options) {
   g.save();
@@ -157,13 +158,18 @@ function drawPanel(g, width, height, at, box) {
 
 export function legend(items) {
   return h("div", { class: "legend" }, items.map((item) => {
-    const swatch = h("canvas", { width: 56, height: 12, "aria-hidden": "true" });
-    const g = swatch.getContext("2d");
-    g.strokeStyle = color(item.color);
-    g.lineWidth = item.kind === "band" ? 12 : 4;
-    g.globalAlpha = item.alpha ?? 1;
-    g.setLineDash((item.dash ?? []).map((d) => 2 * d));
-    line(g, 0, 6, 56, 6);
-    return h("span", {}, swatch, item.label);
+    const canvas = h("canvas", { width: 56, height: 12, "aria-hidden": "true" });
+    const draw = () => drawSwatch(canvas.getContext("2d"), item);
+    draw();
+    return h("span", {}, redrawn(canvas, draw), item.label);
   }));
+}
+
+function drawSwatch(g, item) {
+  g.clearRect(0, 0, 56, 12);
+  g.strokeStyle = color(item.color);
+  g.lineWidth = item.kind === "band" ? 12 : 4;
+  g.globalAlpha = item.alpha ?? 1;
+  g.setLineDash((item.dash ?? []).map((d) => 2 * d));
+  line(g, 0, 6, 56, 6);
 }

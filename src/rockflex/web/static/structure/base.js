@@ -1,6 +1,6 @@
 // The base with its edges, the axis of the masses and the elements, to scale across.
 
-import { color, svg } from "../dom.js";
+import { ink, svg } from "../dom.js";
 import { coil, colorOf, nameOf, strokes } from "../symbols.js";
 
 const [WIDTH, HEIGHT] = [460, 104];
@@ -18,12 +18,12 @@ export function base(about, view) {
   return svg("svg", {
     id: "base", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `The base and what holds it: ${names.join("; ")}`,
   },
-  svg("line", { x1: x(0), x2: x(0), y1: 4, y2: BASE, stroke: color("control"), "stroke-dasharray": "4 3" }),
-  svg("path", { d: hatch(), stroke: color("muted"), fill: "none" }),
+  svg("line", { x1: x(0), x2: x(0), y1: 4, y2: BASE, stroke: ink("control"), "stroke-dasharray": "4 3" }),
+  svg("path", { d: hatch(), stroke: ink("muted"), fill: "none" }),
   ...elements.flatMap((each) => drawn(each, x(each.position))),
-  svg("line", { x1: left, x2: right, y1: BASE, y2: BASE, stroke: color("structure"), "stroke-width": 5 }),
+  svg("line", { x1: left, x2: right, y1: BASE, y2: BASE, stroke: ink("structure"), "stroke-width": 5 }),
   ...springs.flatMap((place) => sprung(x(place), springs.length)),
-  ...(springs.length ? [] : [left, right]).map((at) => svg("path", { d: `M${at} ${BASE}l-7 ${GROUND - BASE}h14z`, fill: color("structure") })),
+  ...(springs.length ? [] : [left, right]).map((at) => svg("path", { d: `M${at} ${BASE}l-7 ${GROUND - BASE}h14z`, fill: ink("structure") })),
   ...numbers(elements.map((each) => x(each.position))));
 }
 
@@ -36,12 +36,12 @@ function hatch() {
 function sprung(at, count) {
   return coil(GROUND - BASE, count > 4 ? 5 : 7).map(({ points, width }) => svg("polyline", {
     points: points.map(([u, v]) => `${(at + u).toFixed(1)},${(GROUND - v).toFixed(1)}`).join(" "),
-    fill: "none", stroke: color("soil"), "stroke-width": width,
+    fill: "none", stroke: ink("soil"), "stroke-width": width,
   }));
 }
 
 function drawn({ kind }, at) {
-  const tone = color(colorOf(kind));
+  const tone = ink(colorOf(kind));
   const tendon = kind === "tendon";
   const [from, length] = tendon ? [GROUND + 10, GROUND + 6] : [GROUND, GROUND - BASE];
   return strokes(kind, length).map(({ points, width, fill }) => svg("polyline", {
@@ -57,7 +57,7 @@ function numbers(places) {
     let row = rows.findIndex((last) => at - last >= NUMBERS);
     if (row < 0) row = rows.length;
     rows[row] = at;
-    return svg("text", { x: at, y: GROUND + 18 + 11 * Math.min(row, 1), "text-anchor": "middle", "font-size": 11, fill: color("text") },
+    return svg("text", { x: at, y: GROUND + 18 + 11 * Math.min(row, 1), "text-anchor": "middle", "font-size": 11, fill: ink("text") },
       String(i + 1));
   });
 }

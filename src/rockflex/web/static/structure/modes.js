@@ -1,6 +1,6 @@
 // The modes of a structure: drawings and a table.
 
-import { color, h, number, svg, tableOf } from "../dom.js";
+import { h, ink, number, svg, tableOf } from "../dom.js";
 
 const [WIDTH, HEIGHT] = [110, 240];
 const SWAY = 38; // px
@@ -28,12 +28,12 @@ function picture(view, shape, n) {
   const texts = mode ? [`Mode ${n + 1}`, `T = ${number(mode.period, 3)} s`] : [];
   const name = mode ? `Mode ${n + 1}, period ${number(mode.period)} s` : "Outline of the rigid block";
   return svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": name },
-    svg("line", { x1: x(0), x2: x(0), y1: y(0), y2: y(top), stroke: color("control"), "stroke-dasharray": "4 3" }),
-    svg("line", { x1: middle - b, x2: middle + b, y1: y(0), y2: y(0), stroke: color("structure"), "stroke-width": 4 }),
-    svg("polyline", { points, fill: "none", stroke: color("c0"), "stroke-width": 2 }),
-    ...floors.map((z, i) => svg("circle", { cx: x(shape[i + 1]), cy: y(z), r: 2.6, fill: color("c0") })),
+    svg("line", { x1: x(0), x2: x(0), y1: y(0), y2: y(top), stroke: ink("control"), "stroke-dasharray": "4 3" }),
+    svg("line", { x1: middle - b, x2: middle + b, y1: y(0), y2: y(0), stroke: ink("structure"), "stroke-width": 4 }),
+    svg("polyline", { points, fill: "none", stroke: ink("c0"), "stroke-width": 2 }),
+    ...floors.map((z, i) => svg("circle", { cx: x(shape[i + 1]), cy: y(z), r: 2.6, fill: ink("c0") })),
     ...texts.map((text, line) => svg("text", {
-      x: WIDTH / 2, y: HEIGHT - 20 + 14 * line, "text-anchor": "middle", "font-size": 12, fill: color("text"),
+      x: WIDTH / 2, y: HEIGHT - 20 + 14 * line, "text-anchor": "middle", "font-size": 12, fill: ink("text"),
     }, text)));
 }
 

@@ -107,6 +107,8 @@ export default function structureTab(app) {
       view.adequacy ? h("p", { class: "answer", id: "adequacy" }, view.adequacy.reason) : "",
       view.adequacy ? h("p", { class: "hint" }, "This check uses masses and frequencies only. Impacts also excite higher modes, ",
         "which affect the base shear most: compare with MDOF-S on the Response tab.") : "",
+      view.warnings.length
+        ? h("div", { class: "warning", id: "warnings", role: "alert" }, view.warnings.map((text) => h("p", {}, text))) : "",
       pictures(view),
       view.elements.length || view.ground ? base(app.about, view) : "",
       h("dl", { class: "values" }, view.properties.map(parameter)),
