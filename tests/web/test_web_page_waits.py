@@ -10,11 +10,11 @@ pytestmark = pytest.mark.web
 
 
 class Held:
-    """Requests about structures, which wait for `release`."""
+    """Requests, about structures if nothing else is said, which wait for `release`."""
 
-    def __init__(self, page) -> None:
+    def __init__(self, page, path: str = "structure") -> None:
         self.routes, self.open = [], False
-        page.route("**/api/structure", self.take)
+        page.route(f"**/api/{path}", self.take)
 
     def take(self, route) -> None:
         if self.open:
@@ -67,3 +67,26 @@ def test_the_last_choice_of_a_ground_counts_while_the_structure_is_awaited(visit
     ground.select_option("springs")  # of a structure that cannot be built: usual numbers, to be changed
     page.wait_for_function("() => rockflexPage.state.ground !== undefined")
     assert visitor.state()["ground"]["mat_mass"] == 2e4
+
+
+@pytest.mark.parametrize("linked", [False, True])
+@pytest.mark.parametrize("keys", [False, True])
+def test_a_tab_chosen_before_the_page_knows_its_state_is_shown(visitor, linked, keys) -> None:
+    page = visitor.page
+    link = page.evaluate("location.hash") if linked else ""
+    page.goto("about:blank")
+    about = Held(page, "about")
+    page.goto(f"{visitor.url}/{link}", wait_until="commit")
+    if keys:
+        page.locator('[data-tab="structure"]').focus()
+        for _ in range(3):
+            page.keyboard.press("ArrowRight")
+        page.keyboard.press("ArrowLeft")
+    else:
+        page.locator('[data-tab="fragility"]').click()
+        page.locator('[data-tab="response"]').click()
+    about.release()
+    page.wait_for_selector('#view[data-shown="response"]')
+    assert visitor.state()["tab"] == "response"
+    page.locator('[data-tab="earthquake"]').click()  # and the next choice is not overruled
+    page.wait_for_selector('#view[data-shown="earthquake"]')

@@ -21,6 +21,7 @@ const TABS = [
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
 const made = {};
+let early = null; // the tab chosen before the state was known
 
 export const app = {
   about: null,
@@ -63,6 +64,10 @@ export const app = {
     return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, titleOf(tab)));
   },
   go(tab) {
+    if (!app.state) {
+      early = tab;
+      return;
+    }
     app.state.tab = tab;
     keep();
     show();
@@ -132,6 +137,8 @@ async function open() {
     }
   }
   app.state = state;
+  if (early) state.tab = early;
+  early = null;
   for (const [name, each] of Object.entries(made)) {
     each.close?.();
     delete made[name];
@@ -174,7 +181,7 @@ function tabs() {
     type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "view", "data-tab": name, onclick: () => app.go(name),
   }, title)));
   list.addEventListener("keydown", (event) => {
-    const now = TABS.findIndex(([name]) => name === app.state.tab);
+    const now = TABS.findIndex(([name]) => name === (app.state?.tab ?? early ?? TABS[0][0]));
     const last = TABS.length - 1;
     const to = { ArrowRight: now === last ? 0 : now + 1, ArrowLeft: now ? now - 1 : last, Home: 0, End: last }[event.key];
     if (to === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
