@@ -144,7 +144,8 @@ export function drawStrip(g, rows, at, box) {
 
 // The empty box of a readout beside a point; where it begins.
 function drawPanel(g, width, height, at, box) {
-  const left = at + width + 12 > box.x + box.w ? Math.max(at - width - 8, 1) : at + 8;
+  const least = Math.max(1, Math.min(box.x, box.x + box.w - width)); // clear of the labels beside the axis
+  const left = at + width + 12 > box.x + box.w ? Math.max(at - width - 8, least) : at + 8;
   g.globalAlpha = 0.92;
   g.fillStyle = color("bg");
   g.fillRect(left, box.y + 3, width, height);
