@@ -1,8 +1,15 @@
-"""Versions of what is installed."""
+"""Versions of what is installed, and commits of what is in a Git repository."""
 
+import os
 import platform
+import subprocess
 from collections.abc import Iterable
 from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+PATIENCE = 5.0  # s that Git may take
+CHANGES = "+changes"
 
 
 def versions_of(packages: Iterable[str]) -> dict[str, str]:
@@ -14,3 +21,40 @@ def versions_of(packages: Iterable[str]) -> dict[str, str]:
         except metadata.PackageNotFoundError:
             found[name] = "none"
     return found
+
+
+def commit_of(file: Path, *, known: bool) -> str | None:
+    """Return the commit of the Git repository that a file is in, with "+changes" if files differ from it.
+
+    Parameters
+    ----------
+    file
+        The file.
+    known
+        Whether Git must know the file: an installation below a repository of something else is no part of it. A file
+        that need not be known, and is not, counts as a change.
+
+    Returns
+    -------
+    str or None
+        Twelve digits, perhaps with "+changes"; None without Git, a repository or a commit.
+    """
+    folder = file.resolve().parent
+    tracked = _git(folder, "ls-files", "--error-unmatch", "--", file.name) is not None
+    commit = _git(folder, "rev-parse", "--short=12", "HEAD") if tracked or not known else None
+    if not commit:
+        return None
+    changed = _git(folder, "status", "--porcelain", "--untracked-files=no")
+    return f"{commit}{CHANGES}" if changed or not tracked else commit
+
+
+def _git(folder: Path, *arguments: str) -> str | None:
+    """Return what Git answers; None if it cannot. It locks nothing, and starts no program of the repository."""
+    settings = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    how: dict[str, Any] = {"cwd": folder, "env": settings | {"GIT_OPTIONAL_LOCKS": "0"}, "timeout": PATIENCE}
+    try:
+        command = ["git", "-c", "core.fsmonitor=false", *arguments]
+        done = subprocess.run(command, capture_output=True, check=True, stdin=subprocess.DEVNULL, **how)
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.decode("utf-8", "replace").strip()

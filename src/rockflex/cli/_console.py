@@ -93,19 +93,28 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
 
 
 @contextmanager
-def progress(title: str, total: int | None = None) -> Generator[Callable[[int], None], None, None]:
-    """Show a bar on stderr, if it is a terminal; the yielded function advances it by a number of steps."""
+def progress(title: str, total: int) -> Generator[Callable[[int], None]]:
+    """Show a bar on stderr, or lines if it is no terminal; the yielded function advances it by a number of steps."""
+    from rockflex.progress import bar, counter
+
+    with bar(title, transient=True) as show:
+        yield counter(lambda done, total: show(done, total, ""), total)
+
+
+@contextmanager
+def waiting(title: str) -> Generator[None]:
+    """Show on stderr that something takes time, if it is a terminal."""
     from rich.console import Console
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield lambda _: None
+        yield
         return
     from rich.progress import Progress
 
     with Progress(console=console, transient=True) as bar:
-        task = bar.add_task(title, total=total)
-        yield lambda steps: bar.advance(task, steps)
+        bar.add_task(title, total=None)
+        yield
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from rockflex._errors import SolverError
 from rockflex.cli._choices import Assumptions
-from rockflex.cli._console import progress
+from rockflex.cli._console import progress, waiting
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -138,7 +138,7 @@ def perform(batch: Batch) -> list[Run]:
 
 def warm_up(batch: Batch) -> None:
     """Load the kernels, or compile them the first time, so that the run times do not include it."""
-    with progress("Loading the kernels (compiling them, the first time)"):
+    with waiting("Loading the kernels (compiling them, the first time)"):
         for model in batch.models:
             with suppress(SolverError, WorkLimitError):
                 _friction(batch, replace(batch.case(model), free_vibration=0.0).run(batch.motions[0]))

@@ -51,6 +51,6 @@ def load_study(path: str | Path) -> Spec:
     file = path_of("path", path)
     content = read_toml(file, "study")
     try:
-        return kind_named(content.get("study")).spec()(**content).read_from(file.parent)
+        return kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
     except InputError as error:
         raise InputError(f"{file}: {error}") from error

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex._versions import versions_of
+from rockflex._versions import commit_of, versions_of
 from rockflex.parallel import core_count, map_dask
 from rockflex.progress import PartProgress, Progress, check_part_progress, telling_parts
 from rockflex.store import Part, PartMaker, StudyFolder
@@ -146,7 +146,7 @@ def fill_study(
     mine = _share_of(plan, share)
     checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
-        folder, spec.document(), plan.n_chunks, versions_of(LIBRARIES), checksums, any_version=any_version
+        folder, spec.document(), plan.n_chunks, _versions(spec), checksums, any_version=any_version
     ) as kept:
 
         def keep(_: int, part: Part) -> int:
@@ -173,6 +173,15 @@ class _PartPlan:
 
     def chunk(self, number: int) -> Part:
         return self.maker.make(number, self.plan.chunk(number))
+
+
+def _versions(spec: "Spec") -> dict[str, str]:
+    """Return the versions of the libraries, and the commits of rockflex and of the study's file where there are any."""
+    commits = {
+        "rockflex commit": commit_of(Path(__file__), known=True),
+        "study commit": None if spec.file is None else commit_of(spec.file, known=False),
+    }
+    return versions_of(LIBRARIES) | {name: commit for name, commit in commits.items() if commit is not None}
 
 
 def _loaded(study: "Spec | str | Path") -> "Spec":

@@ -3,7 +3,7 @@
 from rockflex.progress._bar import bar
 from rockflex.progress._duration import duration
 from rockflex.progress._parts import PartProgress, Progress, check_part_progress, pace, telling_parts
-from rockflex.progress._steps import ProgressChoice, telling
+from rockflex.progress._steps import ProgressChoice, counter, telling
 
 __all__ = [
     "PartProgress",
@@ -11,6 +11,7 @@ __all__ = [
     "ProgressChoice",
     "bar",
     "check_part_progress",
+    "counter",
     "duration",
     "pace",
     "telling",

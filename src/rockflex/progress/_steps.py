@@ -26,12 +26,12 @@ def telling(progress: ProgressChoice, total: int, units: str) -> Generator[Calla
         yield lambda _: None
     elif isinstance(progress, str):
         with bar(units.capitalize()) as show:
-            yield _counter(lambda done, total: show(done, total, ""), total)
+            yield counter(lambda done, total: show(done, total, ""), total)
     else:
-        yield _counter(progress, total)
+        yield counter(progress, total)
 
 
-def _counter(tell: Callable[[int, int], object], total: int) -> Callable[[int], None]:
+def counter(tell: Callable[[int, int], object], total: int) -> Callable[[int], None]:
     """Return a function that counts what is done, and tells it; it tells the start at once."""
     done = 0
     tell(done, total)

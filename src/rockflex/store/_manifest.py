@@ -16,6 +16,7 @@ from rockflex.store._spec import differences, listed, plain
 
 FORMAT = "rockflex-study-2"  # 1: without total displacements and reactions of the ground
 MANIFEST, SPEC = "manifest.json", "spec.json"
+COMMIT = " commit"  # versions whose name ends so tell where code came from, and are not compared
 MOST_PARTS = 100_000  # every part is a file, whose number has five digits
 
 
@@ -32,7 +33,7 @@ class Manifest:
     n_chunks
         Number of parts of the complete study.
     versions
-        Version of each library that the numbers depend on.
+        Version of each library that the numbers depend on; those that end in " commit" only say where code came from.
     checksums
         Checksum of each record, matrix from a file and other file that the study depends on, by name.
     created
@@ -124,13 +125,17 @@ class Manifest:
                 f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
                 f"{listed(changed)}\nUse the same files, or give another folder."
             )
-        changed = differences(self.versions, given.versions)
+        changed = differences(_compared(self.versions), _compared(given.versions))
         if changed and not any_version:
             raise InputError(
                 f"{folder} was started with other versions, whose numbers may differ in the last digits:"
                 f"{listed(changed)}\n"
                 "Install those versions, give another folder, or pass any_version=True to mix them."
             )
+
+
+def _compared(versions: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: version for name, version in versions.items() if not name.endswith(COMMIT)}
 
 
 def _part_count(n_chunks: SupportsIndex) -> int:

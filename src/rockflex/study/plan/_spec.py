@@ -56,6 +56,7 @@ class Spec(Table):
     )
 
     _folder: Path = PrivateAttr(default_factory=Path)
+    _file: Path | None = PrivateAttr(default=None)
 
     def __init__(self, **content: Any) -> None:
         try:
@@ -80,9 +81,14 @@ class Spec(Table):
         """Return the SHA-256 of the numbers in each file that a structure names, by its key in the document."""
         return {}
 
-    def read_from(self, folder: Path) -> Self:
+    @property
+    def file(self) -> Path | None:
+        """The file that the study was read from, if any."""
+        return self._file
+
+    def read_from(self, folder: Path, file: Path | None = None) -> Self:
         """Let relative paths start from a folder instead of the working directory, and return the study."""
-        self._folder = folder
+        self._folder, self._file = folder, file
         return self
 
 
