@@ -12,6 +12,7 @@ import rockflex as rf
 
 pytestmark = pytest.mark.web
 
+KINDS = {"design": "design", "fragility": "cloud"}
 NASTY = b"time (s),<img src=x onerror=alert(1)> (g)\n0,0\n"
 
 
@@ -114,15 +115,15 @@ def test_it_is_a_suite_of_the_fragility_and_design_tabs(visitor, folder, frame) 
     give(visitor, folder)
     for tab in ("design", "fragility"):
         visitor.tab(tab)
-        assert page.locator('[data-file="records"]').is_hidden()
+        assert page.locator(f'[data-file="{KINDS[tab]}-records"]').is_hidden()
         page.get_by_label("your folder").check()
         page.get_by_label("far-field", exact=True).uncheck()
-        assert visitor.state()[{"fragility": "cloud"}.get(tab, tab)]["suites"] == ["given"]
+        assert visitor.state()[KINDS[tab]]["suites"] == ["given"]
     visitor.fill("cloud.scales", "1 2 3 4 5")
     visitor.run_study()
     assert page.locator("#status").inner_text().startswith("Done: 15 runs.")
     with page.expect_download() as waiting:
-        page.locator('[data-file="records"]').click()
+        page.locator('[data-file="cloud-records"]').click()
     with zipfile.ZipFile(waiting.value.path()) as archive:
         assert set(archive.namelist()) == {"RSN7_TEST000.csv", "RSN7_TEST090.csv", "alone.csv", "_records.csv"}
     assert json.loads(json.dumps(visitor.state()))["record"]["folder"]

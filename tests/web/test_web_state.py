@@ -22,6 +22,7 @@ from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state
 from rockflex.web._structures import build, structure_view
+from rockflex.web._target_choice import TargetChoice
 
 FRAME = PRESETS[0]["structure"]
 
@@ -237,6 +238,7 @@ def test_an_old_link_still_opens() -> None:
     state = parse_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
+    content["target"] = plain(TargetChoice.model_validate({}).model_dump(exclude_none=True))
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
     assert plain(state.model_dump(exclude_none=True)) == content

@@ -38,6 +38,7 @@ from rockflex.web._response import response_view
 from rockflex.web._state import State
 from rockflex.web._structures import build, structure_view
 from rockflex.web._studies import planned
+from rockflex.web._target_requests import target_routes
 from rockflex.web._uploads import Uploads, read_matrices, read_record, read_vertical
 
 LOOK = 0.2  # s between checks whether a visitor still waits
@@ -71,7 +72,7 @@ class Server:
             self._limiters[most] = anyio.CapacityLimiter(most)
         return await anyio.to_thread.run_sync(work, limiter=self._limiters[most])
 
-    async def _run(self, request: Request, work: Answer, most: int = THREADS) -> Any:
+    async def run(self, request: Request, work: Answer, most: int = THREADS) -> Any:
         """Compute as `answer` does, and stop its runs when the visitor no longer waits for them."""
         gone = Event()
 
@@ -128,7 +129,7 @@ class Server:
         """Response tab."""
         state, content = await question_of(request)
         asked = content.get("focus"), content.get("element")
-        return JSONResponse(await self._run(request, lambda: response_view(state, self.uploads, *asked)))
+        return JSONResponse(await self.run(request, lambda: response_view(state, self.uploads, *asked)))
 
     async def upload(self, request: Request) -> Response:
         """A record from an uploaded file, or the vertical component of the record `under`; its name is in the query."""
@@ -157,7 +158,7 @@ class Server:
         """A file of the results on the page."""
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self._run(request, lambda: download(state, what, self.uploads), WRITTEN))
+        return file_answer(*await self.run(request, lambda: download(state, what, self.uploads), WRITTEN))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
@@ -224,6 +225,7 @@ def create(host: str) -> Starlette:
         Route("/api/response", server.response, methods=["POST"]),
         Route("/api/upload", server.upload, methods=["POST"]),
         *folder_routes(server.answer, server.uploads.folders),
+        *target_routes(server.run, server.uploads),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/download/{what}", server.download, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),

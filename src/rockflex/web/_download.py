@@ -5,7 +5,6 @@ import io
 import math
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import tomli_w
@@ -22,8 +21,10 @@ from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._report import run_report
 from rockflex.web._response import check_energy, responses
 from rockflex.web._script import response_script
+from rockflex.web._selection_files import SELECTION_FILES
 from rockflex.web._state import State
 from rockflex.web._studies import StudyPage
+from rockflex.web._svg import svg
 from rockflex.web._uploads import Uploads, clean_name
 
 KINDS_OF_FILES = {
@@ -47,8 +48,8 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
         The state of the page.
     what
         ``"report"``, ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``,
-        ``"records"``, ``"study"``, ``"structure"``, ``"python"``, and ``"cloud-study"``, ``"cloud-python"``,
-        ``"design-study"``, ``"design-python"``.
+        ``"records"``, ``"study"``, ``"structure"``, ``"python"``, those of `SELECTION_FILES`, and ``"cloud-study"``,
+        ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``, ``"design-records"``.
     uploads
         Records of visitors.
 
@@ -63,14 +64,6 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     name, content = maker(state, uploads)
     data = content if isinstance(content, bytes) else content.encode()
     return name, KINDS_OF_FILES[Path(name).suffix], data
-
-
-def svg(figure: Any) -> bytes:
-    """Return a figure as SVG."""
-    from rockflex.plot import save_figure
-
-    with TemporaryDirectory() as folder:
-        return save_figure(figure, Path(folder) / "figure.svg").read_bytes()
 
 
 def _figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
@@ -199,7 +192,7 @@ def _python(state: State, uploads: Uploads) -> tuple[str, str]:
     return "response.py", response_script(state, name)
 
 
-def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str]] | None:
+def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str | bytes]] | None:
     """What makes the file or the program of a study, such as "cloud-study" or "design-python"; None if nothing does."""
     kind, _, form = what.partition("-")
     page = PAGES.get(kind)
@@ -215,7 +208,10 @@ def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str]] | Non
     def python(state: State, uploads: Uploads) -> tuple[str, str]:
         return f"{kind}.py", page.script(state, page.study(state, uploads))
 
-    return {"study": toml, "python": python}.get(form)
+    def records(state: State, uploads: Uploads) -> tuple[str, bytes]:
+        return f"{FOLDER}.zip", packed_records(page.study(state, uploads).records.motions)
+
+    return {"study": toml, "python": python, "records": records}.get(form)
 
 
 def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str, str, bytes]:
@@ -232,7 +228,7 @@ def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str,
         return f"{page.figure_name}.svg", "image/svg+xml", svg(page.figure(job, state))
 
 
-_MAKERS: dict[str, Any] = {
+_MAKERS: dict[str, Any] = SELECTION_FILES | {
     "figure": _figure,
     "energy": _energy,
     "report": run_report,

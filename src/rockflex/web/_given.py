@@ -8,11 +8,12 @@ from pydantic import PrivateAttr
 
 from rockflex.motion import GroundMotion, Suite, load_suite
 from rockflex.study.plan import Records
-from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._state import State
 from rockflex.web._uploads import Uploads
 
 GIVEN = "given"  # stands for the visitor's folder among the names of suites
+CHOSEN = "chosen"  # and this for the records chosen for the target spectrum
+OWN = (GIVEN, CHOSEN)
 FOLDER = "records"  # of a study file, next to it
 HEAD = f"# Unpack the records, which the page saves as {FOLDER}.zip, into the folder {FOLDER} next to this file.\n"
 
@@ -21,6 +22,11 @@ class GivenRecords(Records):
     """Records of suites, and motions in memory, which a study file takes from a folder."""
 
     _motions: tuple[GroundMotion, ...] = PrivateAttr(())
+
+    @property
+    def motions(self) -> tuple[GroundMotion, ...]:
+        """The motions in memory."""
+        return self._motions
 
     @classmethod
     def of(cls, suites: Sequence[str], motions: Sequence[GroundMotion]) -> "GivenRecords":
@@ -39,22 +45,6 @@ class GivenRecords(Records):
             If a suite is unknown, or two records have the same name.
         """
         return Suite([*(motion for name in self.suites for motion in load_suite(name)), *self._motions])
-
-
-def records_of(state: State, names: Sequence[str], uploads: Uploads, path: str) -> GivenRecords:
-    """Return the records of the suites with these names, of which `GIVEN` is the visitor's folder.
-
-    Raises
-    ------
-    Refusal
-        If a suite is unknown, or the server does not have the folder.
-    """
-    try:
-        motions = given_suite(state, uploads) if GIVEN in names else []
-    except Refusal as error:  # the field of the folder is on another tab
-        raise Refusal({path: next(iter(error.errors.values()))}, error.status) from error
-    with refusing(path):
-        return GivenRecords.of([name for name in names if name != GIVEN], motions)
 
 
 def given_suite(state: State, uploads: Uploads) -> Suite:

@@ -15,7 +15,7 @@ from rockflex.study._ground_table import BedTable, GroundTable, SpringsTable
 from rockflex.study._yielding import yielding
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
-from rockflex.web._given import FOLDER, GIVEN
+from rockflex.web._given import FOLDER, OWN
 from rockflex.web._limit_states import ROTATION
 from rockflex.web._records import PULSES
 from rockflex.web._state import PulseChoice, State
@@ -165,7 +165,7 @@ def _program(state: State, motions: list[str], lines: list[str], *, yields: bool
 
 
 def _motions(suites: Sequence[str]) -> str:
-    embedded = [f"list(rf.load_suite({name!r}))" for name in suites if name != GIVEN]
+    embedded = [f"list(rf.load_suite({name!r}))" for name in suites if name not in OWN]
     if len(embedded) == len(suites):
         return f"motions = {' + '.join(embedded)}"
     note = "# unpacked from the file that the page saves: Records (ZIP)"

@@ -16,6 +16,7 @@ from rockflex.web._limit_states import DesignLimit, LimitName
 from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
 from rockflex.web._measures import MeasureName, SameForAll
 from rockflex.web._refusal import Refusal, refusing
+from rockflex.web._target_choice import TargetChoice
 
 Name = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 Scale = Annotated[float, Field(ge=0.01, le=20.0, description="a number from 0.01 to 20")]
@@ -117,6 +118,7 @@ class State(Assumed):
     )
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
+    target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
 
     def assumed(self, labels: Sequence[str]) -> dict[str, Any]:
         """Return the impact law, the ground, and the hysteresis if one of the models yields, as keys of a study."""

@@ -9,11 +9,11 @@ from rockflex.study._yielding import yielding
 from rockflex.study.cloud import CloudPlan, CloudStudy
 from rockflex.study.design import DesignStudy
 from rockflex.study.plan import to_frame
-from rockflex.web._given import records_of
 from rockflex.web._jobs import Job
 from rockflex.web._limits import RUN, check_runs
 from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._state import State
+from rockflex.web._suites import records_of
 from rockflex.web._uploads import Uploads
 
 if TYPE_CHECKING:

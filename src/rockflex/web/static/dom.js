@@ -116,5 +116,5 @@ export function tableOf(head, rows, attributes = {}) {
 
 // A symbol with a subscript after an underscore.
 export function symbol(text) {
-  return text.split(/(_[\w,θ]+)/).map((part) => (part.startsWith("_") ? h("sub", {}, part.slice(1)) : part));
+  return text.split(/(_[\w,θαβ]+)/).map((part) => (part.startsWith("_") ? h("sub", {}, part.slice(1)) : part));
 }

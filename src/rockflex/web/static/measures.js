@@ -14,9 +14,14 @@ export const unitOf = (about, name) => named(about, name).unit;
 export const axisOf = (about, name) => named(about, name).axis;
 
 export const GIVEN = "given"; // the folder of the visitor among the suites
+export const CHOSEN = "chosen"; // and the records for the target spectrum
 
-// Suites of many records, with short names; the folder if there is one, or it is among those chosen.
-export function suitesOf({ about, state }, chosen = []) {
+// Suites of many records, with short names; the folder if there is one, or it is among those chosen; and the records for
+// the target spectrum, unless others are to be chosen for it.
+export function suitesOf({ about, state }, chosen = [], forTarget = false) {
   const many = about.suites.filter((name) => name !== "el-centro-1940").map((name) => [name, name.replace("fema-p695-", "")]);
-  return [...many, ...(state.record.folder || chosen.includes(GIVEN) ? [[GIVEN, "your folder"]] : [])];
+  const own = [];
+  if (state.record.folder || chosen.includes(GIVEN) || (forTarget && state.target.source === GIVEN)) own.push([GIVEN, "your folder"]);
+  if (!forTarget && (state.target.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, "records for the target"]);
+  return [...many, ...own];
 }

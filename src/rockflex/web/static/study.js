@@ -3,7 +3,7 @@
 import { ask, attempt, drop } from "./api.js";
 import { h, latest } from "./dom.js";
 import { box, chips, select, trouble } from "./form.js";
-import { GIVEN, suitesOf } from "./measures.js";
+import { CHOSEN, GIVEN, suitesOf } from "./measures.js";
 import { yields } from "./models.js";
 
 const SAID = {
@@ -22,8 +22,10 @@ export function assumed({ structure, impact, restitution, bouc_wen, ground }, la
 }
 
 // What determines the records of these suites.
-export function recordsOf({ record }, suites) {
-  return [suites, suites.includes(GIVEN) ? [record.folder, record.vertical] : null];
+export function recordsOf({ record, target: { shown: _, ...target } }, suites) {
+  const chosen = suites.includes(CHOSEN) ? target : null;
+  const given = suites.includes(GIVEN) || chosen?.source === GIVEN ? [record.folder, record.vertical] : null;
+  return [suites, given, chosen];
 }
 
 // Controls of the choices of a study.
@@ -78,7 +80,7 @@ export class Study {
 
   // Update the tab after a change of the state.
   refresh() {
-    this.ownRecords.hidden = !this.app.state[this.kind].suites.includes(GIVEN);
+    this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
     if (this.token) this.#watch();
     if (this.answer) this.load();
   }
@@ -90,11 +92,11 @@ export class Study {
 
   // Buttons for files: files of runs once there are any, the others at any time.
   downloads(root, ofRuns, others) {
-    const own = ["records", "Records (ZIP)"]; // of the visitor's folder
+    const own = [`${this.kind}-records`, "Records (ZIP)"]; // those that the program has not
     const names = ofRuns.map(([what]) => what);
     const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/download/${what}`);
     const buttons = this.app.downloads(root, [...ofRuns, ...others, own], path);
-    this.ownRecords = [...buttons.children].find((each) => each.dataset.file === "records");
+    this.ownRecords = [...buttons.children].find((each) => each.dataset.file === own[0]);
     this.needRuns = [...buttons.children].filter((each) => names.includes(each.dataset.file));
     for (const button of this.needRuns) button.disabled = true;
     return buttons;

@@ -5,6 +5,7 @@ import { Chart, overTime } from "../chart.js";
 import { decode, h, latest, number } from "../dom.js";
 import { folder } from "../earthquake/folder.js";
 import { records } from "../earthquake/records.js";
+import { target } from "../earthquake/target.js";
 import { uploading } from "../earthquake/upload.js";
 import { select, slider } from "../form.js";
 
@@ -19,6 +20,7 @@ const PULSE = {
   gamma: ["Oscillations", { low: 1, high: 4, step: 0.05, hint: "number of oscillations γ, 1 to 4" }],
   nu: ["Phase", { low: -3.14, high: 3.14, step: 0.01, unit: "rad", hint: "phase ν, −π to π" }],
 };
+const TASKS = [["", "Choose one ground motion"], ["target", "Choose records for a target spectrum"]];
 const HISTORIES = [
   ["acceleration", "a [m/s²]", "c0", 160],
   ["vertical", "a_v [m/s²]", "c1", 110],
@@ -62,12 +64,15 @@ export default function earthquakeTab(app) {
     h("h2", {}, "Response spectrum, 5 % damping"), spectrum.element);
   const empty = h("p", { class: "answer", hidden: true }, "");
   const results = h("div", { class: "results" }, empty, given.report, drawing);
-  const element = h("div", { class: "columns" },
-    h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      h("fieldset", {}, h("legend", {}, "Ground motion"), source, Object.values(panels),
-        h("p", { class: "error foot", role: "alert" })),
-      h("fieldset", {}, h("legend", {}, "Scale"), scale)),
-    results);
+  const chosen = target(app, () => side);
+  const single = [
+    h("fieldset", {}, h("legend", {}, "Ground motion"), source, Object.values(panels),
+      h("p", { class: "error foot", role: "alert" })),
+    h("fieldset", {}, h("legend", {}, "Scale"), scale)];
+  const task = select("task", "Task", TASKS, "", (value) => app.change({ target: { shown: value === "target" } }));
+  const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() }, task);
+  const place = h("div");
+  const element = h("div", { class: "columns" }, side, place);
   given.report.append(app.downloads(element, [["records", "Records (ZIP)"]]));
   drawing.append(app.downloads(element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
 
@@ -103,6 +108,15 @@ export default function earthquakeTab(app) {
   }
 
   function refresh() {
+    const { shown } = app.state.target;
+    task.setValue(shown ? "target" : "");
+    for (const [parent, children] of [[side, [task, ...(shown ? [chosen.form] : single)]], [place, [shown ? chosen.results : results]]])
+      if (parent.lastChild !== children.at(-1)) parent.replaceChildren(...children);
+    if (shown) chosen.refresh();
+    else refreshRecord();
+  }
+
+  function refreshRecord() {
     const now = app.state.record;
     source.setValue(now.source);
     suite.setValue(now.suite);
