@@ -199,6 +199,23 @@ def test_warnings_and_notes_are_on_the_page(tmp_path):
     assert "Note 2." in text
 
 
+def test_of_many_warnings_the_first_are_listed(tmp_path):
+    (pulled,) = runs(rf.Restrained(PIER, rf.Tendon(800e3, 20e6, yield_force=801e3)), PULSE.scaled(2.0), ["2DOF-S"])
+    assert len(pulled.warnings) == 1
+    text = read(rf.write_report([pulled] * 6, tmp_path / "r.html")).text
+    assert f"2DOF-S (4): {pulled.warnings[0]}" in text
+    assert f"F/Fy = {rounded(pulled.tendon_utilisation)} > 1" in text
+    assert "and 2 more warnings; see the responses" in text
+
+
+def test_a_rigid_block(tmp_path):
+    block = rf.rigid_block(0.2, 3.0, 20e3)
+    reader = read(rf.write_report(runs(block, PULSE, ["rigid"]), tmp_path / "r.html", structure=block))
+    assert "Rigid block under Ricker" in reader.text
+    assert reader.facts["alpha"][2] == pytest.approx(0.2)
+    assert "modes" not in reader.tables
+
+
 def test_names_that_are_markup_and_models_that_occur_twice(tmp_path):
     odd = rf.GroundMotion(PULSE.acceleration, PULSE.dt, name="<b>a_b</b> & $x$")
     found = runs(FRAME, odd, ["2DOF-S"]) + runs(FRAME, odd, ["2DOF-S"], impact=rf.Restitution(0.8))

@@ -57,7 +57,7 @@ def run_sheet(
                 mark, (0.0, 1.0), xytext=(4, -3), xycoords="axes fraction", textcoords="offset points", weight="bold",
                 va="top", zorder=6.0,
             )  # fmt: skip
-            axes.set_ylabel(axes.get_ylabel().replace(", total", "").replace(", relative", ""), fontsize=8.0)
+            axes.set_ylabel(_fitting(axes.get_ylabel(), height / len(quantities)), fontsize=8.0)
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
             panels.append(axes)
@@ -111,6 +111,11 @@ def _panels(curves: list[Curve], height: float) -> list[str]:
     while len(names) * _PANEL > height and len(names) > _LEAST and spare:
         names.remove(spare.pop(0))
     return names
+
+
+def _fitting(label: str, room: float) -> str:
+    """Return the label of an axis, without what needs more than `room` mm."""
+    return label if room > _PANEL else label.replace(", total", "").replace(", relative", "")
 
 
 def _span(curves: list[Curve]) -> tuple[float, float]:

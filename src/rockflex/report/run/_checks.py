@@ -144,14 +144,15 @@ def _power(value: float) -> str:
     return "0" if value == 0.0 else f"10^{math.ceil(math.log10(value))}".replace("-", "−")
 
 
-def legend(friction: float | None, *, omitted: bool) -> list[str]:
-    """Return what the columns mean, in sentences."""
+def legend(friction: float | None, *, slides: bool, stays: bool, omitted: bool) -> list[str]:
+    """Return what the columns mean, in sentences; `slides` and `stays` tell whether some base can slide, or cannot."""
     limit = "" if friction is None else f", to be below the μ = {friction:.4g} given"
-    lines = [
-        "Overturning: nominal limit 0.7 α over θ_max.",
-        f"Friction: largest |ΣF_x|/N without the {IMPACT_WINDOW:g} s after each impact{limit}.",
-        "Energy balance: its largest error over the input energy.",
-    ]
+    lines = ["Overturning: nominal limit 0.7 α over θ_max."]
+    if stays:
+        lines.append(f"Friction: largest |ΣF_x|/N without the {IMPACT_WINDOW:g} s after each impact{limit}.")
+    if slides:
+        lines.append("Friction of a base that can slide: how far it does.")
+    lines.append("Energy balance: its largest error over the input energy.")
     if omitted:
         lines.append(f"{OMITTED.capitalize()}: energies and friction of a run that would take too long here.")
     return lines

@@ -80,12 +80,13 @@ def page_of(
     omitted: Collection[str] = (),
 ) -> Page:
     """Put together what a page shows; for the labels in `omitted` nothing is computed that takes long."""
-    record, kind = record_of(about), kind_of(about.structure)
+    known = about.properties if about.structure is None else about.structure
+    record, kind = record_of(about), kind_of(known)
     if title is None:
-        title = f"{kind[0].upper()}{kind[1:]} under {record.name or 'a ground motion'}"
+        title = f"{kind} under {record.name or 'a ground motion'}"
     fell = any(run.status == "overturned" for run in about.responses)
     own = [f"{FELL} The values of a run that overturned include its fall."] * fell
-    known = friction is not None and any(ground_friction(each.model) is None for each in about.histories)
+    sliding = [ground_friction(each.model) is not None for each in about.histories]
     return Page(
         title=shortened(title, LONGEST["title"]),
         date=date,
@@ -97,7 +98,7 @@ def page_of(
         elements=element_table(about),
         peaks=peak_table(about),
         checks=check_table(about, friction, omitted),
-        legend=[*own, *legend(friction if known else None, omitted=bool(omitted))],
+        legend=[*own, *legend(friction, slides=any(sliding), stays=not all(sliding), omitted=bool(omitted))],
         warnings=_few([*warnings, *_warnings(about)]),
         notes=notes,
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),

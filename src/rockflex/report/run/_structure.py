@@ -17,9 +17,9 @@ _MOST_UPLIFTED = 200  # modes, for which the uplifted ones are found at once
 
 
 def kind_of(structure: Any) -> str:
-    """Return the kind of a structure in words: "frame", "cantilever with tip mass, restrained"."""
-    if structure is None or isinstance(structure, RockingProperties):
-        return "structure given by its rocking properties"
+    """Return the kind of a structure in words: "Frame", "Cantilever with tip mass, restrained"."""
+    if isinstance(structure, RockingProperties):
+        return "Structure given by its rocking properties" if structure.n_modes else "Rigid block"
     around: list[str] = []
     while hasattr(structure, "structure"):  # restrained or eccentric
         around.append(_words(structure).lower())
