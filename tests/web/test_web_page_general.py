@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from rockflex.web import _animation
 from rockflex.web._presets import PRESETS
 
 pytestmark = pytest.mark.web
@@ -13,7 +14,8 @@ CONTROLS = "button, input, select, textarea, summary, .chart, .stage canvas"
 
 
 @pytest.mark.parametrize("tab", TABS)
-def test_downloads_of_each_tab(visitor, tab) -> None:
+def test_downloads_of_each_tab(visitor, tab, monkeypatch) -> None:
+    monkeypatch.setattr(_animation, "RATES", ((60.0, 2.0),))  # an animation of few frames
     page = visitor.page
     visitor.tab(tab)
     if tab == "design":
@@ -24,7 +26,7 @@ def test_downloads_of_each_tab(visitor, tab) -> None:
         with page.expect_download() as got:
             button.click()
         assert got.value.path().stat().st_size > 50
-        assert got.value.suggested_filename.rsplit(".")[-1] in ("svg", "html", "csv", "toml", "py")
+        assert got.value.suggested_filename.rsplit(".")[-1] in ("svg", "html", "csv", "toml", "py", "gif")
 
 
 def test_a_link_reopens_the_page(visitor, visit) -> None:

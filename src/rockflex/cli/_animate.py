@@ -99,6 +99,7 @@ def animate(
     from rockflex.cli._preparation import Asked, prepare
     from rockflex.cli._run_tables import print_failures, print_warnings
     from rockflex.cli._simulations import perform, warm_up
+    from rockflex.plot._style import literal
     from rockflex.plot.animation import animate as draw
     from rockflex.plot.animation import file_of
     from rockflex.progress import bar
@@ -122,7 +123,7 @@ def animate(
     warm_up(batch)
     runs = perform(batch)
     responses = [run.response for run in runs if run.response is not None]
-    title = None if scale == 1.0 else f"{batch.motions[0].name} × {scale:g}"
+    title = None if scale == 1.0 else f"{literal(batch.motions[0].name)} × {scale:g}"
     with naming(FLAGS), bar("Frames", transient=True) as show:
         draw(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,

@@ -8,7 +8,7 @@ from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.batch import Excitation
 from rockflex.solve.engine import Engine
 from rockflex.solve.exact.closed_form import ClosedForm
-from rockflex.solve.interruption import RunStoppedError, asked_to_stop, stopping_when
+from rockflex.solve.interruption import RunStoppedError, asked_to_stop, check_interruption, stopping_when
 
 __all__ = [
     "ClosedForm",
@@ -22,6 +22,7 @@ __all__ = [
     "Work",
     "WorkLimitError",
     "asked_to_stop",
+    "check_interruption",
     "pace_of",
     "preparing",
     "stopping_when",

@@ -12,6 +12,7 @@ import tomli_w
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
+from rockflex.web._animation import animation
 from rockflex.web._given import FOLDER, HEAD, given_suite
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
@@ -30,6 +31,7 @@ from rockflex.web._uploads import Uploads, clean_name
 KINDS_OF_FILES = {
     ".zip": "application/zip",
     ".svg": "image/svg+xml",
+    ".gif": "image/gif",
     ".html": "text/html",
     ".csv": "text/csv",
     ".toml": "application/toml",
@@ -47,9 +49,9 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     state
         The state of the page.
     what
-        ``"report"``, ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``, ``"record"``,
-        ``"records"``, ``"study"``, ``"structure"``, ``"python"``, those of `SELECTION_FILES`, and ``"cloud-study"``,
-        ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``, ``"design-records"``.
+        ``"report"``, ``"figure"``, ``"animation"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``,
+        ``"record"``, ``"records"``, ``"study"``, ``"structure"``, ``"python"``, those of `SELECTION_FILES`, and
+        ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``, ``"design-records"``.
     uploads
         Records of visitors.
 
@@ -230,6 +232,7 @@ def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str,
 
 _MAKERS: dict[str, Any] = SELECTION_FILES | {
     "figure": _figure,
+    "animation": animation,
     "energy": _energy,
     "report": run_report,
     "modes": _modes,

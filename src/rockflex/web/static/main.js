@@ -18,6 +18,7 @@ const TABS = [
     "Find how wide the base must be to meet a target probability, with and without a tendon."],
 ];
 
+const SLOW = 400; // ms after which a button says that it works
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
 const made = {};
@@ -51,8 +52,11 @@ export const app = {
   },
   // Buttons that fetch files.
   downloads(root, files, path = (what) => `/api/download/${what}`) {
-    const button = ([what, label]) =>
-      h("button", { type: "button", "data-file": what, onclick: () => app.download(path(what), root) }, label);
+    const button = ([what, label]) => {
+      const run = () => once(one, () => app.download(path(what), root));
+      const one = h("button", { type: "button", "data-file": what, onclick: run }, label);
+      return one;
+    };
     return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"), files.map(button));
   },
   // A button to another tab, below the results.
@@ -73,6 +77,21 @@ export const app = {
     show();
   },
 };
+
+// Do the work of a button once at a time; the button says so where it takes long.
+async function once(button, work) {
+  if (button.ariaBusy === "true") return;
+  const label = button.textContent;
+  button.ariaBusy = "true";
+  const slow = setTimeout(() => (button.textContent = `${label} …`), SLOW);
+  try {
+    await work();
+  } finally {
+    clearTimeout(slow);
+    button.ariaBusy = "false";
+    button.textContent = label;
+  }
+}
 
 const titleOf = (tab) => TABS.find(([name]) => name === tab)[1];
 const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);

@@ -31,7 +31,8 @@ const DISPLACEMENTS = [
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge"];
 const OTHERS = ["t", "uplifted", "points", "element_force", "element_elongation", "heave"];
 const FILES = [
-  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["energy", "Energy (SVG)"], ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
+  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["energy", "Energy (SVG)"],
+  ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
   ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
 ];
 
