@@ -51,7 +51,8 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     what
         ``"report"``, ``"figure"``, ``"animation"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``,
         ``"record"``, ``"records"``, ``"study"``, ``"structure"``, ``"python"``, those of `SELECTION_FILES`, and
-        ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``, ``"design-records"``.
+        ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``,
+        ``"design-records"``.
     uploads
         Records of visitors.
 
