@@ -14,6 +14,7 @@ from rockflex.study._subjects import Models, Motions, Structures
 from rockflex.study.plan._bench import Bench, bench_of
 from rockflex.study.plan._chunked import run_plan
 from rockflex.study.plan._cross import CrossPlan
+from rockflex.study.plan._demands import Demands
 from rockflex.study.plan._spec import StructuresSpec
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ def run_cloud(
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
+    demands: Demands | None = None,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale, with intensity measures.
 
@@ -115,6 +117,9 @@ def run_cloud(
     progress
         ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function ``progress(done, total)``
         of the runs that are done and of all, called here, first with 0. What it raises ends the study.
+    demands
+        Functions that make a number of a `Response` with its history, by name: ``{"roof": lambda response:
+        abs(response.floor_acceleration[:, -1]).max()}``. Each is a column; what one raises ends the study.
 
     Returns
     -------
@@ -124,15 +129,15 @@ def run_cloud(
         (m), `arias` (m/s), `cav` (m/s), `pva` (m/s²; NaN without a vertical component), `sd_t1` (m) and `sa_t1` (m/s²)
         at the structure's first period and damping, `relative_pga` = pga/(g tan α) and `relative_pgv` = p pgv/(g tan α)
         with g tan α = M_r/L_0^r and p² = L_0^r g/I_θ; `status` and every scalar of `Response` by its name;
-        `nominal_limit`, the rotation in rad of `nominal_overturning`; `required_friction` if requested; `error`. A run
-        that cannot be solved has a message in `error` and no results; a run whose friction cannot be found has a
-        message and no friction.
+        `nominal_limit`, the rotation in rad of `nominal_overturning`; `required_friction` if requested; the `demands`;
+        `error`. A run that cannot be solved has a message in `error` and no results; a run whose friction cannot be
+        found has a message and no friction.
 
     Raises
     ------
     InputError
-        If a label is unknown, a sequence is empty, two motions have the same name, an argument is out of range, or
-        every run exceeds `work_limit`.
+        If a label is unknown, a sequence is empty, two motions have the same name, an argument is out of range, a
+        demand has the name of another column or returns no number, or every run exceeds `work_limit`.
 
     Examples
     --------
@@ -155,5 +160,6 @@ def run_cloud(
         friction=friction,
         work_limit=work_limit,
         ground=ground,
+        demands=demands,
     )
     return run_plan(CloudPlan(bench, given, per_chunk=64), workers, progress)

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from rockflex._checks import instance
-from rockflex._errors import InputError, SolverError
+from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
@@ -30,6 +30,7 @@ from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study._yielding import hysteresis_of
+from rockflex.study.plan._demands import Demands, checked_demands, derived
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_group
 
@@ -54,6 +55,12 @@ class Assumptions:
     friction: bool = False
     work_limit: float | None = WORK_LIMIT
     ground: GroundChoice = None
+    demands: Demands = field(default_factory=dict[str, Any])
+
+    @property
+    def history(self) -> bool:
+        """Whether runs need their history."""
+        return self.friction or bool(self.demands)
 
 
 class Bench:
@@ -97,7 +104,8 @@ class Bench:
         """Whether runs call a law or a function of the user, which may keep what it is told."""
         impact, ground = self.assumptions.impact, self.assumptions.ground
         own_law = impact is not None and type(impact) not in FIXED
-        return own_law or (callable(ground) and not isinstance(getattr(ground, "__self__", None), GroundTable))
+        own_ground = callable(ground) and not isinstance(getattr(ground, "__self__", None), GroundTable)
+        return own_law or own_ground or bool(self.assumptions.demands)
 
     @property
     def columns(self) -> Columns:
@@ -111,7 +119,7 @@ class Bench:
         }
         if self.assumptions.friction:
             found["required_friction"] = float
-        return found | {"error": str}
+        return found | dict.fromkeys(self.assumptions.demands, float) | {"error": str}
 
     def measures(self, structure: int, record: int) -> dict[str, float]:
         """Intensity measures of a record at the scale 1; computed once."""
@@ -148,13 +156,16 @@ class Bench:
             return [{"error": case} for _ in runs]
         scaled = [(self.motions[record], scale) for record, scale in runs]
         limit = {"nominal_limit": case.model.properties.nominal_overturning_rotation}
-        if not self.assumptions.friction:
+        if not self.assumptions.history:
             return [row if "error" in row else row | limit for row in peaks_of(case, scaled).rows()]
         found = [case.attempt(*each) for each in scaled]
         return [
-            results_of(each) | limit | _friction(each) if isinstance(each, Response) else {"error": str(each)}
+            results_of(each) | limit | self._derived(each) if isinstance(each, Response) else {"error": str(each)}
             for each in found
         ]
+
+    def _derived(self, response: Response) -> Row:
+        return derived(response, self.assumptions.demands, friction=self.assumptions.friction)
 
     def rehearse(self) -> None:
         """Run the beginning of a record with each model of the first structure, which compiles the kernels."""
@@ -165,8 +176,8 @@ class Bench:
             case = self._case(0, model)
             if isinstance(case, Case):
                 found = case.attempt(brief)
-                if self.assumptions.friction and isinstance(found, Response):
-                    _friction(found)
+                if isinstance(found, Response):
+                    derived(found, {}, friction=self.assumptions.friction)
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
@@ -203,16 +214,9 @@ class Bench:
             ground = ground_under(properties, given.ground)
             tied = given.models[model].of(properties, given.impact, self._yielding[model], ground)
             many = len(self.structures) >= MANY
-            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.friction, many=many)
+            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.history, many=many)
         except InputError as error:
             return str(error)
-
-
-def _friction(response: Response) -> Row:
-    try:
-        return {"required_friction": response.required_friction}
-    except (SolverError, InputError) as error:
-        return {"error": f"No required friction: {error}"}
 
 
 def check_different(name: str, values: Sequence[str]) -> None:
@@ -263,6 +267,7 @@ def bench_of(
     friction: bool = False,
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
+    demands: Demands | None = None,
 ) -> Bench:
     """Check the arguments of a study in Python and return its bench; structures without names are "S1", "S2", ...
 
@@ -281,4 +286,6 @@ def bench_of(
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
     named = {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
     assumptions = Assumptions(chosen, free, impact, bouc_wen, friction, work_limit_of(work_limit), ground)
-    return Bench(named, suite, assumptions)
+    bench = Bench(named, suite, assumptions)
+    own = checked_demands(demands, bench.columns)
+    return Bench(named, suite, replace(assumptions, demands=own)) if own else bench
