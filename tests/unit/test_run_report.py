@@ -11,6 +11,7 @@ import pytest
 
 import rockflex as rf
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
+from rockflex.report.run import _checks
 from rockflex.report.run._numbers import rounded
 
 MODELS = ("2DOF-S", "MDOF-S", "fixed")
@@ -179,6 +180,17 @@ def test_a_page_of_elements_springs_and_slip(tmp_path):
     head, cells = reader.tables["peaks"]
     assert {"slipmm", "edge up"} & {cell[0].split("[")[0] for cell in head}
     assert {name: value for _, name, value in cells}["max_edge_settlement"] == found[0].max_edge_settlement
+
+
+def test_what_would_take_minutes_is_left_out(tmp_path, monkeypatch):
+    found = runs(HELD, PULSE, ["2DOF-S"], ground=rf.Ground(springs=SPRINGS.springs, base_inertia=5e5))
+    text = read(rf.write_report(found, tmp_path / "r.html")).text
+    assert "not computed" not in text
+    monkeypatch.setattr(_checks, "MOST", found[0].time.size * SPRINGS.springs.n - 1)
+    monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
+    reader = read(rf.write_report(found, tmp_path / "r.html"))
+    assert [cell[0] for cell in reader.tables["checks"][1]].count("not computed") == 2
+    assert "Not computed: energies and friction of a run that would take too long here." in reader.text
 
 
 def test_a_run_that_overturns_says_so(tmp_path):

@@ -15,6 +15,7 @@ from rockflex.response import IMPACT_WINDOW, History, Response
 
 BALANCED = 1e-6  # of the input energy
 OMITTED = "not computed"
+MOST = 300_000  # states times springs under the base: energies and friction of more take minutes
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,15 @@ class Run:
     friction: float | None
     long: bool
     """Whether to compute what takes long: its energies and the friction that it requires."""
+
+
+def long_runs(about: Given) -> set[str]:
+    """Return the labels of runs whose energies and friction would take minutes: those on many stiff springs."""
+    return {
+        label
+        for label, history in zip(about.labels, about.histories, strict=True)
+        if isinstance(history.model, SpringModel) and history.time.size * history.model.springs.n > MOST
+    }
 
 
 def check_table(about: Given, friction: float | None, omitted: Collection[str]) -> Table:

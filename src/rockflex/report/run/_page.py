@@ -15,7 +15,7 @@ from rockflex._shown import shortened
 from rockflex._versions import versions_of
 from rockflex.report._svg import inline
 from rockflex.report.run._base import assumption_lines, element_table
-from rockflex.report.run._checks import check_table, ground_friction, legend
+from rockflex.report.run._checks import check_table, ground_friction, legend, long_runs
 from rockflex.report.run._given import Given
 from rockflex.report.run._peaks import FELL, peak_table
 from rockflex.report.run._record import Record, record_of
@@ -80,6 +80,7 @@ def page_of(
     omitted: Collection[str] = (),
 ) -> Page:
     """Put together what a page shows; for the labels in `omitted` nothing is computed that takes long."""
+    left_out = long_runs(about).union(omitted)
     known = about.properties if about.structure is None else about.structure
     record, kind = record_of(about), kind_of(known)
     if title is None:
@@ -97,8 +98,8 @@ def page_of(
         lines=assumption_lines(about),
         elements=element_table(about),
         peaks=peak_table(about),
-        checks=check_table(about, friction, omitted),
-        legend=[*own, *legend(friction, slides=any(sliding), stays=not all(sliding), omitted=bool(omitted))],
+        checks=check_table(about, friction, left_out),
+        legend=[*own, *legend(friction, slides=any(sliding), stays=not all(sliding), omitted=bool(left_out))],
         warnings=_few([*warnings, *_warnings(about)]),
         notes=notes,
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),

@@ -36,7 +36,8 @@ def write_report(
 
     The checks compare the rotation with the nominal limit of overturning, 0.7 atan(B/h*_1) (Section 3.3), the vertical
     reaction with zero, the friction that each run requires (Eqs. 20-22) with `friction`, the forces of tendons with
-    those at which they yield, and the balance of the energies with zero.
+    those at which they yield, and the balance of the energies with zero. Friction and energies of a run on many stiff
+    springs would take minutes; they are left out, and the page says so.
 
     Parameters
     ----------
