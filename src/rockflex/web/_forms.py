@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from rockflex._json import plain
-from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, Table, inner_table, key_of, parts
+from rockflex.structure.file import ELEMENTS, KINDS, PartTable, StructureEntry, Table, inner_table, key_of, parts
 from rockflex.study._ground_table import GroundTable
 from rockflex.study.assumed import BoucWenTable
 from rockflex.web._presets import PRESETS
@@ -22,6 +22,7 @@ def forms() -> dict[str, Any]:
             "elements": {name: {"title": table.title, "fields": _fields(table)} for name, table in ELEMENTS.items()},
             "bouc_wen": _fields(BoucWenTable),
             "ground": _fields(GroundTable),
+            "section_part": _fields(PartTable),
             "presets": PRESETS,
         }
     )

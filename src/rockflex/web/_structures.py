@@ -17,6 +17,7 @@ from rockflex.structure.file import Structure, StructureEntry
 from rockflex.study._ground_table import GroundTable
 from rockflex.web._ground import ground_of, ground_view
 from rockflex.web._refusal import Refusal, refusing
+from rockflex.web._sections import section_facts
 
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
@@ -110,6 +111,7 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
             "ground": ground_view(ground_of(table, p), p),
             "shapes": built.shapes[:, :SHOWN].T,
             "properties": _parameters(p),
+            "section": section_facts(entry.table),
             "warnings": structure_warnings(built.structure),
             "modes": modes,
             "adequacy": judged,

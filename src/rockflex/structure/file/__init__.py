@@ -3,6 +3,7 @@
 from rockflex.structure.file._element_tables import ELEMENTS, ElementTable, TendonTable
 from rockflex.structure.file._entry import KINDS, StructureEntry
 from rockflex.structure.file._read import build_in, read_structure, read_toml
+from rockflex.structure.file._section_table import PartTable
 from rockflex.structure.file._table import (
     Table,
     checked,
@@ -21,6 +22,7 @@ __all__ = [
     "KINDS",
     "Built",
     "ElementTable",
+    "PartTable",
     "Structure",
     "StructureEntry",
     "StructureTable",

@@ -33,5 +33,4 @@ export const ELEMENTS = {
 // Tables nested in that of a structure, by name.
 export const INNER = {
   lumped_masses: (beam) => ({ heights: [beam.height], masses: [1e4] }),
-  section: () => ({ shape: "circle", diameter: 1.5, elastic_modulus: 3e10, density: 2500 }),
 };

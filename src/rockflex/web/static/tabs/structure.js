@@ -7,6 +7,7 @@ import { ground, without } from "../structure/ground.js";
 import { elements } from "../structure/elements.js";
 import { importing } from "../structure/matrices.js";
 import { pictures, table } from "../structure/modes.js";
+import { REPLACED, section } from "../structure/section.js";
 import { INNER, KINDS } from "../structure/starts.js";
 
 export default function structureTab(app) {
@@ -63,7 +64,11 @@ export default function structureTab(app) {
     preset.setValue(match < 0 ? "" : String(match));
     if (drawn) return;
     drawn = true;
-    fields.replaceChildren(...kinds[now].fields.map((spec) => entry(now, spec, structure[now])));
+    const values = structure[now];
+    const given = (spec) => !(values.section && REPLACED.includes(spec.name) && values[spec.name] === undefined);
+    const focused = fields.contains(document.activeElement) && document.activeElement.closest("[data-path]").dataset.path;
+    fields.replaceChildren(...kinds[now].fields.filter(given).map((spec) => entry(now, spec, values)));
+    if (focused) fields.querySelector(`[data-path="${CSS.escape(focused)}"]`)?.querySelector("input, select, button")?.focus();
     moved.replaceChildren(tableField("structure.eccentricity", eccentricity, structure.eccentricity, (value) => {
       const next = current();
       set(next, "eccentricity", value);
@@ -79,9 +84,24 @@ export default function structureTab(app) {
       set(next[now], spec.name, value);
       put(next);
     };
+    if (spec.name === "section") {
+      return section(app.about, path, spec, () => app.state.structure[now].section, (value, anew) => cut(now, value, anew));
+    }
     if (spec.type !== "table") return tableField(path, spec, values[spec.name], change);
     const start = () => INNER[spec.name]?.(app.state.structure[now]) ?? {};
     return tableGroup(path, spec, values[spec.name], start, change);
+  }
+
+  // Give a structure another section; without one it has the stiffness and mass of the last.
+  async function cut(now, value, anew) {
+    const facts = value ? [] : (await viewNow())?.section ?? [];
+    const next = current();
+    if (!next[now]) return;
+    const fact = (symbol, usual) => Number((facts.find((each) => each.symbol === symbol)?.value ?? usual).toPrecision(6));
+    set(next[now], "section", value);
+    if (value) for (const name of REPLACED) delete next[now][name];
+    else Object.assign(next[now], { bending_stiffness: fact("EI", 2e10), [now === "beam" ? "mass" : "mass_per_length"]: fact("m", 5000) });
+    put(next, anew);
   }
 
   const load = latest(async () => {
@@ -112,6 +132,8 @@ export default function structureTab(app) {
       pictures(view),
       view.elements.length || view.ground ? base(app.about, view) : "",
       h("dl", { class: "values" }, view.properties.map(parameter)),
+      view.section.length ? h("h2", {}, "Cross-section") : "",
+      view.section.length ? h("dl", { class: "values", id: "section" }, view.section.map(parameter)) : "",
       view.ground?.facts.length ? h("h2", {}, "Springs under the base") : "",
       view.ground?.facts.length ? h("dl", { class: "values", id: "springs" }, view.ground.facts.map(parameter)) : "",
       table(view),
