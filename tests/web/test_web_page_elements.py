@@ -116,6 +116,7 @@ def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, run) -> None:
     # The loops show the time of the animation, for another element too.
     page.get_by_label("Element for the loop").select_option("2")
     page.wait_for_function("() => rockflexStage.view().element === 2")
+    assert page.evaluate("rockflexStage.charts.element.options.yLabel") == "F_3 [kN]"
     for node in np.linspace(100, run.time.size - 100, 7).astype(int):
         time = float(run.time[node])
         if np.sum(run.time == time) > 1:
@@ -128,6 +129,9 @@ def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, run) -> None:
         assert force[:2] == pytest.approx(
             [1e3 * run.element_elongation[node, 2], 1e-3 * run.element_force[node, 2]], rel=1e-3, abs=0.02
         )
+        over = page.evaluate("() => rockflexStage.charts.element.points.map(({ x, y }) => [x, y])")
+        assert len(over) == 2
+        assert over[0] == pytest.approx([time, 1e-3 * run.element_force[node, 2]], rel=1e-3, abs=0.02)
         assert moment[0] == pytest.approx(1e3 * run.rotation[node], rel=1e-3, abs=1e-4)
         assert force[2] == moment[2] == 2  # not the fixed base
         passed = page.evaluate("t => rockflexStage.view().models[0].t.filter((each) => each <= t).length", time)
@@ -148,6 +152,7 @@ def test_a_structure_without_elements_shows_none_of_this(visitor) -> None:
     page = visitor.page
     assert page.locator("#elements").is_hidden()
     assert page.get_by_label("Element for the loop").is_hidden()
+    assert page.get_by_label("Force of an element over time").is_hidden()
     assert page.locator('#peaks [data-name="residual_rotation"]').count() == 0
     assert page.locator(".stage .legend").inner_text() == ""
 

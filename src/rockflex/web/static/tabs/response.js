@@ -21,6 +21,7 @@ const PANELS = [
   ["slip", "slip [mm]", 1000, "Slip of the base", 118],
   ["edges", "edges [mm]", 1000, "Rise of the edges", 118, EDGES],
   ["displacement", "", 1, "Displacement of the top", 118],
+  ["element", "F [kN]", 1e-3, "Force of an element", 118, [["element_force", ""]]],
   ["base_moment", "M_b [kN m]", 1e-3, "Base moment", 118],
   ["base_shear", "V_b [kN]", 1e-3, "Base shear", 134],
 ];
@@ -28,8 +29,8 @@ const DISPLACEMENTS = [
   ["total_top_displacement", "relative to the ground", "u_top total [m]"],
   ["top_displacement", "relative to the rotating base", "u_top relative [m]"],
 ];
-const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge"];
-const OTHERS = ["t", "uplifted", "points", "element_force", "element_elongation", "heave"];
+const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
+const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
   ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["energy", "Energy (SVG)"],
   ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
@@ -86,6 +87,8 @@ export default function responseTab(app) {
     const [first] = view.models;
     const falls = view.models.map((m) => m.fall_time ?? Infinity).filter(Number.isFinite);
     const spans = uplifts(first);
+    // Of the element whose loop is drawn, with its number in the drawing of the base.
+    if (view.held) charts[panels.findIndex(([name]) => name === "element")].options.yLabel = `F_${view.element + 1} [kN]`;
     panels.forEach(([, chart, parts], p) => {
       const series = view.models.flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
         x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: m.label + suffix, ...m.look,
