@@ -197,6 +197,17 @@ def test_frames_are_at_equal_steps_to_the_end():
     assert clock.hundredths.tolist() == [4] * clock.times.size
 
 
+def test_the_last_frame_of_a_fall_says_when_it_overturned(runs):
+    curve, _ = posed(runs["fallen"])
+    for rate in (7, 10, 25, 30):
+        clock = clock_of([curve], ".gif", 1.0, rate, None, None)
+        assert clock.times[-1] == runs["fallen"].end_time
+        assert (np.diff(clock.times) > 0.0).all()
+        assert np.diff(clock.times).max() <= 1.25 / rate + 1e-12
+        _, poses = posed(runs["fallen"], times=clock.times)
+        assert state_of(curve, poses, clock.times.size - 1, clock.times[-1])[0].startswith("overturned at")
+
+
 def test_the_picture_moves_as_the_response(tmp_path):
     run = rf.simulate(PIER, RECORD.scaled(2.0), "2DOF-S")  # drawn in a colour that nothing else on the left has
     file = rf.animate(run, tmp_path / "run.gif", structure=PIER, start=2.0, stop=6.0, frames_per_second=5,

@@ -47,7 +47,8 @@ def animate(
     The structures rock on their ground, each in the colour of its curve, with what holds them and the springs under
     them. Beside them, or below three and more, are their histories with a cursor. Everything is relative to the ground.
     The times during which the base of the most detailed model is uplifted are shaded; circles at the edges of a base
-    mark its impacts. What displacements were enlarged by, and the speed, stand in the picture.
+    mark its impacts. What displacements were enlarged by, and the speed, stand in the picture. The last picture stays
+    for a second.
 
     A GIF needs nothing else to be shown, and repeats. MP4 (H.264) is sharper and smaller, and needs the extra
     ``rockflex[video]``. The file is written completely or not at all; missing folders are created.

@@ -13,6 +13,7 @@ from rockflex._shown import shown
 from rockflex.plot._curves import Curve
 
 MOST_FRAMES = 20_000
+LAST = 100  # hundredths of a second for which the last frame stays: a fall must be seen before all begins anew
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
 """Frames per second that a file may have: viewers of GIF slow down what is faster."""
 
@@ -78,4 +79,5 @@ def clock_of(
     times = begin + step * np.arange(int(count * (1.0 + 1e-12)) + 1)
     if end - times[-1] > 0.25 * step:
         times = np.append(times, end)
-    return Clock(np.minimum(times, end), pace, rate)
+    times[-1] = end  # where a fall ends
+    return Clock(times, pace, rate)

@@ -10,11 +10,10 @@ from PIL import GifImagePlugin, Image
 from scipy.spatial import KDTree
 
 from rockflex._files import writing
-from rockflex.plot.animation._clock import Clock
+from rockflex.plot.animation._clock import LAST, Clock
 from rockflex.plot.animation._scene import Picture, Scene
 
 COLORS = 255  # and one that is transparent
-LAST = 100  # hundredths of a second for which the last frame stays, before the animation begins anew
 _SAMPLES = 12  # frames from which the palette is taken
 _BITS = 6  # of each of red, green and blue that the palette tells apart
 _LEVELS = (1 << _BITS) - 1

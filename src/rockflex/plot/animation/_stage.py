@@ -1,6 +1,7 @@
 """The structures that rock on their ground, side by side, and the words below them."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -16,6 +17,7 @@ from rockflex.plot.animation._words import state_of
 HEAD, FOOT, EDGE = 34.0, 40.0, 8.0  # points above, below and beside the structures
 LEAST, MOST = 14.0, 60.0  # points of a spring that is unloaded
 _FRAMES = 200  # that are looked at for the room a structure needs
+_ASIDE = 1.8  # reach to one side over that to the other, beyond which a structure is not drawn in the middle
 _INK = "#404040"
 
 
@@ -29,13 +31,15 @@ class Stage:
         width, height = np.asarray(axes.get_window_extent().size) * (72.0 / axes.figure.dpi)
         axes.set(xlim=(0.0, width), ylim=(0.0, height))
         cell = width / len(curves)
-        zoom, depth = _zoom(poses, amplification, cell - 2.0 * EDGE, height - HEAD - FOOT)
+        rooms = [_room(each, amplification) for each in poses]
+        sprung = any(each.sprung for each in poses)
+        zoom, depth = _zoom(rooms, cell - 2.0 * EDGE, height - HEAD - FOOT, sprung=sprung)
         self._bodies: list[Body] = []
         self._words: list[tuple[Artist, Artist]] = []
-        for place, (curve, each) in enumerate(zip(curves, poses, strict=True)):
+        for place, (curve, each, room) in enumerate(zip(curves, poses, rooms, strict=True)):
             middle = cell * (place + 0.5)
             _draw_ground(axes, middle - 0.5 * cell + EDGE, middle + 0.5 * cell - EDGE)
-            here = Map(middle, FOOT + (depth if each.sprung else 0.0), FOOT, zoom)
+            here = Map(middle - zoom * room.middle, FOOT + (depth if each.sprung else 0.0), FOOT, zoom)
             self._bodies.append(Body(axes, each, curve, here, amplification))
             axes.text(
                 middle, height - HEAD + 8.0, curve.label, color=curve.look.color, ha="center", weight="bold",
@@ -75,23 +79,42 @@ def _scales(amplification: float, speed: float) -> str:
     return size if speed == 1.0 else f"{size}, speed × {speed:g}"
 
 
-def _zoom(poses: Sequence[Poses], amplification: float, width: float, height: float) -> tuple[float, float]:
+class _Room(NamedTuple):
+    """What a structure needs in m: to the left and the right of its axis, upwards, and below its unloaded springs."""
+
+    left: float
+    right: float
+    up: float
+    sunk: float
+
+    @property
+    def middle(self) -> float:
+        """What stands in the middle of the cell: the axis of the masses, unless the structure falls to one side."""
+        aside = max(self.left, self.right) > _ASIDE * min(self.left, self.right)
+        return 0.5 * (self.right - self.left) if aside else 0.0
+
+    @property
+    def width(self) -> float:
+        """Width about the middle."""
+        return 2.0 * max(self.right - self.middle, self.left + self.middle)
+
+
+def _zoom(rooms: Sequence[_Room], width: float, height: float, *, sprung: bool) -> tuple[float, float]:
     """Return the points per metre with which everything stays in its cell, and those below the unloaded springs."""
-    reaches, rises, sinks = zip(*(_room(each, amplification) for each in poses), strict=True)
-    sprung = any(each.sprung for each in poses)
-    zoom = min(0.5 * width / max(reaches), height / max(rises))
+    up = max(room.up for room in rooms)
+    zoom = min(width / max(room.width for room in rooms), height / up)
     if not sprung:
         return zoom, 0.0
-    depth = min(MOST, LEAST + zoom * max(sinks))
-    return min(zoom, (height - depth) / max(rises)), depth
+    depth = min(MOST, LEAST + zoom * max(room.sunk for room in rooms))
+    return min(zoom, (height - depth) / up), depth
 
 
-def _room(poses: Poses, amplification: float) -> tuple[float, float, float]:
-    """Return how far a structure reaches to either side and upwards in m, and how far it sinks into its springs."""
+def _room(poses: Poses, amplification: float) -> _Room:
+    """Return the room that a structure needs in all frames."""
     o, frames = poses.outline, np.unique(np.linspace(0, poses.rotation.size - 1, _FRAMES).astype(int))
     extreme = [int(each) for each in (poses.rotation.argmax(), poses.rotation.argmin())]
     extreme += [int(each) for each in (poses.slip.argmax(), poses.slip.argmin())]
-    across, up = [1.4 * o.right, 1.4 * o.left, 0.12 * o.top], [1.03 * o.top]
+    across, up = [1.4 * o.right, 1.4 * o.left, 0.12 * o.top, -0.12 * o.top], [1.03 * o.top]
     for frame in [*frames, *extreme]:
         for x in (o.left, o.right):
             there, above = poses.bent(frame, x if o.kind in ("block", "frame") else 0.3 * x, amplification)
@@ -99,7 +122,7 @@ def _room(poses: Poses, amplification: float) -> tuple[float, float, float]:
             across += [*there, *beside]
             up.append(float(above.max()))
     sunk = float(np.maximum(-poses.rise, 0.0).max()) * amplification
-    return 1.05 * float(np.abs(across).max()), 1.03 * float(max(up)), sunk
+    return _Room(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
 
 
 def _draw_ground(axes: Axes, left: float, right: float) -> None:
