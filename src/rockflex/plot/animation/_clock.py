@@ -76,7 +76,7 @@ def clock_of(
             f"limit of {MOST_FRAMES}. Raise the speed, lower frames_per_second, or give start and stop.",
             field="speed",
         )
-    times: Array = begin + step * np.arange(int(count * (1.0 + 1e-12)) + 1)
+    times = np.asarray(begin + step * np.arange(int(count * (1.0 + 1e-12)) + 1), np.float64)
     if end - times[-1] > 0.25 * step:
         times = np.append(times, end)
     times[-1] = end  # where a fall ends
