@@ -94,9 +94,10 @@ def test_what_a_function_raises_ends_the_study(name):
         if done:
             raise KeyError("enough")
 
-    with pytest.raises(KeyError, match="enough"):
+    with pytest.raises(KeyError, match="enough") as raised:
         call(workers=2, progress=tell)
-    assert threading.active_count() == 1  # none goes on
+    assert threading.active_count() == 1  # none goes on, although the error keeps what was being done
+    assert raised.value.args == ("enough",)
 
 
 @each_call
