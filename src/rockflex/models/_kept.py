@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._kernel import python_kernel
@@ -14,6 +15,8 @@ from rockflex.models._observe import LINEAR, observe_all
 from rockflex.models._phase import Key
 from rockflex.models._pulls import SUMS, pulls_of
 from rockflex.models._quantities import Quantities, rows_of
+
+_MOST_CODES = 2**31  # beyond which they are numbered anew, before they overflow
 
 
 def acting_side(states: Array) -> Array:
@@ -99,8 +102,19 @@ def by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bool
 
 def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Bools, Key]]:
     """Return for each phase a mask of its states, by sides and rotations, and by the memories of the states."""
-    found, which = np.unique(model.branches_at(side, rotation, states), axis=0, return_inverse=True)
-    return [(which.ravel() == k, tuple(int(branch) for branch in key)) for k, key in enumerate(found)]
+    branches = model.branches_at(side, rotation, states).astype(np.int64)
+    _, first, which = np.unique(_codes(branches), return_index=True, return_inverse=True)
+    return [(which == k, tuple(branches[place].tolist())) for k, place in enumerate(first)]
+
+
+def _codes(rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return one number for each row of whole numbers, the same for equal rows; sorting these is fast."""
+    codes = np.zeros(rows.shape[0], dtype=np.int64)
+    for column in rows.T:
+        codes = codes * (np.ptp(column) + 1 if column.size else 1) + column - column.min(initial=0)
+        if codes.max(initial=0) > _MOST_CODES:
+            codes = np.unique(codes, return_inverse=True)[1]
+    return codes
 
 
 def pulls_at(model: RockingModel, states: Array) -> Array:

@@ -1,7 +1,9 @@
 """The friction required to prevent sliding (Silva & Stojadinović 2024, Eq. 20)."""
 
 import math
+from collections.abc import Iterator, Sequence
 from functools import cached_property
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,8 +171,7 @@ class Friction:
     @cached_property
     def _looks(self) -> Array:
         """Angles at places from 0 to 1 of every interval, shape (n_places, n_intervals)."""
-        rates = self._rates
-        return np.stack([self._angles(self._states, rates, float(place)) for place in self._places])
+        return np.stack(list(self._angles(self._states, self._rates, self._places.tolist())))
 
     @cached_property
     def _rise(self) -> Array:
@@ -188,32 +189,37 @@ class Friction:
     def _angle_at(self, k: int, place: float) -> float:
         """Return the angle at a place of one interval."""
         pair = slice(self._stretches[k], self._stretches[k] + 2)
-        return float(self._angles(self._states[pair], self._rates[pair], place)[0])
+        return float(next(self._angles(self._states[pair], self._rates[pair], [place]))[0])
 
-    def _angles(self, states: Array, rates: Array, place: float) -> Array:
-        """Return the angles at a place of every interval of positive length."""
+    def _angles(self, states: Array, rates: Array, places: Sequence[float]) -> Iterator[Array]:
+        """Yield the angles at rising places of every interval of positive length."""
         lasting = np.diff(states[:, TIME]) > 0.0
-        rows, moved = self._between(states, rates, place)
-        rows = rows[lasting]
-        if moved is None:
-            return self._angle(self._reactions_at(rows, accelerations(self._model, rows)))
-        return self._angle(self._reactions_at(rows, moved[lasting]))
+        for rows, moved in self._between(states, rates, places):
+            inside = rows[lasting]
+            known = accelerations(self._model, inside) if moved is None else moved[lasting]
+            yield self._angle(self._reactions_at(inside, known))
 
-    def _between(self, states: Array, rates: Array, place: float) -> tuple[Array, Array | None]:
-        """Return states at a place of every interval, and accelerations if these do not follow from the states.
+    def _between(self, states: Array, rates: Array, places: Sequence[float]) -> Iterator[tuple[Array, Array | None]]:
+        """Yield states at rising places of every interval, and accelerations if these do not follow from the states.
 
         The latter is the case for a hysteretic spring. Linear models are exact; otherwise a polynomial of fifth degree
         through both states is used.
         """
+        steps = np.diff(states[:, [TIME, GROUND, RISE]], axis=0)
+        exact = repeat(None) if self._linear is None else self._linear.intervals(states).along(places)
+        for place, inside in zip(places, exact, strict=False):
+            rows, bend = states[:-1].copy(), None
+            rows[:, [TIME, GROUND, RISE]] += place * steps
+            if inside is not None:
+                rows[:, HEADER:] = inside
+            if inside is None or self._model.integrated:
+                bend = self._interpolated(rows, states, rates, place)
+            yield rows, bend if inside is None else None
+
+    def _interpolated(self, rows: Array, states: Array, rates: Array, place: float) -> Array:
+        """Put polynomials into rows where the model is not linear; return the accelerations that they give."""
         layout = self._model.layout
         n = layout.modes
-        rows = states[:-1].copy()
-        rows[:, TIME] += place * np.diff(states[:, TIME])
-        rows[:, [GROUND, RISE]] += place * np.diff(states[:, [GROUND, RISE]], axis=0)
-        if self._linear:
-            rows[:, HEADER:] = self._linear.intervals(states).at(place)
-            if not self._model.integrated:
-                return rows, None
         turn, spin = HEADER + layout.rotation, HEADER + layout.spin
         where, velocity = [*range(HEADER, HEADER + n), turn], [*range(HEADER + n, HEADER + 2 * n), spin]
         value, slope, bend = quintic(states[:, where], states[:, velocity], rates, np.diff(states[:, TIME]), place)
@@ -221,7 +227,7 @@ class Friction:
         rows[np.ix_(integrated, where)] = value[integrated]
         rows[np.ix_(integrated, velocity)] = slope[integrated]
         rows[:, HEADER + layout.core : HEADER + layout.memory] = 0.0
-        return rows, bend if self._linear is None else None
+        return bend
 
     def _reactions_at(self, states: Array, rates: Array) -> Reactions:
         return (printed_reactions if self._printed else reactions)(self._model, states, rates)

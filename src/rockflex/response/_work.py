@@ -53,8 +53,8 @@ def work_between(model: RockingModel, states: Array) -> Work:
     total: Work | None = None
     linear = [TIME, GROUND, RISE]
     rows, moved = states[:-1].copy(), np.diff(states[:, linear], axis=0)
-    for place, weight in zip(places, weights, strict=True):
-        rows[:, HEADER:] = intervals.at(float(place))
+    for place, weight, inside in zip(places, weights, intervals.along(places), strict=True):
+        rows[:, HEADER:] = inside
         rows[:, linear] = states[:-1, linear] + place * moved
         power = _power(model, rows)
         parts = (weight * (span * each.T).T for each in power)

@@ -1,6 +1,7 @@
 """The motion between the states of a history: in closed form or, for other linear phases, by power series."""
 
 import math
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -21,7 +22,7 @@ from rockflex.models import (
     under_more_gravity,
 )
 from rockflex.solve.exact.basis import Basis, basis_of, with_constant
-from rockflex.solve.exact.developed import Developed, Shaking
+from rockflex.solve.exact.developed import Course, Developed, Shaking
 from rockflex.solve.exact.tables import propagate
 
 
@@ -132,6 +133,10 @@ class SeriesPart(NamedTuple):
     shaking: Shaking
     steps: Array  # (n,): lengths, s
 
+    def course(self) -> Course:
+        """Return the motion at one fraction after the other."""
+        return Course(self.motion, self.start, self.shaking, self.steps)
+
 
 class Intervals(NamedTuple):
     """The motion between adjacent nodes, each linear phase in its own coordinates or by power series."""
@@ -145,10 +150,18 @@ class Intervals(NamedTuple):
 
         In phases that are not linear these are the states at the start of the interval.
         """
-        moved = self.before.copy()
-        for part in (*self.parts, *self.series):
-            _move(moved, part.rows, part, slice(None), fraction * part.steps)
-        return moved
+        return next(self.along([fraction]))
+
+    def along(self, fractions: Iterable[float]) -> Iterator[Array]:
+        """Yield the states as `at` does, at rising fractions, with less work than one after the other."""
+        courses = [(part.rows, part.course()) for part in self.series]
+        for fraction in fractions:
+            moved = self.before.copy()
+            for part in self.parts:
+                _move(moved, part.rows, part, slice(None), fraction * part.steps)
+            for rows, course in courses:
+                moved[rows] = course.at(float(fraction))
+            yield moved
 
     def after(self, which: NDArray[np.intp], elapsed: Array) -> Array:
         """Return the states `elapsed` (m,) seconds after the start of some intervals, shape (m, S').

@@ -52,22 +52,37 @@ class Developed:
         self._more_stiffness, self._more_force = heavier.stiffness - arrow.stiffness, heavier.constant - arrow.constant
         self._fastest = drift_of(model, arrow, accelerations).fastest
 
+        n, places = self._layout.modes, self._layout.rotation + 2 * np.arange(self._layout.freedoms)
+        self._where = np.concatenate((np.arange(n), places))
+        self._speeds = np.concatenate((n + np.arange(n), places + 1))
+
     def moved(self, start: Array, shaking: Shaking, steps: Array) -> Array:
         """Return the states after steps in s, (n,), from states of shape (n, S')."""
-        parts = max(math.ceil(self._fastest * float(steps.max(initial=0.0)) / TURN), 1)
-        step, states = steps / parts, start.copy()
+        parts = self.parts_of(steps)
+        step, states = steps / parts, start
         for k in range(parts):
-            self._advance(states, shaking.later(k * step), step)
+            states = self.along(states, self.series(states, shaking.later(k * step), step), step, 1.0)
         return states
 
-    def _advance(self, states: Array, shaking: Shaking, h: Array) -> None:
+    def parts_of(self, steps: Array) -> int:
+        """Return the number of equal parts in which steps are to be taken, so that the series converge."""
+        return max(math.ceil(self._fastest * float(steps.max(initial=0.0)) / TURN), 1)
+
+    def along(self, states: Array, series: Array, h: Array, fraction: float) -> Array:
+        """Return the states at a fraction of a step h that begins with `states`, from its series."""
+        terms = np.arange(TERMS)
+        after, moving = states.copy(), h > 0.0
+        after[:, self._where] = np.tensordot(fraction**terms, series, axes=1)
+        rates = np.tensordot(terms[1:] * fraction ** terms[:-1], series[1:], axes=1)
+        after[np.ix_(np.flatnonzero(moving), self._speeds)] = rates[moving] / h[moving, None]
+        return after
+
+    def series(self, states: Array, shaking: Shaking, h: Array) -> Array:
+        """Return the terms of the modes and freedoms over a step h, shape (TERMS, n, N + b)."""
         layout, arrow = self._layout, self._arrow
         n, b = layout.modes, layout.freedoms
-        places = layout.rotation + 2 * np.arange(b)
-        modes = np.arange(n)
-        where, speeds = np.concatenate((modes, places)), np.concatenate((n + modes, places + 1))
         series = np.zeros((TERMS, states.shape[0], n + b))
-        series[0], series[1] = states[:, where], states[:, speeds] * h[:, None]
+        series[0], series[1] = states[:, self._where], states[:, self._speeds] * h[:, None]
         memory = states[:, layout.memory : layout.memory + layout.remembered]
         still = arrow.constant + memory @ arrow.recall.T
         square = (h * h)[:, None]
@@ -92,7 +107,40 @@ class Developed:
             pair = (k + 1.0) * (k + 2.0)
             series[k + 2, :, n:] = turn / pair
             series[k + 2, :, :n] = (-restoring - drive - turn @ arrow.coupling) / pair
-        states[:, where] = series.sum(axis=0)
-        rates = np.tensordot(np.arange(TERMS, dtype=np.float64), series, axes=1)
-        moving = h > 0.0
-        states[np.ix_(np.flatnonzero(moving), speeds)] = rates[moving] / h[moving, None]
+        return series
+
+
+class Course:
+    """The motion over all intervals of one phase, at one fraction of them after the other.
+
+    The series of the part of the intervals that was asked for last are kept, so that rising fractions cost one
+    development of each part.
+
+    Parameters
+    ----------
+    motion
+        The phase.
+    start
+        States at the start of the intervals, shape (n, S').
+    shaking, steps
+        The ground over the intervals, and their lengths in s, shape (n,).
+    """
+
+    def __init__(self, motion: Developed, start: Array, shaking: Shaking, steps: Array) -> None:
+        self._motion, self._start, self._shaking = motion, start, shaking
+        self._parts = motion.parts_of(steps)
+        self._step = steps / self._parts
+        self._begin(0, start)
+
+    def _begin(self, part: int, states: Array) -> None:
+        self._part, self._states = part, states
+        self._series = self._motion.series(states, self._shaking.later(part * self._step), self._step)
+
+    def at(self, fraction: float) -> Array:
+        """Return the states at a fraction of every interval, 0 to 1, shape (n, S')."""
+        wanted = min(int(fraction * self._parts), self._parts - 1)
+        if wanted < self._part:
+            self._begin(0, self._start)
+        while self._part < wanted:
+            self._begin(self._part + 1, self._motion.along(self._states, self._series, self._step, 1.0))
+        return self._motion.along(self._states, self._series, self._step, fraction * self._parts - wanted)
