@@ -26,6 +26,7 @@ from rockflex.motion import (
     load_suite,
     read_target,
 )
+from rockflex.solve import check_interruption
 from rockflex.web._given import GIVEN, given_suite
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
@@ -131,6 +132,8 @@ class Selections:
         ------
         Refusal
             If the target or the choice cannot be made, at the field at fault, or would take too long.
+        RunStoppedError
+            If nobody waits for it any more.
         """
         choice = state.target
         key = json.dumps([choice.model_dump(exclude={"shown"}), self._source(state)])
@@ -141,6 +144,7 @@ class Selections:
                 return found
         target, suite = target_of(choice), source_of(state, uploads)
         _check_work(suite, choice)
+        check_interruption()  # the visitor may have changed the choice while it waited for its turn
         with warnings.catch_warnings(record=True) as caught, _refusing("count"):
             warnings.simplefilter("always", RecordWarning)
             chosen = suite.select(target, choice.count, (choice.shortest, choice.longest), **options_of(choice))
