@@ -58,7 +58,7 @@ def test_runs_programs_and_studies_have_the_ground(made, tmp_path, monkeypatch, 
     exec(compile(response_script(state), "response.py", "exec"), space := {})
     assert made[1] == made[0]
     assert space["responses"]["2DOF-S"].max_rotation == pytest.approx(response.max_rotation, rel=1e-12)
-    study = rf.CloudStudy(**shared(state, state.cloud, ["2DOF-S"], "Cloud"))
+    study = rf.CloudStudy(**shared(state, Uploads(), "cloud", ["2DOF-S"], "Cloud"))
     assert study.ground == state.ground
 
 
