@@ -77,13 +77,13 @@ def write_whole(path: Path, content: bytes) -> Path:
 
 
 @contextmanager
-def writing(path: Path) -> Generator[Path]:
+def writing(path: Path, suffix: str = "") -> Generator[Path]:
     """Yield the path of a temporary file; what was written to it is flushed to disk and moved to `path` at the end.
 
-    The temporary file has the same suffix. On failure it is removed, and `path` is unchanged.
+    The name of the temporary file ends in `suffix`. On failure it is removed, and `path` is unchanged.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}-{uuid4().hex}{path.suffix}")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}-{uuid4().hex}{suffix}")
     try:
         yield temporary
         with temporary.open("rb+") as file:

@@ -18,7 +18,7 @@ def write_video(target: Path, scene: Scene, clock: Clock, advance: Callable[[int
     from imageio_ffmpeg import count_frames_and_secs, write_frames
 
     count, still = clock.times.size, round(0.01 * LAST * clock.frames_per_second)
-    with writing(target) as temporary:
+    with writing(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
         look: dict[str, Any] = {"pix_fmt_in": "rgb24", "pix_fmt_out": "yuv420p", "codec": "libx264"}
         look |= {
             "macro_block_size": 1,
