@@ -10,6 +10,7 @@ from rockflex.models import SpringModel
 from rockflex.report.run._base import ground_friction
 from rockflex.report.run._given import Given
 from rockflex.report.run._numbers import rounded
+from rockflex.report.run._sides import overturning_margin
 from rockflex.report.run._table import Cell, Table, shows
 from rockflex.response import IMPACT_WINDOW, History, Response
 
@@ -72,16 +73,14 @@ def _uplift(run: Run) -> Cell:
 
 
 def _overturning(about: Given, run: Run) -> Cell:
-    """Compare the rotation with the nominal limit 0.7 α of Section 3.3."""
+    """Compare the rotation to either side with the nominal limit 0.7 α of Section 3.3."""
     if not run.history.model.lifts:
         return Cell("–")
-    limit = about.properties.nominal_overturning_rotation
     if run.response.status == "overturned":
         return Cell(f"overturned at {rounded(run.response.end_time)} s", run.response.end_time, "end_time", True)
-    peak = run.response.max_rotation
-    if peak == 0.0:
+    if run.response.max_rotation == 0.0:
         return Cell("no rotation", 0.0, "max_rotation")
-    margin = limit / peak
+    margin = overturning_margin(about.properties, run.response, run.history)
     sign = "<" if run.response.nominal_overturning else "≥"
     return Cell(f"{rounded(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning)
 
@@ -154,10 +153,13 @@ def _power(value: float) -> str:
     return "0" if value == 0.0 else f"10^{math.ceil(math.log10(value))}".replace("-", "−")
 
 
-def legend(friction: float | None, *, slides: bool, stays: bool, omitted: bool) -> list[str]:
-    """Return what the columns mean, in sentences; `slides` and `stays` tell whether some base can slide, or cannot."""
+def legend(friction: float | None, *, sided: bool, slides: bool, stays: bool, omitted: bool) -> list[str]:
+    """Return what the columns mean, in sentences; `slides` and `stays` tell whether some base can slide, or cannot.
+
+    `sided` tells whether α differs between the sides.
+    """
     limit = "" if friction is None else f", to be below the μ = {friction:.4g} given"
-    lines = ["Overturning: nominal limit 0.7 α over θ_max."]
+    lines = [f"Overturning: nominal limit 0.7 α over θ_max{', to the side that is nearer to it' if sided else ''}."]
     if stays:
         lines.append(f"Friction: largest |ΣF_x|/N without the {IMPACT_WINDOW:g} s after each impact{limit}.")
     if slides:

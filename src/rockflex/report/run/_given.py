@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
@@ -63,11 +63,10 @@ def given(responses: Response | Iterable[Response], structure: Any, motion: Any)
     """
     runs = _runs(responses)
     histories = tuple(_history(place, run) for place, run in enumerate(runs))
-    names = {run.motion for run in runs}
-    if len(names) > 1 or not all(_same_ground(histories[0], each) for each in histories[1:]):
-        what = f"are of {len(names)} records, {_listed(names)}" if len(names) > 1 else "are of several scales"
+    differing = _differing([run.motion for run in runs], histories)
+    if differing:
         raise InputError(
-            f"A report is of one record at one scale, but the responses {what}. Write a report of each.",
+            f"A report is of one record at one scale, but the responses {differing}. Write a report of each.",
             field="responses",
         )
     properties = _properties(structure, histories)
@@ -114,17 +113,35 @@ def _history(place: int, run: Response) -> History:
     return run.history
 
 
-def _listed(names: Iterable[str]) -> str:
-    return ", ".join(shown(name) for name in sorted(names))
+def _differing(motions: list[str], histories: tuple[History, ...]) -> str:
+    """Return in words how the ground of some runs differs; empty if it does not."""
+    names, (first, *others) = set(motions), histories
+    if len(names) > 1:
+        return f"are of {len(names)} records, {', '.join(shown(name) for name in sorted(names))}"
+    if not all(_same_ground(first, each) for each in others):
+        return "are of several scales"
+    if not all(_same_ground(first, each, "vertical_ground_acceleration") for each in others):
+        return "differ in the vertical acceleration of the ground"
+    return ""
 
 
-def _same_ground(one: History, other: History) -> bool:
-    """Whether two runs had the same ground acceleration while both lasted."""
-    end = min(one.time[-1], other.time[-1])
-    kept = other.time <= end
-    there = np.interp(other.time[kept], one.time, one.ground_acceleration)
-    largest = float(np.max(np.abs(one.ground_acceleration)))
-    return bool(np.max(np.abs(there - other.ground_acceleration[kept]), initial=0.0) <= _CLOSE * largest)
+def _same_ground(one: History, other: History, of: str = "ground_acceleration") -> bool:
+    """Whether two runs had the same ground acceleration, or that named by `of`, while both lasted."""
+    jumps = one.time[~_single(one.time)]
+    kept = (other.time <= one.time[-1]) & _single(other.time) & ~np.isin(other.time, jumps)
+    there: Array = getattr(one, of)
+    here: Array = getattr(other, of)
+    return _equal(np.interp(other.time[kept], one.time, there), here[kept], float(np.max(np.abs(there))))
+
+
+def _equal(one: Array, other: Array, largest: float) -> bool:
+    return bool(np.max(np.abs(one - other), initial=0.0) <= _CLOSE * largest)
+
+
+def _single(time: Array) -> Bools:
+    """Return which instants have one row; where there are two, the acceleration may jump, as at the end of a record."""
+    double = np.diff(time) == 0.0
+    return ~(np.append(double, False) | np.append(False, double))
 
 
 def _properties(structure: Any, histories: tuple[History, ...]) -> RockingProperties:
@@ -173,16 +190,26 @@ def _scale(motion: Any, history: History, name: str) -> float:
             f"motion must be a GroundMotion, but {type(motion).__name__} was given. Give the one that was simulated.",
             field="motion",
         )
-    kept = history.time <= motion.duration
-    ran: Array = history.ground_acceleration[kept]
-    record = np.interp(history.time[kept], motion.time, motion.acceleration)
+    # At its end a record may jump to zero, and a run that ends there has one side of the jump only.
+    kept = (history.time < (1.0 - _CLOSE) * motion.duration) & _single(history.time)
+    time, ran = history.time[kept], history.ground_acceleration[kept]
+    record = np.interp(time, motion.time, motion.acceleration)
     size = float(record @ record)
     scale = float(record @ ran) / size if size > 0.0 else 1.0
-    largest = float(np.max(np.abs(ran), initial=0.0))
-    if np.max(np.abs(ran - scale * record), initial=0.0) > _CLOSE * largest or (size > 0.0 and scale == 0.0):
+    if not _equal(ran, scale * record, float(np.max(np.abs(ran), initial=0.0))) or (size > 0.0 and scale == 0.0):
         raise InputError(
             f"motion is not that of the responses: {shown(motion.name)} at no scale is the ground acceleration of "
             f"{shown(name)} during the run. Give the record that was simulated, scaled or not.",
+            field="motion",
+        )
+    rise = 0.0 * time if motion.vertical is None else scale * np.interp(time, motion.time, motion.vertical)
+    shook = history.vertical_ground_acceleration[kept]
+    if not _equal(shook, rise, float(np.max(np.abs(rise), initial=0.0))):
+        had, has = ("with" if np.any(each) else "without" for each in (shook, rise))
+        raise InputError(
+            f"motion is not that of the responses: they were run {had} vertical acceleration, but {shown(motion.name)} "
+            f"is {has} it{', or with another' if had == has else ''}. Give the record that was simulated, scaled or "
+            "not.",
             field="motion",
         )
     return float(f"{scale:.9g}")

@@ -83,11 +83,15 @@ def page_of(
     left_out = long_runs(about).union(omitted)
     known = about.properties if about.structure is None else about.structure
     record, kind = record_of(about), kind_of(known)
-    if title is None:
+    if not title:
         title = f"{kind} under {record.name or 'a ground motion'}"
     fell = any(run.status == "overturned" for run in about.responses)
     own = [f"{FELL} The values of a run that overturned include its fall."] * fell
     sliding = [ground_friction(each.model) is not None for each in about.histories]
+    told = legend(
+        friction, sided=about.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
+        omitted=bool(left_out),
+    )  # fmt: skip
     return Page(
         title=shortened(title, LONGEST["title"]),
         date=date,
@@ -99,7 +103,7 @@ def page_of(
         elements=element_table(about),
         peaks=peak_table(about),
         checks=check_table(about, friction, left_out),
-        legend=[*own, *legend(friction, slides=any(sliding), stays=not all(sliding), omitted=bool(left_out))],
+        legend=[*own, *told],
         warnings=_few([*warnings, *_warnings(about)]),
         notes=notes,
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),

@@ -9,7 +9,7 @@ from rockflex._constants import GRAVITY
 from rockflex.models import RockingModel
 from rockflex.report.run._given import Given
 from rockflex.report.run._numbers import moment_unit
-from rockflex.report.run._structure import slenderness_angle
+from rockflex.report.run._sides import slenderness_share
 from rockflex.report.run._table import Cell, Table, shows
 from rockflex.response import Response
 
@@ -46,7 +46,6 @@ def peak_table(about: Given) -> Table:
 def _columns(about: Given) -> list[_Column]:
     runs = about.responses
     models: list[RockingModel] = [history.model for history in about.histories]
-    alpha = slenderness_angle(about.properties)
     size, unit = moment_unit(max(run.max_base_moment for run in runs))
 
     def peak(name: str) -> Callable[[Response], float]:
@@ -59,7 +58,7 @@ def _columns(about: Given) -> list[_Column]:
             "%",
             0.01,
             "slenderness_share",
-            lambda run: None if run.status == "overturned" else run.max_rotation / alpha,
+            lambda run: _share(about, run),
         ),
         _Column("u_top relative", "mm", 1e-3, "max_top_displacement", peak("max_top_displacement")),
         _Column("u_top total", "mm", 1e-3, "max_total_top_displacement", peak("max_total_top_displacement")),
@@ -79,6 +78,12 @@ def _columns(about: Given) -> list[_Column]:
         columns.append(_Column("edge up", "mm", 1e-3, "max_edge_uplift", peak("max_edge_uplift")))
         columns.append(_Column("edge down", "mm", 1e-3, "max_edge_settlement", peak("max_edge_settlement")))
     return columns
+
+
+def _share(about: Given, run: Response) -> float | None:
+    if run.status == "overturned" or run.history is None:
+        return None
+    return slenderness_share(about.properties, run, run.history)
 
 
 def _floor_acceleration(run: Response) -> float | None:

@@ -10,6 +10,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties, UpliftedModes, uplifted_modes
 from rockflex.report.run._numbers import moment_unit
+from rockflex.report.run._sides import slenderness_angle
 from rockflex.report.run._table import Cell, Fact, Table, fact, shows
 
 LISTED = 4  # modes
@@ -44,8 +45,8 @@ def structure_facts(p: RockingProperties) -> list[Fact]:
         *top,
         fact("Half width of the base B", p.half_width, "m", "half_width"),
         *shift,
-        fact(f"Slenderness {slope}", height / pivot.arm, "", "slenderness"),
-        fact(f"α = atan({'B/h*_1' if p.n_modes else 'B/h'})", slenderness_angle(p), "mrad", "alpha", 1e-3),
+        fact(f"Slenderness {slope}", height / p.half_width, "", "slenderness"),
+        *_slenderness(p),
         fact("Inertia about a pivot I_θ", pivot.i_theta, "t m²", "i_theta", 1e3, 4),
         *held,
         fact("Resisting moment M_r", p.resisting_moment, unit, "resisting_moment", size, 4),
@@ -53,10 +54,15 @@ def structure_facts(p: RockingProperties) -> list[Fact]:
     ]
 
 
-def slenderness_angle(p: RockingProperties) -> float:
-    """Return α = atan(B/h*_1) in rad about the weaker pivot; for a rigid block h is the height of its masses."""
-    height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
-    return math.atan2(p.weaker_pivot.arm, height)
+def _slenderness(p: RockingProperties) -> list[Fact]:
+    """Return α, about both edges if the base is eccentric."""
+    height = "h*_1" if p.n_modes else "h"
+    if not p.eccentricity:
+        return [fact(f"α = atan(B/{height})", slenderness_angle(p, 1), "mrad", "alpha", 1e-3)]
+    return [
+        fact(f"α {name}, atan((B {sign} e)/{height})", slenderness_angle(p, side), "mrad", f"alpha_{name}", 1e-3)
+        for side, name, sign in ((1, "right", "−"), (-1, "left", "+"))
+    ]
 
 
 def mode_table(p: RockingProperties) -> Table | None:
