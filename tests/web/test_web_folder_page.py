@@ -73,7 +73,7 @@ def test_it_survives_a_reload_and_a_server_without_it_says_so(visitor, folder, l
     state = visitor.state()
     page.goto(visitor.url + link(state | {"record": state["record"] | {"folder": "0" * 64}}))
     page.reload()
-    assert "Give the folder again; a link does not contain it." in visitor.error("record.folder")
+    assert "Give the folder again on the Earthquake tab; a link does not contain it." in visitor.error("record.folder")
     assert page.locator("#report").is_hidden()
 
 
@@ -127,3 +127,58 @@ def test_it_is_a_suite_of_the_fragility_and_design_tabs(visitor, folder, frame) 
     with zipfile.ZipFile(waiting.value.path()) as archive:
         assert set(archive.namelist()) == {"RSN7_TEST000.csv", "RSN7_TEST090.csv", "alone.csv", "_records.csv"}
     assert json.loads(json.dumps(visitor.state()))["record"]["folder"]
+
+
+def test_on_paper_the_records_have_names_and_the_sheet_says_which_one(visitor, folder) -> None:
+    page = visitor.page
+    give(visitor, folder)
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    title = page.locator("#printed")
+    assert title.inner_text().startswith("Structure #1 of Table 1 under RSN7_TEST000 · Earthquake · ")
+    assert page.locator('#report tr[data-file="RSN7_TEST090.AT2"] td').first.inner_text() == "RSN7_TEST090"
+    assert page.locator("#report .downloads").is_hidden()
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    page.emulate_media(media="screen")
+    page.get_by_label("Task").select_option("target")
+    page.wait_for_selector("#chosen table")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert title.inner_text().startswith("Structure #1 of Table 1 under records for a target spectrum · Earthquake · ")
+
+
+def test_of_two_folders_given_quickly_the_later_one_counts(visitor, folder) -> None:
+    page = visitor.page
+    visitor.tab("earthquake")
+    page.get_by_label("Source").select_option("folder")
+    page.evaluate(
+        """() => {
+          const { fetch } = window;
+          let first = true;
+          window.fetch = async (path, ...more) => {
+            const late = first && String(path).startsWith("/api/folder?");
+            if (late) first = false;
+            const answer = await fetch(path, ...more);
+            if (late) {
+              await new Promise((resolve) => { window.letGo = resolve; });
+              window.gone = true;
+            }
+            return answer;
+          };
+        }"""
+    )
+    page.locator("#folder").set_input_files(folder)
+    page.wait_for_function("() => window.letGo")
+    page.locator("#files").set_input_files(folder / "other" / "alone.csv")
+    page.wait_for_function("() => document.querySelector('#taken').textContent.startsWith('1 records taken')")
+    page.evaluate("letGo()")
+    page.wait_for_function("() => window.gone")
+    page.wait_for_load_state("networkidle")
+    assert page.locator("#taken").inner_text().startswith("1 records taken")
+    assert visitor.state()["record"]["given"] == "alone"
+
+
+def test_a_lost_folder_is_told_on_other_tabs_in_words(visit, link, client) -> None:
+    visitor = visit(link(client.state(tab="response", record={"source": "folder"})))
+    foot = visitor.page.locator(".foot:visible").filter(has_text="Earthquake")
+    foot.wait_for()
+    assert foot.inner_text() == "Earthquake: no records were given yet. Choose a folder on the Earthquake tab first."

@@ -1,14 +1,17 @@
 """Folders of records: what the library reads is what the server has, and archives of strangers do no harm."""
 
+import asyncio
 import io
 import json
 import tomllib
 import zipfile
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import rockflex as rf
+from rockflex.web import _folder_requests
 from rockflex.web._folders import Folders, read_folder
 from rockflex.web._limits import FILE, FILES, FOLDER
 from rockflex.web._refusal import Refusal
@@ -120,7 +123,7 @@ def test_a_study_of_it_its_archive_its_file_and_its_program(client, tmp_path, fr
     assert client.wait("cloud", token["token"], state)["status"] == "done"
     table = client.download(f"/api/study/cloud/{token['token']}/table", state)[1]
     name, packed = client.download("/api/download/records", state)
-    assert name == "records.zip"
+    assert name == "your-records.zip"
     zipfile.ZipFile(io.BytesIO(packed)).extractall(tmp_path / "records")
     suite = rf.read_suite(tmp_path / "records")
     assert [motion.vertical is not None for motion in suite] == [True, True, False]
@@ -151,7 +154,7 @@ def test_a_folder_that_the_server_does_not_have(client) -> None:
     assert status == 410
     assert "Give the folder again" in answer["errors"]["record.folder"]
     errors = client.refused("/api/study/cloud", client.state(cloud={"suites": ["given"]}))
-    assert errors == {"cloud.suites": "no records were given yet. Choose a folder first."}
+    assert errors == {"cloud.suites": "no records were given yet. Choose a folder on the Earthquake tab first."}
     assert client.request("/api/folder/" + "0" * 64)[0] == 410
 
 
@@ -167,7 +170,7 @@ def test_archives_that_grow_are_refused() -> None:
     bomb = zipped({f"{i}.txt": zeros for i in range(FOLDER // len(zeros) + 1)})
     assert len(bomb) < FOLDER / 50
     assert refused(unpacked, body_of({"bomb.zip": bomb})) == (
-        "the files have more than 80 MB, which is more than the page takes."
+        "the files have more than 80 MB, which is more than the page takes. Choose fewer."
     )
     single = zipped({"a.AT2": at2(0.2).encode(), "large.txt": b"0\n" * FILE})
     files = {each.name: each for each in unpacked(body_of({"one.zip": single}))}
@@ -202,6 +205,9 @@ def test_names_in_one_folder_differ_and_are_short() -> None:
     assert len({name.casefold() for name in names}) == len(names)
     assert max(map(len, names)) < 100
     assert names[4].endswith(".AT2")
+    long = flat_names(["\N{VOLCANO}" * 75 + ".csv", "b/" + "\N{VOLCANO}" * 75 + ".csv", "c." + "\N{VOLCANO}" * 75] * 2)
+    assert len(set(long)) == 6
+    assert all(len(name.encode()) <= 255 and name.isprintable() for name in long)
     assert not any(set('<>:"|?*/\\') & set(name) for name in names)
 
 
@@ -229,3 +235,29 @@ def test_only_as_many_folders_are_kept_as_there_is_room_for(monkeypatch) -> None
         tokens.append(folders.add(read_folder(files, None, None), files, ""))
     assert "Give the folder again" in refused(folders.get, tokens[0])
     assert folders.get(tokens[2]).along[0].pga == pytest.approx(0.3 * 9.81, rel=0.01)
+
+
+def test_only_a_few_folders_are_received_at_once(monkeypatch) -> None:
+    body, inside, seen = body_of(GIVEN), [0], list[int]()
+
+    async def file_of(*_: object) -> bytes:
+        inside[0] += 1
+        await asyncio.sleep(0.01)
+        return body
+
+    async def answer(work, _most: int):
+        await asyncio.sleep(0.01)
+        found = work()
+        seen.append(inside[0])
+        inside[0] -= 1
+        return found
+
+    monkeypatch.setattr(_folder_requests, "file_of", file_of)
+    request = SimpleNamespace(query_params={})
+    give_, _ = _folder_requests.folder_routes(answer, Folders())
+
+    async def all_at_once() -> list[int]:
+        return [each.status_code for each in await asyncio.gather(*(give_.endpoint(request) for _ in range(8)))]
+
+    assert asyncio.run(all_at_once()) == [200] * 8
+    assert max(seen) == _folder_requests.ROOM

@@ -96,6 +96,7 @@ def test_a_tab_on_paper(visit, tab) -> None:
           .filter((e) => e.checkVisibility()).map((e) => e.outerHTML.slice(0, 80))"""
     )
     assert shown == []
+    assert page.get_by_text("Point at one of these charts").locator("visible=true").count() == 0
     wide = page.evaluate(
         """() => [...document.querySelectorAll("#view *")].filter((e) => e.checkVisibility()
             && e.getBoundingClientRect().right > document.querySelector("main").getBoundingClientRect().right + 1)

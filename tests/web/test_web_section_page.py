@@ -1,5 +1,7 @@
 """Cross-sections in a real Chromium: shapes, materials and parts in the place of stiffness and mass."""
 
+import time
+
 import pytest
 
 import rockflex as rf
@@ -91,3 +93,52 @@ def test_a_composite_of_a_beam(visitor) -> None:
     wait_for_facts(visitor, rf.Section.composite([(tube, 0.0), (core, 0.1)]))
     visitor.tab("response")
     page.wait_for_selector("#peaks table")
+
+
+def test_quick_choices_end_with_the_last_one(visitor) -> None:
+    page = visitor.page
+    pier(visitor)
+    shape = page.get_by_label("Cross-section")
+    page.route("**/api/structure", later)
+    for name in ("rectangle", "", "box", "", "tube"):
+        shape.select_option(name)
+    page.wait_for_load_state("networkidle")
+    wait_for_facts(visitor, rf.Section.tube(1.5, 0.2, **CONCRETE))
+    given = visitor.state()["structure"]["cantilever"]
+    assert given["section"]["shape"] == "tube"
+    assert not {"bending_stiffness", "mass_per_length"} & set(given)
+
+
+def later(route) -> None:
+    time.sleep(0.1)
+    route.continue_()
+
+
+def test_without_an_invalid_section_the_last_valid_one_counts(visitor) -> None:
+    page = visitor.page
+    pier(visitor)
+    page.get_by_label("Cross-section").select_option("box")
+    box = rf.Section.box(2.0, 2.0, 0.25, **CONCRETE)
+    wait_for_facts(visitor, box)
+    visitor.fill("structure.cantilever.section.width", "x")
+    visitor.error("structure.cantilever.section.width")
+    page.get_by_label("Cross-section").select_option("")
+    page.wait_for_selector("#section", state="detached")
+    back = visitor.state()["structure"]["cantilever"]
+    assert back["bending_stiffness"] == pytest.approx(box.bending_stiffness, rel=1e-5)
+    assert back["mass_per_length"] == pytest.approx(box.mass_per_length, rel=1e-5)
+
+
+def test_a_change_begun_in_a_field_that_is_removed_is_dropped(visitor) -> None:
+    page = visitor.page
+    pier(visitor)
+    shape = page.get_by_label("Cross-section")
+    for name in ("", "circle"):
+        shape.select_option("box")
+        wait_for_facts(visitor, rf.Section.box(2.0, 2.0, 0.25, **CONCRETE))
+        page.locator('[data-path="structure.cantilever.section.width"] input').focus()
+        page.keyboard.type("3")
+        shape.select_option(name)
+        page.wait_for_selector('[data-path="structure.cantilever.section.width"]', state="detached")
+        section = visitor.state()["structure"]["cantilever"].get("section")
+        assert section == ({"shape": "circle", "diameter": 1.5, **CONCRETE} if name else None)

@@ -107,7 +107,8 @@ def test_chosen_records_are_used_by_the_studies_and_saved(visitor) -> None:
     page = visitor.page
     open_target(visitor)
     page.locator("#use").click()
-    assert "The Fragility and Design tabs use these records" in page.locator("#used").inner_text()
+    assert "use these records, with these factors times the scale factors" in page.locator("#used").inner_text()
+    assert page.locator('[data-file="records"]').is_hidden()
     for what, name in (("selection-records", "scaled-records.zip"), ("selection-figure", "selection.svg")):
         with page.expect_download() as waiting:
             page.locator(f'[data-file="{what}"]').click()

@@ -39,6 +39,7 @@ def test_the_choice_is_that_of_the_library(client, choice, target) -> None:
     chosen = SUITE.select(target, 7, (0.2, 1.9))
     assert [each["record"] for each in view["records"]] == [names[0] for names in chosen.names]
     assert [each["factor"] for each in view["records"]] == pytest.approx(chosen.factors.tolist(), rel=1e-12)
+    assert view["target"] == (target.name or "table")
     assert view["misfit"] == pytest.approx(chosen.misfit, rel=1e-9)
     assert view["least_ratio"] == pytest.approx(chosen.least_ratio, rel=1e-9)
     periods = np.array(view["periods"])
@@ -130,12 +131,13 @@ def test_chosen_records_are_a_suite_of_the_studies(client, frame, tmp_path) -> N
     zipfile.ZipFile(io.BytesIO(packed)).extractall(tmp_path / "records")
     assert set(rf.read_suite(tmp_path / "records").names) == set(chosen.suite.names)
     both = client.state(cloud=cloud | {"suites": ["chosen", "fema-p695-far-field"]})
-    assert "occurs more than once" in client.refused("/api/study/cloud", both)["cloud"]
+    said = client.refused("/api/study/cloud", both)["cloud.suites"]
+    assert "of two of these suites: fema-p695-far-field and the records for the target. Choose one of the two." in said
     bad = client.state(cloud=cloud, target={"count": 60})
     assert "n must be at most 44" in client.refused("/api/study/cloud", bad)["cloud.suites"]
 
 
-def test_records_of_a_folder_are_chosen(client) -> None:
+def test_records_of_a_folder_are_chosen(client, tmp_path, monkeypatch) -> None:
     _, found = give(client, body_of(GIVEN))
     target = {"source": "given", "count": 2, "largest": 100.0, "smallest": 0.01}
     state = client.state(record={"folder": found["folder"], "vertical": True}, target=target)
@@ -144,7 +146,17 @@ def test_records_of_a_folder_are_chosen(client) -> None:
     packed = client.download("/api/download/selection-records", state)[1]
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
         assert len(archive.namelist()) == 3
-    assert "read_suite('records')" in client.download("/api/download/selection-python", state)[1].decode()
+    program = client.download("/api/download/selection-python", state)[1].decode()
+    name, packed = client.download("/api/download/records", state)
+    assert f"# unpacked from {name}, which the page saves: Your records (ZIP)" in program
+    monkeypatch.chdir(tmp_path)
+    zipfile.ZipFile(io.BytesIO(packed)).extractall("your-records")
+    space: dict = {}
+    exec(program, space)
+    assert [" + ".join(names) for names in space["chosen"].names] == [each["record"] for each in view["records"]]
+    both = client.state(record=state["record"], target=target, cloud={"suites": ["given", "chosen"]})
+    said = client.refused("/api/study/cloud", both)["cloud.suites"]
+    assert "your folder and the records for the target. Choose one of the two." in said
 
 
 def test_the_present_record_is_scaled_to_the_target(client, el_centro) -> None:

@@ -13,7 +13,7 @@ from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
 from rockflex.web._animation import animation
-from rockflex.web._given import FOLDER, HEAD, given_suite
+from rockflex.web._given import FOLDER, HEAD, WHOLE, given_suite
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
 from rockflex.web._record_files import packed_records, record_table
@@ -156,7 +156,7 @@ def _record(state: State, uploads: Uploads) -> tuple[str, str]:
 
 
 def _records(state: State, uploads: Uploads) -> tuple[str, bytes]:
-    return f"{FOLDER}.zip", packed_records(given_suite(state, uploads))
+    return f"{WHOLE}.zip", packed_records(given_suite(state, uploads))
 
 
 def _file_name(motion: GroundMotion) -> str:

@@ -19,9 +19,10 @@ from rockflex.web._refusal import Refusal
 from rockflex.web._unpacking import FIELD, GivenFile
 
 GONE = (
-    "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again; a "
-    "link does not contain it."
+    "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again on "
+    "the Earthquake tab; a link does not contain it."
 )
+NONE = "no records were given yet. Choose a folder on the Earthquake tab first."
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +90,7 @@ class Folders:
             if found is not None:
                 self._kept.move_to_end(token)
         if found is None:
-            raise Refusal({FIELD: GONE if token else "no records were given yet. Choose a folder first."}, 410)
+            raise Refusal({FIELD: GONE if token else NONE}, 410)
         return found
 
 

@@ -15,6 +15,7 @@ GIVEN = "given"  # stands for the visitor's folder among the names of suites
 CHOSEN = "chosen"  # and this for the records chosen for the target spectrum
 OWN = (GIVEN, CHOSEN)
 FOLDER = "records"  # of a study file, next to it
+WHOLE = "your-records"  # the folder of the visitor, as it was given
 HEAD = f"# Unpack the records, which the page saves as {FOLDER}.zip, into the folder {FOLDER} next to this file.\n"
 
 

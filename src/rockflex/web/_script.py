@@ -168,7 +168,7 @@ def _motions(suites: Sequence[str]) -> str:
     embedded = [f"list(rf.load_suite({name!r}))" for name in suites if name not in OWN]
     if len(embedded) == len(suites):
         return f"motions = {' + '.join(embedded)}"
-    note = "# unpacked from the file that the page saves: Records (ZIP)"
+    note = f"# unpacked from {FOLDER}.zip, which the page saves beside this program: Records (ZIP)"
     return f"motions = {' + '.join([*embedded, f'list(rf.read_suite({FOLDER!r}))'])}  {note}"
 
 

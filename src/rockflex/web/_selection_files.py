@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from rockflex.web._given import FOLDER, GIVEN
+from rockflex.web._given import GIVEN, WHOLE
 from rockflex.web._record_files import packed_records
 from rockflex.web._state import State
 from rockflex.web._svg import svg
@@ -37,7 +37,7 @@ def _python(state: State, _: Uploads) -> tuple[str, str]:
         name, named = "TargetSpectrum", {"damping_ratio": target.damping_ratio, "name": target.name}
         values = [target.periods.tolist(), target.sa.tolist()]
     options = {key: value for key, value in options_of(choice).items() if value is not None}
-    given = f"rf.read_suite({FOLDER!r})  # unpacked from the file that the page saves: Records (ZIP)"
+    given = f"rf.read_suite({WHOLE!r})  # unpacked from {WHOLE}.zip, which the page saves: Your records (ZIP)"
     lines = [
         "import rockflex as rf",
         "",

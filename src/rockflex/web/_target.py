@@ -105,7 +105,7 @@ def _pasted(choice: TargetChoice) -> TargetSpectrum:
         raise Refusal({"target.table": "no table was given yet: two columns, the period in s and S_a."})
     try:
         with TemporaryDirectory() as folder:
-            file = Path(folder) / "target.csv"
+            file = Path(folder) / "table.csv"  # it names the target
             file.write_text(choice.table, encoding="utf-8")
             try:
                 return read_target(file, choice.units or None, choice.damping)
@@ -219,7 +219,7 @@ def selection_view(state: State, uploads: Uploads) -> dict[str, Any]:
     table = chosen.table().astype(object)
     return plain(
         {
-            "target": target.name or "table",
+            "target": target.name,
             "damping": target.damping_ratio,
             "range": [low, high],
             "offered": len(source_of(state, uploads)),

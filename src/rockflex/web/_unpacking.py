@@ -19,6 +19,7 @@ from rockflex.web._state import parse_json
 
 FIELD = "record.folder"  # of the messages
 STEM, SUFFIX = 70, 12  # letters of a name that are kept
+BYTES = 200  # of them, because file systems count bytes: most take 255 with the suffix
 HEAD = 500_000  # bytes of the list
 FORBIDDEN = re.compile(r'[<>:"|?*\x00-\x1f\x7f-\x9f]')
 ENTRY = b"PK\x01\x02"  # before each name in the list of an archive
@@ -96,12 +97,12 @@ def _archived(path: str, content: bytes, room: int) -> Iterator[tuple[str, bytes
     """Yield the files of an archive, of which no more than `room` bytes are unpacked."""
     shown = flat_names([path])[0]
     if content.count(ENTRY) > 2 * FILES:  # opening it would take an object for each
-        raise _refused(f"{shown} holds more than {FILES} files, which is more than the page takes.")
+        raise _refused(f"{shown} holds more than {FILES} files, which is more than the page takes. Pack fewer.")
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = [each for each in archive.infolist() if not each.is_dir()]
             if len(entries) > FILES:
-                raise _refused(f"{shown} holds {len(entries)} files, but the page takes {FILES} at most.")
+                raise _refused(f"{shown} holds {len(entries)} files, but the page takes {FILES} at most. Pack fewer.")
             for each in entries:
                 inner = _checked(each.filename)
                 if each.file_size > FILE:
@@ -169,11 +170,13 @@ def _clean(part: str) -> str:
 
 def _short(name: str) -> str:
     path = PurePosixPath(name)
-    return f"{path.stem[:STEM]}{path.suffix[:SUFFIX]}"
+    stem = path.stem[:STEM].encode()[:BYTES].decode("utf-8", "ignore")
+    return f"{stem}{path.suffix[:SUFFIX]}"
 
 
 def _too_large() -> Refusal:
-    return _refused(f"the files have more than {FOLDER / 1e6:g} MB, which is more than the page takes.", 413)
+    message = f"the files have more than {FOLDER / 1e6:g} MB, which is more than the page takes. Choose fewer."
+    return _refused(message, 413)
 
 
 def _refused(message: str, status: int = 422) -> Refusal:

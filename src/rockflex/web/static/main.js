@@ -99,7 +99,7 @@ const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 // A message about a field of another tab, in words.
 function elsewhere(text) {
   const found = /^(?:structure|ground)(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
-  return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text;
+  return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text.replace(/^record(\.\w+)*: /, "Earthquake: ");
 }
 
 // Tables are merged key by key; a structure is replaced, and undefined removes a key.
@@ -129,11 +129,16 @@ function decoded(hash) {
 // What a printed sheet says of its tab; Swedish dates are those of ISO 8601.
 function heading() {
   if (!app.state) return "rockflex";
-  const { structure, record, scale, tab } = app.state;
-  const motion = { suite: record.name, pulse: "a pulse", upload: "an uploaded record" }[record.source];
+  const { structure, record, scale, tab, target } = app.state;
+  const motion = {
+    suite: record.name, pulse: "a pulse", upload: "an uploaded record", folder: record.given || "records of a folder",
+  }[record.source];
   const times = scale === 1 ? "" : ` × ${number(scale)}`;
-  const one = ["earthquake", "response"].includes(tab);
-  const under = tab === "structure" ? "" : one ? ` under ${motion}${times}` : " under many records";
+  const under = {
+    structure: "",
+    earthquake: target.shown ? " under records for a target spectrum" : ` under ${motion}${times}`,
+    response: ` under ${motion}${times}`,
+  }[tab] ?? " under many records";
   return `${structure.name || "Structure"}${under} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
 }
 

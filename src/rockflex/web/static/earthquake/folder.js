@@ -14,6 +14,7 @@ export function folder(app, complain) {
   let unit = "";
   let step = "";
   let shown = ""; // the folder of the report
+  let times = 0; // that files were given
   const said = h("p", { class: "help", id: "given", role: "status" });
   const input = (attributes) => h("input", {
     type: "file", multiple: true, ...attributes,
@@ -38,16 +39,19 @@ export function folder(app, complain) {
   }
 
   async function give(files) {
+    const mine = ++times; // the answer about files given later may come first
     const large = tooMuch(files);
     said.textContent = large ? "" : `Reading ${files.length === 1 ? files[0].name : `${files.length} files`} …`;
     complain(large ? { "record.folder": large } : {});
     if (large) return;
     await attempt(async () => {
       const found = await sendAll(`/api/folder?${new URLSearchParams({ units: unit, dt: step })}`, files, most);
+      if (mine !== times) return;
       draw(found);
       const first = found.entries.find((entry) => entry.taken);
       put({ source: "folder", folder: found.folder, given: first.name });
     }, (error) => {
+      if (mine !== times) return;
       said.textContent = "";
       complain(error.errors);
     });

@@ -3,7 +3,7 @@
 import { ask, attempt } from "../api.js";
 import { h, latest, number, symbol } from "../dom.js";
 import { box, field, fileBox, select, tableField, trouble } from "../form.js";
-import { CHOSEN, suitesOf } from "../measures.js";
+import { CHOSEN, GIVEN, suitesOf } from "../measures.js";
 import { Spectra } from "./spectra.js";
 
 const KINDS = [
@@ -88,7 +88,7 @@ export function target(app, root) {
   const used = h("p", { class: "help", id: "used", role: "status" });
   const use = h("button", { type: "button", class: "primary", id: "use", onclick: () => {
     app.change({ cloud: { suites: [CHOSEN] }, design: { suites: [CHOSEN] } });
-    used.textContent = "The Fragility and Design tabs use these records, with these factors.";
+    used.textContent = "The Fragility and Design tabs use these records, with these factors times the scale factors given there.";
   } }, "Use as the suite of the studies");
   const results = h("section", { id: "selection", hidden: true }, said, spectra.element, h("div", { class: "buttons" }, use), used);
 
@@ -134,10 +134,13 @@ export function target(app, root) {
   function refresh() {
     source.setOptions(suitesOf(app, [], true), now().source);
     for (const [name, control] of Object.entries(made)) control.hidden = !OF[now().kind].includes(name);
+    whole.hidden = now().source !== GIVEN;
     load();
   }
-  results.append(app.downloads({ querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
+  const files = app.downloads({ querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
     [["selection", "Records (CSV)"], ["selection-spectra", "Spectra (CSV)"], ["selection-figure", "Figure (SVG)"],
-      ["selection-records", "Scaled records (ZIP)"], ["selection-python", "Python lines"]]));
+      ["selection-records", "Scaled records (ZIP)"], ["selection-python", "Python lines"], ["records", "Your records (ZIP)"]]);
+  const whole = files.querySelector('[data-file="records"]'); // which the program reads
+  results.append(files);
   return { form, results, refresh };
 }

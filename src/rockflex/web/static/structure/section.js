@@ -48,7 +48,11 @@ export function section(about, path, spec, current, change) {
   const field = (place, specs, name, get, put) => {
     const found = specs.find((each) => each.name === name);
     const needed = name !== "stiffness_factor" && name !== "offset";
-    return tableField(`${place}.${name}`, { ...found, required: needed }, get()[name], (next) => put(with_(get(), name, next)));
+    const { shape: of, [name]: value } = get();
+    return tableField(`${place}.${name}`, { ...found, required: needed }, value, (next) => {
+      const table = get();
+      if (table?.shape === of) put(with_(table, name, next)); // a field that is removed reports a change begun in it
+    });
   };
 
   // A list that fills in the material.
@@ -69,7 +73,7 @@ export function section(about, path, spec, current, change) {
 
   function part(each, i) {
     const place = `${path}.parts.${i}`;
-    const get = () => current().parts[i];
+    const get = () => current()?.parts?.[i];
     const parts = (next, anew) => change({ ...current(), parts: next }, anew);
     const put = (next, anew) => parts(current().parts.with(i, next), anew);
     const own = select(`${place}.shape`, "Shape", SHAPES.slice(1, -1), each.shape, (name) => {

@@ -73,7 +73,7 @@ export default function earthquakeTab(app) {
   const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() }, task);
   const place = h("div");
   const element = h("div", { class: "columns" }, side, place);
-  given.report.append(app.downloads(element, [["records", "Records (ZIP)"]]));
+  given.report.append(app.downloads(element, [["records", "Your records (ZIP)"]]));
   drawing.append(app.downloads(element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
 
   const load = latest(async () => {

@@ -70,8 +70,8 @@ export default function responseTab(app) {
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
-      "Point at one of these charts to read all of them. ",
-      "Click or use the arrow keys to set the time; drag or press + and − to zoom; double-click or press Escape to reset."),
+      h("span", { class: "screen" }, "Point at one of these charts to read all of them. Click or use the arrow keys to set the time; ",
+        "drag or press + and − to zoom; double-click or press Escape to reset.")),
     h("h2", {}, "Largest values"), peaks, elements.table,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.chart.element), elements.chart,
       energy.element));

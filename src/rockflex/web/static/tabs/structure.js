@@ -14,10 +14,15 @@ export default function structureTab(app) {
   const { kinds, eccentricity, presets, limits } = app.about;
   const current = () => clone(app.state.structure);
   const kindOf = (structure) => Object.keys(kinds).find((key) => structure[key]) ?? "frame";
+  let cuts = 0; // changes of the cross-section; a later one replaces one that waits
+  const known = {}; // what the last section of each kind gave
   let drawn = false; // whether the form has the fields of the present structure
 
   function put(structure, redraw = false) {
-    if (redraw) drawn = false;
+    if (redraw) {
+      drawn = false;
+      cuts++;
+    }
     const rigid = "block" in structure;
     app.change({ structure, ...(rigid === "block" in app.state.structure ? {} : modelsFor(rigid)) });
   }
@@ -94,9 +99,12 @@ export default function structureTab(app) {
 
   // Give a structure another section; without one it has the stiffness and mass of the last.
   async function cut(now, value, anew) {
-    const facts = value ? [] : (await viewNow())?.section ?? [];
+    const mine = ++cuts;
+    if (!value) await viewNow();
+    if (mine !== cuts) return;
     const next = current();
     if (!next[now]) return;
+    const facts = known[now] ?? [];
     const fact = (symbol, usual) => Number((facts.find((each) => each.symbol === symbol)?.value ?? usual).toPrecision(6));
     set(next[now], "section", value);
     if (value) for (const name of REPLACED) delete next[now][name];
@@ -112,6 +120,7 @@ export default function structureTab(app) {
     results.classList.remove("stale");
     view = answer;
     viewed = asked;
+    if (answer.section.length) known[answer.kind] = answer.section;
     results.replaceChildren(...show());
   });
 
