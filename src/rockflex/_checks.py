@@ -48,7 +48,8 @@ def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None 
     field = field or name
     array = float_array(values)
     if array is None:
-        raise InputError(f"{name} must be a sequence of numbers in {unit}, but {_kind(values)} was given.", field=field)
+        measured = f" in {unit}" if unit else ""
+        raise InputError(f"{name} must be a sequence of numbers{measured}, but {_kind(values)} was given.", field=field)
     if array.ndim != 1:
         raise InputError(f"{name} must be one-dimensional, but an array of shape {array.shape} was given.", field=field)
     if not np.isfinite(array).all():

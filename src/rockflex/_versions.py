@@ -8,6 +8,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+# Programs of the repository that compare files; files that they change, such as those of LFS, may count as changed.
+FILTERS = r"^filter\..*\.(clean|process|required)$"
 PATIENCE = 5.0  # s that Git may take
 CHANGES = "+changes"
 
@@ -40,11 +42,13 @@ def commit_of(file: Path, *, known: bool) -> str | None:
         Twelve digits, perhaps with "+changes"; None without Git, a repository or a commit.
     """
     folder = file.resolve().parent
-    tracked = _git(folder, "ls-files", "--error-unmatch", "--", file.name) is not None
+    tracked = _git(folder, "--literal-pathspecs", "ls-files", "--error-unmatch", "--", file.name) is not None
     commit = _git(folder, "rev-parse", "--short=12", "HEAD") if tracked or not known else None
     if not commit:
         return None
-    changed = _git(folder, "status", "--porcelain", "--untracked-files=no")
+    names = _git(folder, "config", "--name-only", "--get-regexp", FILTERS) or ""
+    off = [part for name in names.split() for part in ("-c", f"{name}=")]
+    changed = _git(folder, *off, "status", "--porcelain", "--untracked-files=no")
     return f"{commit}{CHANGES}" if changed or not tracked else commit
 
 

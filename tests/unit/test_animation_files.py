@@ -104,9 +104,15 @@ def test_what_stops_the_drawing_leaves_the_folder_as_it_was(response, tmp_path, 
 
 def test_an_encoder_that_stops_short_is_an_error(response, tmp_path, monkeypatch):
     monkeypatch.setattr(imageio_ffmpeg, "count_frames_and_secs", lambda _: (2, 0.2))
-    with pytest.raises(OSError, match=r"Only 2 of 15 frames could be written to .*run\.mp4; is the disk full\?"):
+    with pytest.raises(rf.InputError, match=r"Only 2 of 15 frames could be written to .*run\.mp4; is the disk full\?"):
         rf.animate(response, tmp_path / "run.mp4", **SMALL, stop=0.4)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_path_that_cannot_be_written(response, tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    with pytest.raises(rf.InputError, match=r"run\.gif cannot be written \(.*\)\. Give another path\."):
+        rf.animate(response, tmp_path / "file" / "run.gif", **SMALL, stop=0.4)
 
 
 def test_progress_counts_the_frames(response, tmp_path):
@@ -146,7 +152,7 @@ def test_peaks_alone_cannot_move(tmp_path):
         ({"start": -1.0}, "but -1 and"),
         ({"stop": 1e3}, "but 0 and 1000 s were given"),
         ({"stop": "late"}, "stop must be a finite number in s, but 'late' was given"),
-        ({"amplification": 0.0}, "amplification must be a positive, finite number in times the true displacements"),
+        ({"amplification": 0.0}, "amplification must be a positive, finite number, but"),
         ({"amplification": 1e5}, "amplification must be from 0.01 to 10000, but 100000.0 was given. Leave it out"),
         ({"panels": ["sway"]}, "panels must be one or more of rotation, top_displacement, .* each once, but .*sway"),
         ({"labels": ["a", "b"]}, "labels must be a sequence of 1 strings, one per response, but 2 was given"),

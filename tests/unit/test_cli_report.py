@@ -44,6 +44,14 @@ def test_the_page_has_the_peaks_of_the_runs(tmp_path, monkeypatch):
     assert "≤ 0.4" in text or "&gt; 0.4" in text
 
 
+def test_a_page_that_cannot_be_written_does_not_cost_the_results(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    result = invoke("--model", "2DOF-S", "--report", tmp_path / "file" / "run.html")
+    assert result.exit_code == 2
+    assert "EL-CENTRO-1940-NS" in result.stdout
+    assert "Cannot write to" in result.stderr
+
+
 def test_with_out_each_has_its_own_files(tmp_path):
     page, out = tmp_path / "run.html", tmp_path / "out"
     assert invoke("--report", page, "--out", out, "--figures", "0").exit_code == 0

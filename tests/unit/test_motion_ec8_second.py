@@ -57,6 +57,8 @@ def test_default_factors(site, of_alpha, of_beta):
         ((5.0, 1.0, "E"), {}, r"site must be one of A, B, C, D, .* but 'E' was given\. For E and F, .*amplification="),
         ((5.0, 1.0), {"amplification": (1.0,)}, r"amplification must be the two positive factors F_α and F_β"),
         ((5.0, 1.0), {"amplification": (1.0, 0.0)}, r"amplification must be the two positive factors F_α and F_β"),
+        ((5.0, 1.0), {"amplification": "ab"}, "amplification must be a sequence of numbers, but"),
+        ((5.0, 1.0, "C"), {"amplification": (1.2, 1.5)}, "site='C' and amplification were both given. Give one"),
         ((5.0, 1.0), {"topography": 0.0}, "topography must be a positive, finite number, but 0.0 was"),
         ((5.0, 1.0), {"damping_ratio": 2.0}, "damping_ratio must lie in"),
         (

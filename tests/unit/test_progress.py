@@ -150,6 +150,22 @@ def test_a_bar_is_drawn_in_a_terminal(monkeypatch):
     assert "400/400" in text
 
 
+def test_the_time_left_is_that_of_the_whole_time(monkeypatch):
+    """Parts that end in bursts, far apart, after some that an earlier call had stored."""
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    now = iter([0.0, 0.0, 300.0, 300.0, 300.0, 300.0, 600.0, 600.0])
+    monkeypatch.setattr("rockflex.progress._bar.perf_counter", lambda: next(now))
+    with bar("Parts") as show:
+        show(50, 100, "")
+        for done in (51, 52, 53, 54, 60):
+            show(done, 100, "")
+        show(60, 100, "")
+    # 10 parts in 600 s, and 40 are to come.
+    assert "40 min left" in sys.stderr.getvalue()
+
+
 def test_the_results_are_those_without_a_bar(monkeypatch):
     monkeypatch.setattr(sys, "stderr", Terminal())
     plain = rf.run_cloud(FRAME, PULSE, "2DOF-S", scales=SCALES)

@@ -53,6 +53,21 @@ def test_a_file_that_git_does_not_know(repository):
     assert commit_of(other, known=False) == f"{head(repository)}+changes"
 
 
+def test_no_program_of_the_repository_runs(repository, tmp_path):
+    marker = tmp_path / "marker"
+    (repository / ".gitattributes").write_text("*.toml filter=evil\n", "utf-8")
+    git(repository, "config", "filter.evil.clean", f"touch {marker}; cat")
+    (repository / "study.toml").write_text(TEXT + "seed = 2\n", "utf-8")
+    assert commit_of(repository / "study.toml", known=True) == f"{head(repository)}+changes"
+    assert not marker.exists()
+
+
+def test_names_with_wildcards_are_names(repository):
+    file = repository / "*.toml"
+    file.write_text(TEXT, "utf-8")
+    assert commit_of(file, known=True) is None
+
+
 def test_without_a_repository_or_a_commit_or_git(tmp_path, repository, monkeypatch):
     assert commit_of(tmp_path / "study.toml", known=False) is None
     empty = tmp_path / "empty"

@@ -52,8 +52,9 @@ def test_friction_and_a_demand_together():
 
 
 def test_a_demand_may_be_missing():
-    runs = rf.run_cloud(FRAME, SUITE, "2DOF-S", demands={"nothing": lambda _: float("nan"), "count": lambda _: 3})
-    assert runs["nothing"].isna().all()
+    none = {"nothing": lambda _: float("nan"), "none": lambda _: np.float32("nan"), "empty": lambda _: np.array(np.nan)}
+    runs = rf.run_cloud(FRAME, SUITE, "2DOF-S", demands=none | {"count": lambda _: 3})
+    assert runs[list(none)].isna().all(axis=None)
     assert runs["count"].tolist() == [3.0] * 4
 
 

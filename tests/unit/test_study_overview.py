@@ -1,5 +1,6 @@
 """The overview of a study's folder: what it is, how far it is, and what came out."""
 
+import json
 import xml.etree.ElementTree as ET
 
 import pyarrow as pa
@@ -82,3 +83,21 @@ def test_damage_does_not_prevent_an_overview(tmp_path, monkeypatch):
     assert [each.number for each in folder.damaged()] == [1]
     monkeypatch.setattr(_overview, "MOST_READ", 1)
     assert rows_of(folder)["rows"] == "1 in the first 1 parts"
+
+
+@pytest.mark.parametrize("changed", [{"created": 5}, {"created": ""}, {"versions": "x"}])
+def test_a_manifest_that_says_no_time_or_no_versions_is_damaged(changed, tmp_path):
+    folder = rf.fill_study(STUDY, tmp_path / "study")
+    manifest = folder.path / "manifest.json"
+    manifest.write_text(json.dumps(json.loads(manifest.read_text("utf-8")) | changed), "utf-8")
+    with pytest.raises(rf.InputError, match=r"manifest\.json or the .* is damaged \("):
+        rf.StudyFolder.load(folder.path)
+
+
+def test_columns_of_anyone(tmp_path):
+    with rf.StudyFolder.open(tmp_path / "own", {"name": "own"}, 1, {}) as folder:
+        column = pa.array([["a"], ["a"]])
+        folder.write(
+            0, pa.table([column, pa.array([1, 2]), pa.array([3, 4])], names=["status_list", "status", "status"])
+        )
+        assert rows_of(folder)["status_list"] == "2 ['a']"

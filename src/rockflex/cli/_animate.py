@@ -33,9 +33,19 @@ FLAGS = {
 
 def animate(
     context: typer.Context,
-    arguments: options.Arguments = None,
+    arguments: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="STRUCTURE.toml MOTION",
+            help="The structure file, then the ground motion: a record (suite/name), a suite of one record, or a file.",
+            show_default=False,
+        ),
+    ] = None,
     structure: options.StructureFile = None,
-    motion: options.Motions = None,
+    motion: Annotated[
+        list[str] | None,
+        typer.Option("--motion", "-m", metavar="MOTION", help="The ground motion.", show_default=False),
+    ] = None,
     model: options.Models = None,
     scale: Annotated[float, typer.Option("--scale", metavar="FACTOR", help="Factor on the acceleration.")] = 1.0,
     free_vibration: options.FreeVibration = "0",
@@ -48,7 +58,7 @@ def animate(
     speed: Annotated[
         float,
         typer.Option(
-            "--speed", metavar="X", help="Seconds of the response in one of the animation.", rich_help_panel=PICTURE
+            "--speed", metavar="X", help="Seconds of the response per second of the animation.", rich_help_panel=PICTURE
         ),
     ] = 1.0,
     frames_per_second: Annotated[
@@ -59,7 +69,7 @@ def animate(
         typer.Option(
             "--amplification",
             metavar="X",
-            help="Factor on what moves in the picture. Default: one with which it can be seen.",
+            help="Factor on what moves in the picture. Default: large enough to be seen.",
             rich_help_panel=PICTURE,
         ),
     ] = None,

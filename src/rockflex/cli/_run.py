@@ -106,13 +106,14 @@ def run(
     }
     if out is not None:
         write_runs(out, document, batch, runs, figures=figures, force=force)
-    if page is not None:
-        write_page(page, loaded, batch, runs)
     if json:
         typer.echo(to_json(document))
     else:
         print_runs(loaded.title, batch, runs, elapsed, times=times)
     warn(document["warnings"])
     print_warnings(runs)
-    if print_failures(runs) and strict:
+    failed = print_failures(runs)
+    if page is not None:
+        write_page(page, loaded, batch, runs)
+    if failed and strict:
         raise typer.Exit(1)

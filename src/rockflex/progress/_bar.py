@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from rockflex.progress._duration import duration
 from rockflex.progress._lines import Lines
 
 if TYPE_CHECKING:
@@ -64,22 +65,24 @@ def _columns(**how: Any) -> "Progress":
         Progress,
         TextColumn,
         TimeElapsedColumn,
-        TimeRemainingColumn,
     )
 
     look = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[remark]}"))
-    return Progress(*look, TimeElapsedColumn(), TimeRemainingColumn(elapsed_when_finished=False), **how)
+    return Progress(*look, TimeElapsedColumn(), TextColumn("{task.fields[left]}", style="cyan"), **how)
 
 
 def _throttled(drawn: "Progress", title: str, refresh: Callable[[], object], every: float) -> Show:
     """Return a function that draws the bar, but not more often than a person can see."""
-    task = drawn.add_task(title, total=None, remark="")
-    last = -every
+    task = drawn.add_task(title, total=None, remark="", left="")
+    start, last = perf_counter(), -every
+    first: int | None = None  # done before the start, by an earlier call
 
     def show(done: int, total: int, remark: str) -> None:
-        nonlocal last
-        drawn.update(task, completed=done, total=total, remark=remark)
-        now = perf_counter()
+        nonlocal first, last
+        first, now = done if first is None else first, perf_counter()
+        # From the whole time: parts may end in bursts, or further apart than any window.
+        left = (now - start) / (done - first) * (total - done) if first < done < total else 0.0
+        drawn.update(task, completed=done, total=total, remark=remark, left=f"{duration(left)} left" if left else "")
         if now - last >= every or done >= total:
             last = now
             refresh()

@@ -90,6 +90,8 @@ class Manifest:
                 del origin["seed"]
                 _part_count(origin["n_chunks"])
                 manifest = cls(spec=spec, **origin)
+                datetime.fromisoformat(manifest.created)
+                dict[str, Any](manifest.versions)
                 intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
                 if intact:
                     return manifest

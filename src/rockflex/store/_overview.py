@@ -88,7 +88,8 @@ def _counts(paths: Sequence[Path]) -> dict[str, str]:
     for path in paths[:MOST_READ]:
         try:
             with parquet.ParquetFile(path) as file:
-                names = [name for name in file.schema_arrow.names if name.startswith("status") or name == "error"]
+                known = Counter(file.schema_arrow.names)
+                names = [each for each in known if (each.startswith("status") or each == "error") and known[each] == 1]
                 table = file.read(columns=names)
                 rows += cast("int", file.metadata.num_rows)
         except (ArrowException, OSError):
@@ -96,7 +97,7 @@ def _counts(paths: Sequence[Path]) -> dict[str, str]:
             continue
         for name in names:
             values = table.column(name).drop_null().to_pylist()
-            seen = ["failed"] * len(values) if name == "error" else values
+            seen = ["failed"] * len(values) if name == "error" else map(str, values)
             statuses.setdefault(name, Counter()).update(seen)
     some = f" in the first {MOST_READ} parts" if len(paths) > MOST_READ else ""
     found = {"rows": f"{rows}{some}" + (f"; {unreadable} parts cannot be read, see damaged()" if unreadable else "")}

@@ -126,7 +126,11 @@ def animate(
     factor = usual_amplification(curves, poses) if amplification is None else _factor(amplification)
     with telling(progress, clock.times.size, "frames") as advance:
         scene = Scene(curves, poses, quantities, clock, factor, title, pixels)
-        return _WRITERS[suffix](target, scene, clock, advance)
+        try:
+            return _WRITERS[suffix](target, scene, clock, advance)
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise InputError(f"{target} cannot be written ({reason}). Give another path.", field="path") from error
 
 
 def _structures(given: Any | Sequence[Any] | None, count: int) -> list[Any]:
@@ -141,7 +145,7 @@ def _structures(given: Any | Sequence[Any] | None, count: int) -> list[Any]:
 
 
 def _factor(given: float) -> float:
-    factor = positive("amplification", given, "times the true displacements")
+    factor = positive("amplification", given, "")
     if not 0.01 <= factor <= 1e4:
         raise InputError(
             f"amplification must be from 0.01 to 10000, but {shown(given)} was given. Leave it out for one that suits.",

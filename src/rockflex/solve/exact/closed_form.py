@@ -25,6 +25,8 @@ from rockflex.solve.exact.basis import Basis, basis_of, with_constant
 from rockflex.solve.exact.developed import Course, Developed, Shaking
 from rockflex.solve.exact.tables import propagate
 
+LONGEST = 200.0  # phase angle of an interval up to which a series is faster than exponentials of a dense matrix
+
 
 class ClosedForm:
     """The linear phases of a model, uncoupled.
@@ -99,6 +101,8 @@ class ClosedForm:
         parts, series = list[Part](), list[SeriesPart]()
         for found, key in phases_at(self._model, states[:-1, SIDE], middle, states[:-1]):
             basis, chosen = self._basis(key), found
+            if basis is not None and basis.dense and basis.fastest * float(steps[found].max()) <= LONGEST:
+                basis = None
             if basis is None or shaken[found].any():
                 chosen = found & ~shaken if basis is not None else np.zeros_like(found)
                 rest = found & ~chosen

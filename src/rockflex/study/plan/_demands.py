@@ -3,6 +3,8 @@
 from collections.abc import Callable, Collection, Mapping
 from typing import cast
 
+import numpy as np
+
 from rockflex._checks import real_or_nan
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import few, shown
@@ -64,6 +66,12 @@ def _friction(response: Response) -> Row:
         return {"error": f"No required friction: {error}"}
 
 
+def _is_nan(found: object) -> bool:
+    """Return whether a function answered NaN, as a number of Python or NumPy or an array without dimensions."""
+    array = np.asarray(found)
+    return array.ndim == 0 and array.dtype.kind == "f"
+
+
 def _value(name: str, demand: Callable[[Response], float], response: Response) -> float:
     what = f"{response.model} under {response.motion}"
     try:
@@ -72,7 +80,7 @@ def _value(name: str, demand: Callable[[Response], float], response: Response) -
         error.add_note(f"This was raised by the demand {shown(name)} of {what}.")
         raise
     value = real_or_nan(found)
-    if value != value and not (isinstance(found, float) and found != found):
+    if value != value and not _is_nan(found):
         raise InputError(
             f"The demand {shown(name)} must return one number, but for {what} it returned {shown(found)}. Reduce it, "
             "by abs(...).max() for instance.",
