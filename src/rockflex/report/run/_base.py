@@ -10,37 +10,56 @@ from rockflex.modal import BaseElement, FrictionDamper, Tendon, ViscousDamper
 from rockflex.models import Restitution, SpringModel
 from rockflex.report.run._given import Given
 from rockflex.report.run._numbers import rounded
+from rockflex.report.run._start import initial_state
 from rockflex.report.run._table import Cell, Table, shows
-from rockflex.response import Response
+from rockflex.response import History, Response
 
 LISTED = 6  # elements
+_LAW, _START = "Impact law", "Initial state"
 
 
 def assumption_lines(about: Given) -> list[tuple[str, str]]:
-    """Return impact laws, hysteresis and ground as headed lines."""
-    laws: dict[str, list[str]] = {}
-    others: dict[str, str] = {}
+    """Return impact laws, hysteresis, ground and initial states as headed lines.
+
+    What does not hold for all runs, or an impact law for all that have one, is followed by the labels of its runs.
+    """
+    found: dict[str, dict[str, list[str]]] = {head: {} for head in (_LAW, "Hysteresis", "Ground", "Friction", _START)}
     for label, history in zip(about.labels, about.histories, strict=True):
-        model = history.model
-        if model.lifts and not isinstance(model, SpringModel):
-            laws.setdefault(_law(model.law), []).append(label)
-        if model.bouc_wen is not None:
-            others["Hysteresis"] = _hysteresis(model.bouc_wen)
-        for head, text in _ground(model):
-            others[head] = text
-    each = [text if len(laws) == 1 else f"{text} ({', '.join(labels)})" for text, labels in laws.items()]
-    return [*([("Impact law", "; ".join(each))] if each else []), *others.items()]
+        for head, text in _lines_of(history):
+            found[head].setdefault(text, []).append(label)
+    lines: list[tuple[str, str]] = []
+    for head, texts in found.items():
+        among = sum(map(len, texts.values())) if head == _LAW else len(about.labels)
+        each = [text if len(runs) == among else f"{text} ({', '.join(runs)})" for text, runs in texts.items()]
+        lines += [(head, "; ".join(each))] if each else []
+    return lines
+
+
+def _lines_of(history: History) -> list[tuple[str, str]]:
+    """Return what one run assumes."""
+    model = history.model
+    lines = [(_LAW, _law(model.law))] if model.lifts and not isinstance(model, SpringModel) else []
+    if model.bouc_wen is not None:
+        lines.append(("Hysteresis", _hysteresis(model.bouc_wen)))
+    lines += _ground(model)
+    start = initial_state(history)
+    return [*lines, *([(_START, start)] if start else [])]
 
 
 def _law(law: Any) -> str:
-    name = type(law).__name__
-    return f"{name}, e = {rounded(law.e)}" if isinstance(law, Restitution) else name
+    if isinstance(law, Restitution):
+        return f"Restitution, e = {rounded(law.e)}"
+    sides = getattr(law, "right", None), getattr(law, "left", None)
+    if all(isinstance(side, Restitution) for side in sides):
+        right, left = (rounded(side.e) for side in sides)
+        return f"Restitution, e = {right} from the right and {left} from the left edge"
+    return getattr(law, "description", type(law).__name__)
 
 
 def _hysteresis(b: Any) -> str:
     return (
-        f"Bouc–Wen, D_y = {rounded(1e3 * b.yield_displacement)} mm, α = {b.post_yield_ratio:g}, γ = {b.gamma:g}, "
-        f"β = {b.beta:g}, n = {b.exponent:g}"
+        f"Bouc–Wen, D_y = {rounded(1e3 * b.yield_displacement)} mm, post-yield ratio {b.post_yield_ratio:g}, "
+        f"γ = {b.gamma:g}, β = {b.beta:g}, n = {b.exponent:g}"
     )
 
 
@@ -50,12 +69,16 @@ def _ground(model: Any) -> list[tuple[str, str]]:
     if isinstance(model, SpringModel):
         springs, mass = model.springs, model.properties.m_tot
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
+        inertia = model.inertia - model.properties.translational_inertia
+        turns = f", I_b = {rounded(inertia / 1e3)} t m²" if inertia > 1e-9 * model.inertia else ""
         lines.append(
             (
                 "Ground",
-                f"{springs.n} springs without tension, Σk = {rounded(springs.total_stiffness / 1e6)} MN/m, "
+                f"{springs.n} springs without tension, x = {rounded(float(springs.positions[0]))} to "
+                f"{rounded(float(springs.positions[-1]))} m, Σk = {rounded(springs.total_stiffness / 1e6)} MN/m, "
                 f"Σk x² = {rounded(springs.rotational_stiffness / 1e6)} MN m/rad, Σc = "
-                f"{rounded(springs.total_damping / 1e3)} kN s/m ({rounded(100.0 * ratio)} % of critical in heave)",
+                f"{rounded(springs.total_damping / 1e3)} kN s/m ({rounded(100.0 * ratio)} % of critical in heave)"
+                f"{turns}",
             )
         )
     friction = ground_friction(model)
@@ -116,7 +139,7 @@ def _words(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
         return "friction damper", f"F_0 = {rounded(element.force / 1e3)} kN", ("did not slide", "slid")
     stiffness = f"k = {rounded(element.stiffness / 1e6)} MN/m"
     limit = "" if element.yield_force is None else f", F_y = {rounded(element.yield_force / 1e3)} kN"
-    after = "" if element.post_yield_ratio is None else f", α = {element.post_yield_ratio:.4g}"
+    after = "" if element.post_yield_ratio is None else f", post-yield ratio {element.post_yield_ratio:.4g}"
     breaks = "" if element.rupture_elongation is None else f", breaks at {rounded(1e3 * element.rupture_elongation)} mm"
     if isinstance(element, Tendon):
         state = ("elastic", "beyond F_y" if element.post_yield_ratio is None else "yielded")

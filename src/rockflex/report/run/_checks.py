@@ -11,6 +11,7 @@ from rockflex.report.run._base import ground_friction
 from rockflex.report.run._given import Given
 from rockflex.report.run._numbers import rounded
 from rockflex.report.run._sides import overturning_margin
+from rockflex.report.run._start import starts_uplifted
 from rockflex.report.run._table import Cell, Table, shows
 from rockflex.response import IMPACT_WINDOW, History, Response
 
@@ -71,9 +72,11 @@ def _uplift(run: Run) -> Cell:
     if not run.history.model.lifts:
         return Cell("fixed base")
     times = run.history.uplift_times
+    start = "starts uplifted" if starts_uplifted(run.history) else ""
     if run.response.n_uplifts == 0 or not times.size:
-        return Cell("none" if run.response.status == "no_uplift" else "starts uplifted", 0.0, "n_uplifts")
-    return Cell(f"{run.response.n_uplifts}×, first at {rounded(float(times[0]))} s", float(times[0]), "first_uplift")
+        return Cell(start or "none", 0.0, "n_uplifts")
+    first = f"{run.response.n_uplifts}×, {'next' if start else 'first'} at {rounded(float(times[0]))} s"
+    return Cell(f"{start}; {first}" if start else first, float(times[0]), "first_uplift")
 
 
 def _overturning(about: Given, run: Run) -> Cell:

@@ -1,6 +1,5 @@
 """The page: everything that a report shows, put together and written as HTML."""
 
-import hashlib
 import math
 import re
 from collections.abc import Collection, Sequence
@@ -9,14 +8,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rockflex._shown import shortened
 from rockflex._versions import versions_of
 from rockflex.report._svg import inline
 from rockflex.report.run._base import assumption_lines, element_table
 from rockflex.report.run._checks import check_table, ground_friction, legend, long_runs
 from rockflex.report.run._given import Given
+from rockflex.report.run._inputs import fingerprint
 from rockflex.report.run._peaks import FELL, peak_table
 from rockflex.report.run._record import Record, record_of
 from rockflex.report.run._structure import kind_of, mode_table, structure_facts
@@ -107,7 +105,7 @@ def page_of(
         warnings=_few([*warnings, *_warnings(about)]),
         notes=notes,
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),
-        inputs=_fingerprint(about, record),
+        inputs=fingerprint(about, record),
     )
 
 
@@ -145,16 +143,6 @@ def _versions() -> dict[str, str]:
     found = versions_of(("rockflex", "numpy", "numba"))
     python = found.pop("python")
     return found | {"Python": python}
-
-
-def _fingerprint(about: Given, record: Record) -> str:
-    """Return a short hash of the structure and of the ground acceleration, by which equal inputs are recognised."""
-    p = about.properties
-    numbers = [record.time, record.acceleration, p.omega, p.effective_mass, p.effective_height, p.zeta, p.top_ordinate]
-    numbers.append(np.array([p.i_theta, p.l0r, p.m_tot, p.half_width, p.translational_inertia, p.eccentricity]))
-    text = repr((p.elements, about.labels))
-    content = b"".join(np.asarray(each, dtype=np.float64).tobytes() for each in numbers)
-    return hashlib.sha256(content + text.encode()).hexdigest()[:12]
 
 
 @lru_cache(maxsize=1)

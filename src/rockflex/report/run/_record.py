@@ -19,8 +19,8 @@ class Record:
     ----------
     name, source : str
         Name of the record, and what is known of its origin, in a line; empty if nothing is.
-    time, acceleration : ndarray, shape (n,)
-        In s and m/s², scaled.
+    time, acceleration, vertical : ndarray, shape (n,)
+        In s and m/s², scaled; the vertical acceleration is zero if there is none.
     facts : list of Fact
         Its measures.
     """
@@ -29,13 +29,15 @@ class Record:
     source: str
     time: Array
     acceleration: Array
+    vertical: Array
     facts: list[Fact]
 
 
 def record_of(about: Given) -> Record:
     """Return the record of the runs: from the motion if it is known, otherwise from the longest history."""
     name = about.responses[0].motion
-    history = max(about.histories, key=lambda each: float(each.time[-1]))
+    longest = max(range(len(about.histories)), key=lambda place: float(about.histories[place].time[-1]))
+    history, run = about.histories[longest], about.responses[longest]
     ends = fact("Length of the run", float(history.time[-1]), "s", "end_time")
     pva = float(np.max(np.abs(history.vertical_ground_acceleration), initial=0.0))
     vertical = [fact("PVA, vertical", pva, "g", "pva", GRAVITY)] if pva > 0.0 else []
@@ -44,8 +46,10 @@ def record_of(about: Given) -> Record:
         steps = 0.5 * (acceleration[1:] + acceleration[:-1]) * np.diff(time)
         pgv = float(np.max(np.abs(np.cumsum(steps)), initial=0.0))
         pga = float(np.max(np.abs(acceleration)))
-        facts = [fact("PGA", pga, "g", "pga", GRAVITY), fact("PGV", pgv, "m/s", "pgv"), *vertical, ends]
-        return Record(name, "", time, acceleration, facts)
+        # All runs overturned, and nothing is known of the ground after the last of them did.
+        cut = " during the run" if run.status == "overturned" else ""
+        facts = [fact(f"PGA{cut}", pga, "g", "pga", GRAVITY), fact(f"PGV{cut}", pgv, "m/s", "pgv"), *vertical, ends]
+        return Record(name, "", time, acceleration, history.vertical_ground_acceleration, facts)
     motion = about.motion.scaled(about.scale)
     facts = [
         Fact("Scale", Cell(f"{about.scale:.6g}", about.scale, "scale")),
@@ -56,7 +60,8 @@ def record_of(about: Given) -> Record:
         fact("Significant duration D_5–95", motion.d5_95, "s", "d5_95"),
         ends,
     ]
-    return Record(name, _source(motion), motion.time, motion.acceleration, facts)
+    upwards = np.zeros_like(motion.time) if motion.vertical is None else motion.vertical
+    return Record(name, _source(motion), motion.time, motion.acceleration, upwards, facts)
 
 
 def _source(motion: GroundMotion) -> str:
