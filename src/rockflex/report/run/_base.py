@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rockflex.modal import BaseElement, FrictionDamper, Tendon, ViscousDamper
-from rockflex.models import Restitution, SpringModel
+from rockflex.models import Restitution, SidedRestitution, SpringModel
 from rockflex.report.run._given import Given
 from rockflex.report.run._numbers import rounded
 from rockflex.report.run._start import initial_state
@@ -49,9 +49,8 @@ def _lines_of(history: History) -> list[tuple[str, str]]:
 def _law(law: Any) -> str:
     if isinstance(law, Restitution):
         return f"Restitution, e = {rounded(law.e)}"
-    sides = getattr(law, "right", None), getattr(law, "left", None)
-    if all(isinstance(side, Restitution) for side in sides):
-        right, left = (rounded(side.e) for side in sides)
+    if isinstance(law, SidedRestitution):
+        right, left = rounded(law.right.e), rounded(law.left.e)
         return f"Restitution, e = {right} from the right and {left} from the left edge"
     return getattr(law, "description", type(law).__name__)
 
