@@ -160,12 +160,22 @@ def test_warnings_and_notes_are_on_the_page(tmp_path):
 
 
 def test_of_many_warnings_the_first_are_listed(tmp_path):
-    (pulled,) = runs(rf.Restrained(PIER, rf.Tendon(800e3, 20e6, yield_force=801e3)), PULSE.scaled(2.0), ["2DOF-S"])
-    assert len(pulled.warnings) == 1
-    text = read(rf.write_report([pulled] * 6, tmp_path / "r.html")).text
-    assert f"2DOF-S (4): {pulled.warnings[0]}" in text
-    assert f"F/Fy = {rounded(pulled.tendon_utilisation)} > 1" in text
+    forces = [1e3 * (801 + k) for k in range(6)]
+    held = [rf.Restrained(PIER, rf.Tendon(800e3, 20e6, yield_force=force)) for force in forces]
+    pulled = [run for each in held for run in runs(each, PULSE.scaled(2.0), ["2DOF-S"])]
+    assert len({text for run in pulled for text in run.warnings}) == 6
+    text = read(rf.write_report(pulled, tmp_path / "r.html")).text
+    assert f"2DOF-S (4): {pulled[3].warnings[0]}" in text
+    assert f"F/Fy = {rounded(pulled[0].tendon_utilisation)} > 1" in text
     assert "and 2 more warnings; see the responses" in text
+    alike = read(rf.write_report(pulled[:1] * 2, tmp_path / "r.html")).text
+    assert f"2DOF-S (1), 2DOF-S (2): {pulled[0].warnings[0]}" in alike
+
+
+def test_many_notes_are_run_together(tmp_path, three):
+    text = read(rf.write_report(three, tmp_path / "r.html", notes=[f"n{k}\n" for k in range(60)])).text
+    assert "n0 • n1 • n2" in text
+    assert "n58 • n59" in text
 
 
 def test_a_rigid_block(tmp_path):

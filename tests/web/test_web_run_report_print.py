@@ -31,6 +31,15 @@ CASES = {
     "rigid": (rf.rigid_block(0.5, 4.0, 20e3), PULSE, ["rigid", "rigid-C"], {}),
     "names": (FRAME, LONG, ["2DOF-S", "MDOF-S"], {}),
 }
+FULL = ["2DOF-S", "3DOF-S", "MDOF-S", "4DOF-S", "2DOF-C", "fixed"]
+NOTES = {
+    "many": ["x"] * 60,
+    "broken": ["a\nb"] * 200,
+    "wide": "W" * 800,
+    "letters": ["x"] * 800,
+    "words": "Remarks of some length. " * 33,
+    "ideographs": "面" * 800,
+}
 WORDS = {"title": "A title that goes on, as those of appendices do, " * 9, "notes": "Remarks of some length. " * 33}
 MEASURE = """() => {
   const sheet = document.querySelector(".sheet");
@@ -74,3 +83,24 @@ def test_one_sheet(browser, case, tmp_path):
     assert measured["overlaps"] == 0
     assert measured["figure"] >= 50.0
     assert asked == [path.as_uri()]
+
+
+@pytest.mark.parametrize("notes", NOTES)
+def test_notes_of_any_kind_stay_on_the_sheet(browser, notes, tmp_path):
+    few = runs(FRAME, PULSE, ["2DOF-S", "MDOF-S"])
+    full = [
+        *runs(HELD, EL_CENTRO.scaled(2.0), FULL[:4], free_vibration=4.0, impact=rf.Restitution(0.5)),
+        *runs(HELD, EL_CENTRO.scaled(2.0), FULL[4:], free_vibration=4.0),
+    ]
+    page = browser.new_page(viewport={"width": 794, "height": 1123})
+    page.emulate_media(media="print")
+    for found, structure in ((few, FRAME), (full, HELD)):
+        path = tmp_path / "run.html"
+        rf.write_report(found, path, structure=structure, friction=0.3, notes=NOTES[notes], title="A long title " * 12)
+        page.goto(path.as_uri())
+        assert len(pypdf.PdfReader(io.BytesIO(page.pdf(format="A4"))).pages) == 1
+        measured = page.evaluate(MEASURE)
+        assert measured["over"] <= 0
+        assert measured["overlaps"] == 0
+        assert measured["figure"] >= 40.0
+    page.close()

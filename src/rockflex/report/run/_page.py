@@ -17,6 +17,19 @@ from rockflex.report.run._given import Given
 from rockflex.report.run._inputs import fingerprint
 from rockflex.report.run._peaks import FELL, peak_table
 from rockflex.report.run._record import Record, record_of
+from rockflex.report.run._room import (
+    FIGURE,
+    HEIGHT,
+    LINE,
+    SMALL,
+    SMALLEST,
+    WIDTH,
+    height_above,
+    height_beside,
+    height_of_table,
+    lines_of,
+    part,
+)
 from rockflex.report.run._structure import kind_of, mode_table, structure_facts
 from rockflex.report.run._table import Fact, Table
 
@@ -24,11 +37,9 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 TEMPLATES = Path(__file__).parent / "templates"
-LONGEST = {"title": 110, "name": 70, "source": 110}  # letters
+LONGEST = {"title": 110, "name": 70, "source": 110, "warning": 400}  # letters
 WARNINGS = 4  # texts
-_WIDTH, _HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
-_LINE, _LETTERS = 3.5, 150.0  # height of a line of small text in mm, and its letters
-_FIGURE = (58.0, 160.0)  # least and largest height of the figure in mm
+_NOTES = 6  # of more, each does not have a line of its own
 _STRIP = (65.0, 22.0)  # mm
 _DOWN, _UP = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
 
@@ -54,17 +65,48 @@ class Page:
     inputs: str
 
     @property
+    def needed(self) -> float:
+        """Height in mm of all but the figure, the warnings and the notes."""
+        record = self.record
+        above = height_above(self.facts, self.modes, shortened(self.kind, LONGEST["name"]))
+        source = shortened(record.source, LONGEST["source"])
+        beside = height_beside(record.facts, shortened(record.name, LONGEST["name"]), source)
+        base = sum(LINE * lines_of(f"{head}. {text}") for head, text in self.lines)
+        return (
+            5.2 * lines_of(self.title, WIDTH - 40.0, 1.75) + 3.0
+            + max(above, beside) + 1.5
+            + (part(base, height_of_table(self.elements)) if self.lines or self.elements else 0.0)
+            + part(height_of_table(self.peaks, units=True))
+            + part(height_of_table(self.checks), LINE * lines_of(" ".join(self.legend), size=SMALL))
+            + LINE * lines_of(self.versions, WIDTH - 40.0, SMALL) + 4.0
+        )  # fmt: skip
+
+    @property
+    def scale(self) -> float:
+        """Size of everything on the sheet: 1, or less where that makes room for the warnings and notes."""
+        told = LINE * sum(self.lines_of_texts(10**6)) + 3.0
+        return min(1.0, max(SMALLEST, HEIGHT / (self.needed + FIGURE[0] + told)))
+
+    @property
+    def held(self) -> list[int]:
+        """Lines of each warning and then of each note, which are cut off after these."""
+        return self.lines_of_texts(max(0, math.floor((HEIGHT / self.scale - self.needed - FIGURE[0] - 3.0) / LINE)))
+
+    @property
     def room(self) -> float:
-        """Height in mm that is left for the figure, by an estimate that errs on the small side."""
-        rows = len(self.peaks.rows) + len(self.checks.rows) + 6
-        rows += 0 if self.elements is None else len(self.elements.rows)
-        texts = [*self.warnings, *self.notes, " ".join(self.legend), *(text for _, text in self.lines), self.versions]
-        lines = sum(math.ceil(len(text) / _LETTERS) for text in texts)
-        modes = 0 if self.modes is None else len(self.modes.rows) + 2
-        above = 4.1 * (math.ceil(len(self.facts) / 2) + modes) + 5.0
-        beside = 31.0 + 4.1 * len(self.record.facts)
-        least, largest = _FIGURE
-        return min(max(_HEIGHT - max(above, beside) - 4.0 * rows - _LINE * lines - 13.0, least), largest)
+        """Height in mm that is left for the figure, before it is scaled."""
+        left = HEIGHT / self.scale - self.needed - LINE * sum(self.held) - 3.0
+        return min(max(left, FIGURE[0]), FIGURE[1])
+
+    def lines_of_texts(self, most: int) -> list[int]:
+        """Return the lines that each warning and each note has, one at least, if there is room for `most` lines."""
+        lines: list[int] = []
+        texts = [*(f"Warning. {each}" for each in self.warnings), *self.notes]
+        for place, text in enumerate(texts):
+            after = len(texts) - place - 1
+            lines.append(max(1, min(lines_of(text, WIDTH - 2.0), most - after)))
+            most -= lines[-1]
+        return lines
 
 
 def page_of(
@@ -103,7 +145,7 @@ def page_of(
         checks=check_table(about, friction, left_out),
         legend=[*own, *told],
         warnings=_few([*warnings, *_warnings(about)]),
-        notes=notes,
+        notes=_run_together(notes),
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),
         inputs=fingerprint(about, record),
     )
@@ -115,7 +157,7 @@ def html_of(page: Page, about: Given) -> str:
 
     from rockflex.plot import record_strip, run_sheet, svg_of
 
-    sheet = run_sheet(about.responses, about.labels, width=_WIDTH, height=page.room)
+    sheet = run_sheet(about.responses, about.labels, width=WIDTH / page.scale, height=page.room)
     strip = record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
     drawings = {
         "sheet": Markup(inline(svg_of(sheet), "sheet", "Histories and loops of all models")),
@@ -126,17 +168,26 @@ def html_of(page: Page, about: Given) -> str:
 
 
 def _warnings(about: Given) -> list[str]:
-    """Return the warnings of the runs, each with its model."""
-    return [
-        f"{label}: {text}"
-        for label, run in zip(about.labels, about.responses, strict=True)
-        for text in run.warnings
-    ]  # fmt: skip
+    """Return the warnings of the runs, each with its models."""
+    found: dict[str, list[str]] = {}
+    for label, run in zip(about.labels, about.responses, strict=True):
+        for text in run.warnings:
+            found.setdefault(text, []).append(label)
+    return [f"{', '.join(labels)}: {text}" for text, labels in found.items()]
+
+
+def _run_together(notes: Sequence[str]) -> list[str]:
+    """Return the notes without breaks of lines; many of them as one paragraph."""
+    texts = [text for text in (" ".join(note.split()) for note in notes) if text]
+    return texts if len(texts) <= _NOTES else [" • ".join(texts)]
 
 
 def _few(texts: Sequence[str]) -> list[str]:
     rest = len(texts) - WARNINGS
-    return [*texts[:WARNINGS], *([f"and {rest} more warnings; see the responses"] if rest > 0 else [])]
+    return [
+        *(shortened(text, LONGEST["warning"]) for text in texts[:WARNINGS]),
+        *([f"and {rest} more warnings; see the responses"] if rest > 0 else []),
+    ]
 
 
 def _versions() -> dict[str, str]:
