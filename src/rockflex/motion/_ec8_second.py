@@ -115,13 +115,13 @@ def ec8_second_spectrum(
 
 
 def _amplification(alpha: float, beta: float, site: str, given: tuple[float, float] | None) -> tuple[float, float]:
-    if given is not None and site != "A":
-        raise InputError(
-            f"site={shown(site)} and amplification were both given. Give one: amplification takes the place of the "
-            "default factors of a site category.",
-            field="amplification",
-        )
     if given is not None:
+        if site != "A":
+            raise InputError(
+                f"site={shown(site)} and amplification were both given. Give one: amplification takes the place of the "
+                "default factors of a site category.",
+                field="amplification",
+            )
         factors = finite_vector("amplification", given, "")
         if factors.size != 2 or factors.min() <= 0.0:
             raise InputError(

@@ -208,13 +208,15 @@ class Friction:
         steps = np.diff(states[:, [TIME, GROUND, RISE]], axis=0)
         exact = repeat(None) if self._linear is None else self._linear.intervals(states).along(places)
         for place, inside in zip(places, exact, strict=False):
-            rows, bend = states[:-1].copy(), None
+            rows = states[:-1].copy()
             rows[:, [TIME, GROUND, RISE]] += place * steps
-            if inside is not None:
-                rows[:, HEADER:] = inside
-            if inside is None or self._model.integrated:
-                bend = self._interpolated(rows, states, rates, place)
-            yield rows, bend if inside is None else None
+            if inside is None:
+                yield rows, self._interpolated(rows, states, rates, place)
+                continue
+            rows[:, HEADER:] = inside
+            if self._model.integrated:
+                self._interpolated(rows, states, rates, place)
+            yield rows, None
 
     def _interpolated(self, rows: Array, states: Array, rates: Array, place: float) -> Array:
         """Put polynomials into rows where the model is not linear; return the accelerations that they give."""
