@@ -1,23 +1,33 @@
 """The unofficial features of numba that kernels use, and the fallbacks for versions without them.
 
-Without these features kernels give the same results, but start or run more slowly. `tests/unit/test_numba_parts.py`
-lists the versions tested.
+They are used with the versions of `TRIED` only. With any other version kernels give the same results, but start and
+run more slowly, and are not cached on disk.
 """
 
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, cast
 
+import numba
 from numba import njit, typeof
 from numba.extending import get_cython_function_address
 
+TRIED = ("0.60", "0.61", "0.63", "0.68")  # with all tests; pyproject.toml excludes versions after the last
+
+
+def is_tried(version: str) -> bool:
+    """Tell whether the unofficial features may be used with this version of numba."""
+    return version.split(".")[:2] in [each.split(".") for each in TRIED]
+
+
+KNOWN = is_tried(numba.__version__)
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
 # A kernel called only by kernels needs no wrapper for Python, which takes as long to compile as the kernel.
 WITHIN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 PIPELINE: dict[str, Any] = {}
 ENTRY: dict[str, Any] = {}
-with suppress(ImportError, AttributeError):  # otherwise every kernel is compiled separately
+if KNOWN:  # otherwise every kernel is compiled separately
     from rockflex._numba_pipeline import Intermediate, Whole
 
     PIPELINE["pipeline_class"] = Intermediate
@@ -30,6 +40,8 @@ def compiled(function: Callable[..., Any], stamp: str) -> Any:
     numba's own stamp detects only changes in the file of the kernel, not in kernels compiled into it. If the stamp
     cannot be set, nothing is cached, because it could become outdated.
     """
+    if not KNOWN:
+        return _public(function)
     try:
         kernel = _without_counts(function, {"cache": True, "no_cfunc_wrapper": True, **ENTRY})
     except RuntimeError:  # numba finds no writable folder
@@ -46,8 +58,16 @@ def compiled_within(function: Callable[..., Any], *, inlined: bool) -> Any:
 
     Python can call it, too, but must compile a wrapper. With `inlined` its code becomes part of its callers.
     """
+    if not KNOWN:
+        return _public(function)
     options = {**WITHIN, **PIPELINE, "forceinline": inlined}
     return _with_a_way_in(_without_counts(function, options))
+
+
+def _public(function: Callable[..., Any]) -> Any:
+    """Compile with the documented options of numba alone."""
+    jit: Any = njit
+    return jit(**OPTIONS)(function)
 
 
 def _without_counts(function: Callable[..., Any], options: dict[str, Any]) -> Any:
@@ -82,7 +102,7 @@ def _with_a_way_in(kernel: Any) -> Any:
 
 def direct(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[..., Any]:
     """Return the machine code for the types of these arguments, or the kernel itself if it is not available."""
-    overloads = getattr(kernel, "overloads", {})  # empty without compilation
+    overloads = getattr(kernel, "overloads", {}) if KNOWN else {}  # empty without compilation, too
     with suppress(Exception):  # whatever a version raises
         return overloads[tuple(typeof(each) for each in arguments)].entry_point
     return kernel

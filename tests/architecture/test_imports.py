@@ -117,7 +117,7 @@ NOT_LOADED = {
     *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
     *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray", "PIL"),
 }  # by `import rockflex`
-LONGEST = 300  # lines
+LONGEST = 600  # lines
 
 RUNTIME, TYPING, DEFERRED = "when the module is imported", "for the type checker", "inside a function"
 

@@ -1,5 +1,8 @@
 """Private parts of numba: the versions that have them, and that kernels say the same without any of them."""
 
+import tomllib
+from pathlib import Path
+
 import numba
 import numpy as np
 import pytest
@@ -9,7 +12,6 @@ from rockflex._kernel import Callback, Entry, sources_digest
 from rockflex.motion._spectrum_kernel import oscillator_peaks, unit_responses
 from rockflex.solve.batch import run_all
 
-TRIED = ("0.60", "0.61", "0.63", "0.68")
 VERSION = ".".join(numba.__version__.split(".")[:2])
 
 
@@ -41,27 +43,6 @@ def direct_entry_is_had():
     return _numba.direct(kernel, given) is not kernel
 
 
-def test_versions_that_were_tried_have_every_part():
-    """A version that was not tried is no failure, for each part has a substitute; but it is told."""
-    if VERSION not in TRIED:
-        lacks = "; ".join(missing()) or "nothing"
-        pytest.skip(
-            f"numba {VERSION} has not been tried: {', '.join(TRIED)} have. It lacks {lacks}. Run tests/unit, "
-            f"tests/property and tests/validation with it, mend src/rockflex/_numba.py where a part is elsewhere, "
-            f"and add {VERSION!r} to TRIED in tests/unit/test_numba_parts.py."
-        )
-    assert missing() == []
-
-
-@pytest.mark.parametrize("kernel", [run_all, oscillator_peaks])
-def test_the_cache_is_stamped_with_every_kernel_source(kernel):
-    file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
-    if not hasattr(file, "_source_stamp"):
-        assert kernel.stats.cache_path is None  # nothing is kept that could be out of date
-    else:
-        assert file._source_stamp[1] == sources_digest()
-
-
 def doubled(x):
     for i in range(x.size):
         x[i] *= 2.0
@@ -78,6 +59,57 @@ FOR_ALL = pytest.mark.parametrize("compiled", [_numba.compiled, for_kernels])
 def says_the_same(kernel):
     ours = (6.0, 0.05, 0.3)
     return kernel(*ours) == pytest.approx(unit_responses.py_func(*ours), rel=1e-12)
+
+
+NEEDS_PARTS = pytest.mark.skipif(
+    not _numba.KNOWN,
+    reason=f"numba {VERSION} has not been tried. Add it to TRIED in src/rockflex/_numba.py, run all tests, and mend "
+    "what it lacks.",
+)
+
+
+@NEEDS_PARTS
+def test_versions_that_were_tried_have_every_part():
+    assert missing() == []
+
+
+@pytest.mark.parametrize("version", ["0.59.1", "0.69.0", "1.0.0", "0.6.0", "0.680.0", "0.70.0dev0+12"])
+def test_a_version_that_was_not_tried_gets_no_private_part(version):
+    assert not _numba.is_tried(version)
+
+
+def test_the_installer_takes_no_version_after_the_last_one_tried():
+    """Otherwise a new numba would be installed, and kernels would compile slowly, in every process again."""
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))["project"]
+    (bounds,) = [each for each in project["dependencies"] if each.startswith("numba")]
+    first, last = _numba.TRIED[0], int(_numba.TRIED[-1].split(".")[1])
+    assert bounds == f"numba>={first},<0.{last + 1}"
+
+
+@FOR_ALL
+def test_with_a_version_that_was_not_tried_only_documented_options_are_given(monkeypatch, compiled):
+    given = []
+
+    def watched(**options):
+        given.append(options)
+        return numba.njit(**options)
+
+    monkeypatch.setattr(_numba, "KNOWN", False)
+    monkeypatch.setattr(_numba, "njit", watched)
+    kernel = compiled(unit_responses.py_func, "untried")
+    assert given == [_numba.OPTIONS]
+    assert type(kernel).__module__.startswith("numba.")  # no class of ours in place of numba's
+    assert _numba.direct(kernel, (6.0, 0.05, 0.3)) is kernel
+    assert says_the_same(kernel)
+
+
+@pytest.mark.parametrize("kernel", [run_all, oscillator_peaks])
+def test_the_cache_is_stamped_with_every_kernel_source(kernel):
+    file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    if not hasattr(file, "_source_stamp"):
+        assert kernel.stats.cache_path is None  # nothing is kept that could be out of date
+    else:
+        assert file._source_stamp[1] == sources_digest()
 
 
 def options_of_numba():
