@@ -167,3 +167,14 @@ def test_on_a_cluster(cluster):
             rf.run_study(cloud(impact=unknown(0.5)), dask=cluster.address)
     finally:
         del sys.modules["__main__"].Unknown
+
+
+@pytest.mark.parametrize("stop", [KeyboardInterrupt, SystemExit])
+@pytest.mark.parametrize("model", ["2DOF-S", "2DOF-C"])
+def test_an_interrupt_inside_a_law_ends_the_run_as_anywhere_else(model, stop):
+    class Stops(Lossy):
+        def after(self, *_):
+            raise stop("inside the law")
+
+    with pytest.raises(stop, match="^inside the law$"):
+        rf.simulate(rf.Frame(**FRAME), rf.load_suite("el-centro-1940")[0], model, impact=Stops(0.5))

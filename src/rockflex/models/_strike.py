@@ -36,7 +36,7 @@ class Impact(NamedTuple):
 NO_CALLBACK = Callback(lambda _address, _count: 1)
 
 
-def impact_of(law: ImpactLaw, properties: RockingProperties) -> tuple[Impact, list[Exception]]:
+def impact_of(law: ImpactLaw, properties: RockingProperties) -> tuple[Impact, list[BaseException]]:
     """Return a law in the form for kernels, and a list that will collect the exceptions that it raises."""
     own = None
     if not isinstance(law, VVELSimplified | VVELComplete | Restitution | SidedRestitution):
@@ -113,12 +113,12 @@ class OwnLaw:
     def __init__(self, law: ImpactLaw, properties: RockingProperties) -> None:
         self._law = law
         self._properties = properties
-        self.failures: list[Exception] = []
+        self.failures: list[BaseException] = []
         self.callback = Callback(self._after)
 
     def _after(self, address: int, n: int) -> int:
-        state = np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_double)), (2 * n + 2,))
         try:
+            state = np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_double)), (2 * n + 2,))
             velocity, spin = _pair(self._law.after(self._properties, state[n : 2 * n].copy(), float(state[-1])))
             checked = finite_vector("the modal velocity after an impact", velocity, "m/s")
             if checked.size != n:
@@ -127,7 +127,7 @@ class OwnLaw:
                 )
             state[n : 2 * n] = checked
             state[-1] = finite("the rotation velocity after an impact", spin, "rad/s")
-        except Exception as error:
+        except BaseException as error:  # Ctrl-C, too, which ctypes would drop
             self.failures.append(error)
             return 1
         return 0

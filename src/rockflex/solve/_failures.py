@@ -16,8 +16,10 @@ def failure_of(model: RockingModel, status: Status, samples: int, dt: float, sta
     return _in_state(model, what, status.mend, state)
 
 
-def failure_of_law(model: RockingModel, failure: Exception) -> InputError:
-    """Return the error for a run that a failure of the user's impact law ended."""
+def failure_of_law(model: RockingModel, failure: BaseException) -> BaseException:
+    """Return the error for a run that a failure of the user's impact law ended; Ctrl-C and the like as they are."""
+    if not isinstance(failure, Exception):
+        return failure
     error = InputError(f"{Status.BROKEN.what.format(law=shown(model.law))}: {failure}")
     error.__cause__ = failure
     return error
