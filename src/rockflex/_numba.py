@@ -92,8 +92,8 @@ def _with_a_way_in(kernel: Any) -> Any:
     class Within(kind):
         def __call__(self, *arguments: Any) -> Any:
             if not hasattr(self, "way_in"):
-                inner, jit = self, cast("Any", njit)
-                self.way_in = jit(nogil=True)(lambda *given: inner(*given))  # pyright: ignore[reportUnknownLambdaType]
+                inner = self
+                self.way_in = _without_counts(lambda *given: inner(*given), ENTRY)
             return self.way_in(*arguments)
 
     kernel.__class__ = Within

@@ -45,9 +45,8 @@ class Intermediate(KNOWN):
         self._ensure_finalized()
         if self._shared_module is None:
             link(self._final_module, [self])
-            own = {each for text in self.texts for each in defined(binding.parse_assembly(text))}
-            declare(self._final_module, own, "linkonce_odr")
-            declare(self._final_module, defined(self._final_module) - own, "internal")
+            # Not internal: LLVM would change what such functions take, and others would call them by the same name.
+            declare(self._final_module, defined(self._final_module), "linkonce_odr")
             self._shared_module = self._final_module
         return self._shared_module
 

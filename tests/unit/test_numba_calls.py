@@ -1,6 +1,7 @@
 """Kernels that pass tuples by pointer, and do not check calls that cannot fail, compute what Python computes."""
 
 import gc
+import math
 from typing import NamedTuple
 
 import numba
@@ -116,6 +117,30 @@ def test_a_function_that_numba_compiles_in_its_own_way_can_call_kernels(compiled
     given = shop()
     given.sums[:] = (1.0, 2.0, 3.0, 4.0)
     assert plain(given) == total(given, 0.25) + total(given, 1.0) == 0.25 * 10.0 + 10.0 + 2 * 4 * 1.5
+
+
+def large(x, scale):
+    """Too large to become part of its callers."""
+    total = 0.0
+    for i in range(x.size):
+        for power in range(1, 4):
+            total += math.sin(x[i]) ** power + math.cos(x[i]) * math.exp(-scale) + math.log(1.0 + scale * x[i] * x[i])
+            total -= math.atan2(x[i], scale) + math.sinh(0.1 * x[i]) * math.cosh(scale) - math.tanh(x[i] / scale)
+            if total > 10.0:
+                total = math.sqrt(total) + math.atan(x[i]) + math.log10(total) + math.exp(1.0 / total)
+            elif total < -10.0:
+                total = math.sqrt(-total) - math.asinh(x[i]) - math.log2(-total) + math.erf(1.0 / total)
+            x[i] += math.floor(total) + math.hypot(scale, total) * math.sin(power * scale)
+    return total
+
+
+@pytest.mark.parametrize("callable_by_python", [itself, lambda kernel: numba.njit(lambda *given: kernel(*given))])
+def test_a_kernel_is_called_after_another_that_contains_it(callable_by_python):
+    """In the machine code of the other it takes fewer arguments: called by mistake, it would crash the process."""
+    inner = within(large)
+    outer = within(lambda x, y: inner(x, 0.5) + inner(y, 0.25) + inner(x, 0.125) + inner(y, 2.0))
+    callable_by_python(outer)(np.ones(3), np.ones(4))
+    assert callable_by_python(inner)(np.ones(3), 0.5) == pytest.approx(large(np.ones(3), 0.5), rel=1e-12)
 
 
 def written(monkeypatch, call):

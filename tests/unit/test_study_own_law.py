@@ -176,5 +176,5 @@ def test_an_interrupt_inside_a_law_ends_the_run_as_anywhere_else(model, stop):
         def after(self, *_):
             raise stop("inside the law")
 
-    with pytest.raises(stop, match="^inside the law$"):
+    with pytest.raises(stop, match=r"^inside the law$"):
         rf.simulate(rf.Frame(**FRAME), rf.load_suite("el-centro-1940")[0], model, impact=Stops(0.5))
