@@ -6,6 +6,7 @@ run more slowly, and are not cached on disk.
 
 from collections.abc import Callable
 from contextlib import suppress
+from pickle import UnpicklingError
 from typing import Any, cast
 
 import numba
@@ -50,7 +51,41 @@ def compiled(function: Callable[..., Any], stamp: str) -> Any:
     if not hasattr(file, "_source_stamp"):
         return _without_counts(function, {})
     file._source_stamp = (file._source_stamp, stamp)
+    _keep_intact(kernel._cache, file)
     return kernel
+
+
+def _keep_intact(cache: Any, file: Any) -> None:
+    """Compile anew what a full disk, a killed process or two at once left cut short, outdated, or for other types.
+
+    numba saves the index before the code, and finds the code by a number in it.
+    """
+    load, save, read, write = cache.load_overload, cache.save_overload, file._load_data, file._save_data
+
+    def read_of_these_sources(name: str) -> Any:
+        stamp, data = read(name)
+        if stamp != file._source_stamp:
+            raise OSError  # as if the file were missing
+        return data
+
+    def write_with_stamp(name: str, data: Any) -> None:
+        write(name, (file._source_stamp, data))
+
+    def load_or_clear(signature: Any, context: Any) -> Any:
+        try:
+            found = load(signature, context)
+        except Exception:  # whatever pickle raises for a file that was cut short
+            with suppress(OSError):
+                cache.flush()
+            return None
+        return found if found is not None and tuple(found.signature.args) == tuple(signature) else None
+
+    def save_if_possible(signature: Any, result: Any) -> None:
+        with suppress(OSError, EOFError, UnpicklingError):  # a full disk, with an index that was cut short before
+            save(signature, result)
+
+    cache.load_overload, cache.save_overload = load_or_clear, save_if_possible
+    file._load_data, file._save_data = read_of_these_sources, write_with_stamp
 
 
 def compiled_within(function: Callable[..., Any], *, inlined: bool) -> Any:
