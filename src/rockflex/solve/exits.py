@@ -152,7 +152,8 @@ def fence_exit(
     """Return where a fence first falls to zero before `stop`, and which one; `stop` and -1 if none does.
 
     A fence may be zero at the start, since the previous phase ended there: then the sign of its first derivative that
-    is not zero decides. Its place is 0 if it is negative from the start.
+    is not zero decides, and if none is, as in a tendon on the border of slack in a base at rest, the phase goes on. Its
+    place is 0 if it is negative from the start.
     """
     found = -1
     for e in range(system.phases[at.phase].fences):
@@ -165,12 +166,15 @@ def fence_exit(
         zeros = 0
         if system.fence_kinds[at.phase, e, KIND] == STICKS:
             zeros = max(at.slip_onset - 1, 0)  # a slip that has just begun grows like t² or t³
-        elif polys[row, 0] <= NOUGHT * reach:
+        else:
             size, slope = sizes_at(system, at.phase, row, span, motion)
-            if polys[row, 0] < -NOUGHT * (size + slope * system.dt):
+            rounding = NOUGHT * (size + slope * system.dt)
+            if polys[row, 0] < -rounding:
                 return 0.0, e
-            if polys[row, 0] <= NOUGHT * (size + slope * system.dt):
-                zeros = 2 if abs(polys[row, 1]) <= NOUGHT * slope * span.length else 1
+            while zeros < polys.shape[1] and abs(polys[row, zeros]) <= rounding:
+                zeros += 1
+            if zeros == polys.shape[1]:
+                continue
         for k in range(polys.shape[1]):
             polys[work, k] = polys[row, k + zeros] if k + zeros < polys.shape[1] else 0.0
         if polys[work, 0] < 0.0 or (zeros > 0 and polys[work, 0] == 0.0 and polys[work, 1] < 0.0):

@@ -165,14 +165,19 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     """Return True if free vibration can neither end the phase nor increase a peak: every row stays near a constant.
 
     The base then stays in contact, or open by a rotation that remains. A row whose deviation from its constant is below
-    rounding has settled, too: a base that creeps back has no later peak.
+    rounding has settled, too: a base that creeps back has no later peak. So has a motion that is rounding next to the
+    displacements at rest, such as those of a base on springs.
     """
     p, pairs = at.phase, motion.norms.size
     if not system.phases[p].decays:
         return False
     held = system.phases[p].side != 0.0 and not system.phases[p].free
     moving = system.phases[p].active if system.phases[p].free else system.layout.modes
-    place = 0.0
+    place = size_at_rest = size_of_motion = 0.0
+    for k in range(moving):
+        size_at_rest = max(size_at_rest, math.hypot(motion.still[k], motion.still[pairs + k]))
+        size_of_motion = max(size_of_motion, math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k]))
+    calm = size_of_motion <= STILL * size_at_rest
     for f in range(log.peaks.size):
         rest, stray = motion.offset[f], 0.0
         for k in range(moving):
@@ -184,7 +189,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
             place = abs(rest)
             if rest - stray < motion.limits[LOW] or rest + stray > motion.limits[HIGH]:
                 return False
-        if f == GUARD and not system.phases[p].free:
+        if calm or (f == GUARD and not system.phases[p].free):
             continue
         if f == system.turning_row:
             if system.phases[p].turns != 0 and stray > STILL * place:
@@ -196,7 +201,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
         for k in range(moving):
             size = math.hypot(system.rows[p, VALUES, k, f], system.rows[p, VALUES, pairs + k, f])
             stray += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
-        if motion.offset[f] < stray:
+        if motion.offset[f] < stray and not calm:
             return False
     return True
 

@@ -167,7 +167,9 @@ def put_phase(system: System, p: int, phase: Phase, basis: Basis | Drift | None,
     levels = levels_of(basis.fastest, dt)
     terms = terms_of(basis.fastest, dt)
     marches = isinstance(basis, Basis)
-    decays = marches and (not phase.free or (not basis.dense and bool((basis.roots.real < 0.0).all())))
+    # A freedom that is held, such as the slip of a base that sticks, does not move: its roots, zero, do not count.
+    falls = marches and phase.free and (basis.dense or bool((basis.roots[: basis.moving].real >= 0.0).any()))
+    decays = marches and not falls
     pairs = arrow.coupling.shape[0] + arrow.coupling.shape[1]
     at_rest = phase.side == 0 and not phase.free  # then the rotation is not only held, but zero
     active = 0 if not marches else basis.moving if phase.free or at_rest else pairs
