@@ -34,7 +34,7 @@ def marched(structure, motion, ground, duration, step=2e-5):
         first = getattr(each, "initial_force", 0.0) / each.stiffness
         ratio = each.post_yield_ratio or 0.0
         if isinstance(each, rf.Tendon) and each.post_yield_ratio is None:
-            return each.initial_force + each.stiffness * elongation
+            return max(each.initial_force + each.stiffness * elongation, 0.0)
         total = each.stiffness * (elongation + first)
         spring = np.clip(total - each.stiffness * lost, -each.yield_force, each.yield_force)
         found = ratio * total + (1.0 - ratio) * spring
@@ -88,6 +88,12 @@ def marched(structure, motion, ground, duration, step=2e-5):
 
 CASES = {
     "tendon": [rf.Tendon(3e5, 4e6, position=0.1 * B)],
+    "slack tendon": [rf.Tendon(1e4, 4e7), rf.Tendon(0.0, 2e7, position=0.6 * B)],
+    "border of slack": [
+        rf.Tendon(0.0, 4e6, yield_force=3.6e5, post_yield_ratio=0.1),
+        rf.YieldingDissipator(2e7, 6e4, position=-0.7 * B, tension_only=True),
+        rf.YieldingDissipator(2e7, 6e4, position=0.7 * B, tension_only=True),
+    ],
     "damper": [rf.ViscousDamper(8e5, position=-0.5 * B), rf.ViscousDamper(8e5, position=0.5 * B)],
     "fuses": [
         rf.YieldingDissipator(2e7, 8e4, 0.05, position=-0.8 * B),

@@ -253,7 +253,7 @@ def mapped_forces(p, rotations):
                     friction = np.sign(stretch - known)
                 known, theta = stretch, reached
             if isinstance(each, rf.Tendon):
-                forces[row, place] = each.initial_force + each.stiffness * known
+                forces[row, place] = max(each.initial_force + each.stiffness * known, 0.0)
             elif isinstance(each, rf.FrictionDamper):
                 forces[row, place] = friction * each.force
             elif isinstance(each, rf.YieldingDissipator):

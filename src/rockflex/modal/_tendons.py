@@ -13,7 +13,8 @@ class Tendon:
 
     While the base rocks about a pivot at the distance r, the tendon is stretched by 2 r sin(|θ|/2), to first order
     r |θ|, and its force increases linearly from the initial force (Vassiliou & Makris 2015, doi
-    10.1061/(ASCE)EM.1943-7889.0000953). While it is elastic it never goes slack, because every rotation stretches it.
+    10.1061/(ASCE)EM.1943-7889.0000953). It pulls and never pushes: it goes slack at zero force. On rigid ground no
+    rotation makes an elastic tendon between the edges of the base slack; on springs the base can sink and shorten it.
 
     Attributes
     ----------

@@ -7,26 +7,27 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.modal import RockingProperties
 from rockflex.models._element import Element
-from rockflex.models._elements import arm_of
+from rockflex.models._elements import arm_of, is_in_reach
 
 FINE = 1e-3  # of the margin: sums this close to each other count as one
 
 
 def stiffnesses_of(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> list[Array]:
     """Return the possible values of k r² of every element about a pivot, in N m/rad."""
+    arms = [arm_of(properties, each, side) for each in elements]
     return [
-        np.unique([each.pull(branch).stiffness * arm_of(properties, each, side) ** 2 for branch in _reached(each)])
-        for each in elements
+        np.unique([each.pull(branch).stiffness * r**2 for branch in _reached(each, r)])
+        for each, r in zip(elements, arms, strict=True)
     ]
 
 
-def _reached(element: Element) -> set[int]:
+def _reached(element: Element, arm: float) -> set[int]:
     """Return the branches that an element can reach from its first, to which it also returns as it turns back."""
     reached: set[int] = set()
     ahead = {element.branches[0]}
     while ahead:
         reached |= ahead
-        ahead = {stop.branch for each in ahead for stop in element.stops(each)} - reached
+        ahead = {stop.branch for each in ahead for stop in element.stops(each) if is_in_reach(stop, arm)} - reached
     return reached
 
 

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models._element import BROKEN, DOWN, ELASTIC, SLACK, UP, Pull, Stop
+from rockflex.models._element import BORDER, BROKEN, DOWN, ELASTIC, SLACK, UP, Pull, Stop
 
-BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
 BROKEN_FOR_GOOD = 1e30  # the memory of an element that has broken, m
 
 
@@ -90,6 +89,7 @@ class Bar:
         found[e - memory < -reach - room] = DOWN
         if self.pulls_only:
             empty = (1.0 - self.ratio) * memory
-            found[(e < empty - room) & ((found != DOWN) | (self.ratio * e < (1.0 - self.ratio) * reach))] = SLACK
+            pulls = self.ratio * e >= (1.0 - self.ratio) * reach - room  # while it yields back
+            found[(e < empty - room) & ~((found == DOWN) & pulls)] = SLACK
         found[memory == BROKEN_FOR_GOOD] = BROKEN
         return found

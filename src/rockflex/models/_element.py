@@ -1,4 +1,4 @@
-"""What an element between the base and the ground is, and elements with one branch: elastic tendons and dashpots."""
+"""What an element between the base and the ground is, and elements without memory: elastic tendons and dashpots."""
 
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
+BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
 
 
 class Pull(NamedTuple):
@@ -84,8 +85,8 @@ class Element(Protocol):
         ...
 
 
-class OneBranch:
-    """What is common to elements with one branch and without memory."""
+class WithoutMemory:
+    """What is common to elements without memory, most of which have one branch."""
 
     @property
     def remembers(self) -> bool:
@@ -126,20 +127,34 @@ class OneBranch:
 
 
 @dataclass(frozen=True)
-class Spring(OneBranch):
-    """A tendon that stays elastic: F = F_0 + k δ."""
+class Spring(WithoutMemory):
+    """A tendon that stays elastic and cannot push: F = max(0, F_0 + k δ)."""
 
     stiffness: float
     initial_force: float
     position: float
 
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return (ELASTIC, SLACK) if self.stiffness > 0.0 else (ELASTIC,)
+
     def pull(self, branch: int) -> Pull:
-        del branch
-        return Pull(self.stiffness, 0.0, self.initial_force)
+        return Pull() if branch == SLACK else Pull(self.stiffness, 0.0, self.initial_force)
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        if self.stiffness == 0.0:
+            return ()
+        slack = branch == SLACK
+        return (Stop(slack, -self.initial_force / self.stiffness, 0.0, ELASTIC if slack else SLACK),)
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        del memory
+        more = self.stiffness * elongation
+        return np.where(self.initial_force + more < -BORDER * np.abs(more), SLACK, ELASTIC)
 
 
 @dataclass(frozen=True)
-class Dashpot(OneBranch):
+class Dashpot(WithoutMemory):
     """A viscous damper: F = c δ'."""
 
     coefficient: float

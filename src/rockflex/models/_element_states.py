@@ -93,7 +93,9 @@ def stored_energy(element: Element, elongation: Array, force: Array, plastic: Ar
     second term stays locked in while the bar is slack. A broken bar, whose m is NaN, stores nothing.
     """
     if isinstance(element, Spring):
-        return (element.initial_force + 0.5 * element.stiffness * elongation) * elongation
+        slack = -element.initial_force / element.stiffness if element.stiffness > 0.0 else -np.inf
+        taut = np.maximum(elongation, slack)
+        return (element.initial_force + 0.5 * element.stiffness * taut) * taut
     if not isinstance(element, Bar):
         return np.zeros(elongation.shape)
     k, first = element.stiffness, element.stiffness * element.stretched

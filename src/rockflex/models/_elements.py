@@ -5,7 +5,7 @@ import numpy as np
 from rockflex._constants import GRAVITY
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, ViscousDamper, YieldingDissipator
 from rockflex.models._bar import Bar
-from rockflex.models._element import Dashpot, Element, Spring
+from rockflex.models._element import Dashpot, Element, Spring, Stop
 from rockflex.models._phase import Border, Change, Key, Turning
 from rockflex.models._slider import HELD, Slider
 
@@ -86,9 +86,20 @@ def changes_of(properties: RockingProperties, elements: tuple[Element, ...], key
         if r == 0.0:
             continue
         for stop in each.stops(branch):
-            following = (*key[: place + 1], stop.branch, *key[place + 2 :])
-            found.append(Change(stop.upper == (r > 0.0), stop.place / r, stop.recall / r, known[place], following))
+            if is_in_reach(stop, r):
+                following = (*key[: place + 1], stop.branch, *key[place + 2 :])
+                memory = known.get(place, -1)
+                found.append(Change(stop.upper == (r > 0.0), stop.place / r, stop.recall / r, memory, following))
     return tuple(found)
+
+
+def is_in_reach(stop: Stop, arm: float) -> bool:
+    """Return whether some rotation about a pivot can bring an element at the distance `arm` to the end of a branch.
+
+    None makes a tendon between the pivots slack that has not yielded: the base lands first.
+    """
+    outer = stop.upper == (arm > 0.0)
+    return arm != 0.0 and (stop.recall != 0.0 or stop.place / arm > 0.0 or (outer and stop.place == 0.0))
 
 
 def turnings_of(

@@ -167,7 +167,8 @@ class Change(NamedTuple):
 
     δ/r, the elongation per unit distance from the pivot, is |θ|, and 2 sin(|θ|/2) in complete models.
 
-    The limit is reached from below if `outer`. `memory` is the index of m, and `key` the following phase.
+    The limit is reached from below if `outer`. `memory` is the index of m, -1 for an element without memory, and `key`
+    the following phase.
     """
 
     outer: bool

@@ -56,7 +56,8 @@ def _of_elements(model: SpringForces, key: Key) -> list[Fence]:
         for stop in each.stops(branch):
             row = -stretch
             row[-1] += stop.place
-            row[model.layout.memory + known[k]] += stop.recall
+            if k in known:
+                row[model.layout.memory + known[k]] += stop.recall
             way = 1.0 if stop.upper else -1.0
             found.append(Fence(way * row, CHANGES, _with(key, place, stop.branch), memory, value))
         if each.direction(branch) != 0:

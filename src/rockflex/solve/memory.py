@@ -116,7 +116,8 @@ def nearest_changes(system: System, phase: int, motion: Motion) -> None:
         kind = system.change_kinds[phase, x, OUTER]
         if kind < 0:
             continue
-        memory = motion.state[system.layout.memory + system.change_kinds[phase, x, MEMORY]]
+        index = system.change_kinds[phase, x, MEMORY]
+        memory = motion.state[system.layout.memory + index] if index >= 0 else 0.0
         place, recall = system.changes[phase, x, PLACE], system.changes[phase, x, RECALL]
         limit, rounding = turned(system, place + recall * memory), CLOSE * (abs(place) + abs(recall * memory))
         if kind == 0 and limit <= rounding:
