@@ -115,6 +115,8 @@ def cross(
                 log.tally[EVENTS] += 1
                 enter(system, at, system.links[p, TURNED if event == TURNS else BESIDE + 0], motion)
                 at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
+                if system.phases[p].fences > 0:  # the base may have begun to slip, which was not recorded either
+                    keep(log, now, system.phases[at.phase].side, here, span.rise, motion.state)
             else:
                 set_off(system, steps, at, bound, excess, motion)
                 at.onset = LIFTED
