@@ -59,14 +59,16 @@ def phase_exit(system: System, at: Progress, span: Span, motion: Motion, polys: 
         play = NOUGHT * max(abs(low), abs(high))
         low, high = low - play, high + play
     if at.resume == 0.0:
-        excess = max(polys[GUARD, 0] - high, low - polys[GUARD, 0])
-        if excess > 0.0:
-            return BEFORE, (HIGH if polys[GUARD, 0] > high else LOW), excess
+        # Where the ground falls faster than gravity both limits are exceeded: the base lifts where it is pulled more.
+        over, under = polys[GUARD, 0] - high, low - polys[GUARD, 0]
+        if max(over, under) > 0.0:
+            return BEFORE, (HIGH if over > under else LOW), max(over, under)
     stop, bound = band_exit(polys, low, low_rate, high, high_rate, at.resume)
     excess = 0.0
     if at.resume > 0.0 and stop == at.resume:
         value = evaluate(polys, GUARD, stop)[0]
-        excess = max(value - (high + high_rate * stop), low + low_rate * stop - value, 0.0)
+        beyond = value - (high + high_rate * stop) if bound == HIGH else low + low_rate * stop - value
+        excess = max(beyond, 0.0)
     return stop, bound, excess
 
 
