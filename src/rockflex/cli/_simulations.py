@@ -91,7 +91,9 @@ class Run:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Demands of the run that the ground or its tendons cannot meet."""
+        """Demands of the run that the ground or its tendons cannot meet; with a history also energies in imbalance."""
+        if self.response is not None:
+            return self.response.warnings
         return () if self.error is not None else warnings_of(self.model, self.peaks)
 
 

@@ -15,9 +15,10 @@ from rockflex.response._resistance_on_springs import push_on_springs, resistance
 from rockflex.response._respond import respond
 from rockflex.response._response import PEAKS, Response
 from rockflex.response._springs_path import springs_path
-from rockflex.response._warnings import warnings_of
+from rockflex.response._warnings import BALANCED, warnings_of, warnings_of_energy
 
 __all__ = [
+    "BALANCED",
     "GLOBAL",
     "IMPACT_WINDOW",
     "NAMES",
@@ -47,5 +48,6 @@ __all__ = [
     "respond",
     "springs_path",
     "warnings_of",
+    "warnings_of_energy",
     "weight_resistance",
 ]

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Generic, Self, TypeVar, overload
 
 from rockflex._arrays import Array, Bools
+from rockflex._errors import InputError
 from rockflex._files import path_of
 from rockflex._html import HtmlTable
 from rockflex._values import Value
@@ -16,7 +17,7 @@ from rockflex.response._file import load, save
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History, SampledHistory
 from rockflex.response._missing import MissingQuantityError
-from rockflex.response._warnings import warnings_of
+from rockflex.response._warnings import warnings_of, warnings_of_energy
 
 Quantity = TypeVar("Quantity")
 
@@ -242,8 +243,17 @@ class Response(HtmlTable, Value):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings if the ground or the tendons cannot provide the forces that the run assumes, one text each."""
-        return warnings_of(self.model, self.peaks())
+        """Warnings if the ground or the tendons cannot provide the forces that the run assumes, one text each.
+
+        A response with a history also warns if its energy balance does not close to 1e-6; `energy` is computed for it.
+        """
+        return (*warnings_of(self.model, self.peaks()), *self._warnings_of_energy())
+
+    def _warnings_of_energy(self) -> tuple[str, ...]:
+        try:
+            return () if self.history is None else warnings_of_energy(self.history.energy.closing_error)
+        except InputError:  # too fast for the sampling: no energies
+            return ()
 
     def peaks(self) -> dict[str, Any]:
         """Return every scalar by its name, for a table row or a JSON object."""

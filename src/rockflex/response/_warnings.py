@@ -1,7 +1,9 @@
-"""Warnings about forces that the ground or the tendons cannot provide."""
+"""Warnings about forces that the ground or the tendons cannot provide, and about energies that do not balance."""
 
 from collections.abc import Mapping
 from typing import Any
+
+BALANCED = 1e-6  # closing error of the energy balance up to which only rounding is at work
 
 
 def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
@@ -20,3 +22,14 @@ def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
             "elastic in the model, so the results are not valid. Give it a post_yield_ratio."
         )
     return tuple(found)
+
+
+def warnings_of_energy(closing_error: float) -> tuple[str, ...]:
+    """Return a text if the energy balance of a run does not close."""
+    if closing_error <= BALANCED:
+        return ()
+    return (
+        f"The energy balance closes only to {closing_error:.2g} of the largest input, {BALANCED:g} at most being due to "
+        "rounding: an event was missed, or the motion of an element or of the ground was misread. Do not use the run, "
+        "and report it as an error of the program.",
+    )

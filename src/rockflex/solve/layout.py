@@ -107,7 +107,7 @@ class System(NamedTuple):
     fence_values: Array  # (P, E, C): the row of the value that this memory takes
     limits: Array  # (P, 2, 2 + M): limits of the guard, and what the rotation and each memory add to them
     changes: Array  # (P, X, 2): limits of δ/r at which an element changes its branch: place, and factor of its memory
-    change_kinds: NDArray[np.int64]  # (P, X, 2): 1: reached from below, 0: from above, -1: none; the memory's index or -1
+    change_kinds: NDArray[np.int64]  # (P, X, 2): 1 reached from below, 0 from above, -1 none; memory's index or -1
     marks: Array  # (P, M): memories with a value of their own in a phase; NaN for others
     turnings: Array  # (P, M, 2): memory = arm δ/r - offset, of an element whose yielding ends; NaN for others
     recall: Array  # (P, b, M): factors of the memories in the forces on the base

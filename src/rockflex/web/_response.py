@@ -11,7 +11,7 @@ from rockflex._json import plain
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
-from rockflex.response import History, Response
+from rockflex.response import History, Response, warnings_of, warnings_of_energy
 from rockflex.solve import pace_of
 from rockflex.study import Case
 from rockflex.study._yielding import labelled_hysteresis
@@ -65,19 +65,21 @@ def response_view(state: State, uploads: Uploads, focus: object = "", element: o
     main = next((r for r in found if r.model == focus), found[0])
     p = built.properties
     drawn = chosen_element(element, p)
+    energy, curves = _energy(motion, main, state), [_curves(built, response, drawn) for response in found]
+    curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
     return plain(
         {
             **outline(state.structure, built),
             "motion": motion.name,
             "duration": motion.duration,
             "nominal": p.nominal_overturning_rotation,
-            "models": [_curves(built, response, drawn) for response in found],
+            "models": curves,
             "ground": ground_view(ground_of(state.ground, p), p),
             "element": drawn,
             "held": _held(p, motion, main, found, state),
             "self_centring": self_centring(p.pivots),
             "suggested_yield": _suggested_yield(p, motion),
-            "energy": _energy(motion, main, state),
+            "energy": energy,
         }
     )
 
@@ -105,7 +107,7 @@ def _curves(built: Built, response: Response, element: int | None) -> dict[str, 
         "label": response.model,
         "status": response.status,
         "peaks": response.peaks(),
-        "warnings": response.warnings,
+        "warnings": warnings_of(response.model, response.peaks()),  # the energies of one model only are computed
         "lifts": history.model.lifts,
         "fall_time": _fall_time(history),
         "uplift_times": history.uplift_times[:EVENTS],

@@ -13,9 +13,8 @@ from rockflex.report.run._numbers import rounded
 from rockflex.report.run._sides import overturning_margin
 from rockflex.report.run._start import starts_uplifted
 from rockflex.report.run._table import Cell, Table, shows
-from rockflex.response import IMPACT_WINDOW, History, Response
+from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
 
-BALANCED = 1e-6  # of the input energy
 OMITTED = "not computed"
 MOST = 2_000_000  # states times springs times modes: energies and friction of more take minutes
 
@@ -150,9 +149,9 @@ def _energy(run: Run) -> Cell:
         error = run.history.energy.closing_error
     except InputError:
         return Cell(OMITTED)
-    if error < BALANCED:
+    if error <= BALANCED:
         return Cell(f"closes to {_power(error)}", error, "closing_error")
-    return shows(error, "closing_error", wrong=error > 1e-3)
+    return shows(error, "closing_error", wrong=True)
 
 
 def _power(value: float) -> str:

@@ -32,6 +32,7 @@ from rockflex.report.run._room import (
 )
 from rockflex.report.run._structure import kind_of, mode_table, structure_facts
 from rockflex.report.run._table import Fact, Table
+from rockflex.response import warnings_of
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -144,7 +145,7 @@ def page_of(
         peaks=peak_table(about),
         checks=check_table(about, friction, left_out),
         legend=[*own, *told],
-        warnings=_few([*warnings, *_warnings(about)]),
+        warnings=_few([*warnings, *_warnings(about, left_out)]),
         notes=_run_together(notes),
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),
         inputs=fingerprint(about, record),
@@ -167,11 +168,11 @@ def html_of(page: Page, about: Given) -> str:
     return template.render(page=page, longest=LONGEST, **drawings)
 
 
-def _warnings(about: Given) -> list[str]:
-    """Return the warnings of the runs, each with its models."""
+def _warnings(about: Given, omitted: Collection[str]) -> list[str]:
+    """Return the warnings of the runs, each with its models; for the labels in `omitted` those of the peaks only."""
     found: dict[str, list[str]] = {}
     for label, run in zip(about.labels, about.responses, strict=True):
-        for text in run.warnings:
+        for text in warnings_of(run.model, run.peaks()) if label in omitted else run.warnings:
             found.setdefault(text, []).append(label)
     return [f"{', '.join(labels)}: {text}" for text, labels in found.items()]
 
