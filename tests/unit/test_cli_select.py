@@ -53,15 +53,15 @@ def test_document_is_the_selection():
 @pytest.mark.parametrize(
     ("text", "target"),
     [
-        ("ec8:ag=2", rf.ec8_spectrum(2.0)),
-        ("ec8-2024:s_alpha=5,s_beta=0.15g,site=C,damping=0.02",
+        ("ec8:ag=2m/s2", rf.ec8_spectrum(2.0)),
+        ("ec8-2024:s_alpha=500 cm/s2,s_beta=0.15g,site=C,damping=0.02",
          rf.ec8_second_spectrum(5.0, 0.15 * G, "C", damping_ratio=0.02)),
-        ("ec8-2024:s_alpha=5,s_beta=2,f_alpha=1.3,f_beta=1.7,topography=1.2",
+        ("ec8-2024:s_alpha=5m/s²,s_beta=200gal,f_alpha=1.3,f_beta=1.7,topography=1.2",
          rf.ec8_second_spectrum(5.0, 2.0, amplification=(1.3, 1.7), topography=1.2)),
-        ("ec8: ag = 2, ground=E, type=2, importance=1.2, damping=0.02",
+        ("ec8: ag = 2 m/s2, ground=E, type=2, importance=1.2, damping=0.02",
          rf.ec8_spectrum(2.0, "E", 2, importance=1.2, damping_ratio=0.02)),
         ("asce7:sds=1g,sd1=0.6g,tl=8", rf.asce7_spectrum(G, 0.6 * G, 8.0)),
-        ("asce7:sds=9,sd1=5,tl=8,mce=yes", rf.asce7_spectrum(9.0, 5.0, 8.0, mce=True)),
+        ("asce7:sds=9m/s2,sd1=5m/s2,tl=8,mce=yes", rf.asce7_spectrum(9.0, 5.0, 8.0, mce=True)),
         ("asce7:ss=1.5g,s1=0.6g,site=default,tl=8,mce=no", rf.asce7_site_spectrum(1.5 * G, 0.6 * G, "default", 8.0)),
     ],
 )  # fmt: skip
@@ -82,6 +82,24 @@ def test_targets_of_codes(text, target):
     assert found["periods"] == target.periods.tolist()
     assert found["sa"] == pytest.approx(target.sa.tolist(), rel=1e-14)
     assert found["damping_ratio"] == target.damping_ratio
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ("ec8:ag=0.25", "ag"),
+        ("ec8-2024:s_alpha=0.6,s_beta=0.2g", "s_alpha"),
+        ("ec8-2024:s_alpha=0.6g,s_beta=0.2", "s_beta"),
+        ("asce7:sds=1,sd1=0.6g,tl=8", "sds"),
+        ("asce7:sds=1g,sd1=0.6,tl=8", "sd1"),
+        ("asce7:ss=1.5,s1=0.6g,site=C,tl=8", "ss"),
+        ("asce7:ss=1.5g,s1=0.6,site=C,tl=8", "s1"),
+    ],
+)
+def test_an_acceleration_of_a_code_needs_its_unit(text, key):
+    said = " ".join(refused(*USUAL, "--target", text).split())
+    assert f": {key} must be a number with its unit" in said
+    assert all(unit in said for unit in ("g", "m/s2", "cm/s2", "in/s2"))
 
 
 def test_target_from_a_file(tmp_path):
@@ -158,19 +176,19 @@ def test_records_keep_their_vertical_component(tmp_path):
         ),
         (("--target", "ec8:ag=1,soil=C"), "--target ec8:...: 'soil' is not known. The keys are ag, and ground"),
         (
-            ("--target", "ec8-2024:s_alpha=5,s_beta=2,f_beta=2"),
+            ("--target", "ec8-2024:s_alpha=5m/s²,s_beta=200gal,f_beta=2"),
             "--target ec8-2024:...: give both f_alpha and f_beta, or",
         ),
         (("--target", "ec8:ag"), "--target ec8:...: 'ag' has no value. Write each key once, as in ec8:key=value"),
         (("--target", "ec8:ag=1,ag=2"), "--target ec8:...: 'ag' occurs twice"),
-        (("--target", "ec8:ag=0.2G"), "--target ec8: ag must be a number, but '0.2G' was given"),
-        (("--target", "ec8:ag=1,ground=Z"), "ground must be one of A, B, C, D, E"),
+        (("--target", "ec8:ag=0.2 miles"), "--target ec8: ag must be a number with its unit"),
+        (("--target", "ec8:ag=1g,ground=Z"), "ground must be one of A, B, C, D, E"),
         (
             ("--target", "asce7:sds=1"),
             "--target asce7:...: sd1 is missing. The keys are sds, sd1, tl, and mce if wanted.",
         ),
         (("--target", "asce7:ss=1"), "--target asce7:...: s1 is missing. The keys are ss, s1, site, tl, and mce"),
-        (("--target", "asce7:sds=1,sd1=1,tl=8,mce=1"), "--target asce7: mce must be yes or no, but '1' was given"),
+        (("--target", "asce7:sds=1g,sd1=1g,tl=8,mce=1"), "--target asce7: mce must be yes or no, but '1' was given"),
         (("--damping", 0.02), "--damping is for a target from a file. Write ec8:...,damping=0.02"),
         (("--periods", "0.2,x"), "--periods must be a number, but 'x' was given"),
         (("--periods", "2,0.2"), "periods must be a range such as (0.2, 2.0)"),

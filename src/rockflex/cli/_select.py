@@ -15,7 +15,7 @@ EPILOG = """[bold]Examples[/bold]
 
 rockflex select fema-p695-far-field --target ec8:ag=0.25g,ground=C --count 7 --periods 0.2,2 --out chosen
 
-rockflex select folder --target ec8:ag=2.5,ground=B,type=2,importance=1.2 -n 7 --periods 0.1,1 --per-event 1
+rockflex select folder --target ec8:ag=2.5m/s2,ground=B,type=2,importance=1.2 -n 7 --periods 0.1,1 --per-event 1
 
 rockflex select folder --target asce7:sds=1g,sd1=0.6g,tl=8 -n 11 --periods 0.2,2 --measure rotd100 --least 0.9
 
@@ -32,7 +32,7 @@ asce7:sds=A,sd1=A,tl=S,mce=yes|no: ASCE 7-16, 11.4.6; or from the maps: asce7:ss
 
 A file with the columns "period (s), sa (g)".
 
-Accelerations A are in m/s², or in g with the letter: 0.25g."""
+Accelerations A are written with their unit, such as 0.25g or 2.45m/s2."""
 
 CHOICE, WRITTEN = "Choice", "Results"
 _MEASURES: "dict[str, Combination]" = {

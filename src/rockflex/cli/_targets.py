@@ -4,11 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion import (
+    UNITS,
     TargetSpectrum,
+    acceleration_in,
     asce7_site_spectrum,
     asce7_spectrum,
     ec8_second_spectrum,
@@ -28,7 +29,8 @@ def parse_target(text: str, damping: float | None) -> TargetSpectrum:
     Raises
     ------
     InputError
-        If a code or a key is unknown, a key is missing or repeated, a value is no number, or the file cannot be read.
+        If a code or a key is unknown, a key is missing or repeated, a value is no number, an acceleration has no unit, or
+        the file cannot be read.
     """
     code, colon, rest = text.partition(":")
     if not colon or code not in ("ec8", "ec8-2024", "asce7"):
@@ -111,8 +113,13 @@ def _read(code: str, items: dict[str, str], needed: dict[str, Reader], optional:
 
 
 def _acceleration(name: str, text: str) -> float:
-    """Read m/s², or g where the number ends in g."""
-    return _number(name, text[:-1].strip()) * GRAVITY if text.endswith("g") else _number(name, text)
+    value = acceleration_in(text)
+    if value is None:
+        raise InputError(
+            f"{name} must be a number with its unit, such as 0.25g or 2.45m/s2, but {shown(text)} was given. The units "
+            f"are {', '.join(UNITS)}."
+        )
+    return value
 
 
 def _number(name: str, text: str) -> float:

@@ -29,10 +29,12 @@ from rockflex.motion._stations import StationRecord, group_stations
 from rockflex.motion._suite import Suite
 from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_plain, survey_records
 from rockflex.motion._target import TargetSpectrum
+from rockflex.motion._units import UNITS, acceleration_in
 from rockflex.motion._velocity_pulse import mavroeidis_papageorgiou_pulse
 
 __all__ = [
     "MEASURES",
+    "UNITS",
     "Combination",
     "GroundMotion",
     "Measure",
@@ -47,6 +49,7 @@ __all__ = [
     "SurveyEntry",
     "TargetSpectrum",
     "Vertical",
+    "acceleration_in",
     "asce7_site_spectrum",
     "asce7_spectrum",
     "check_horizontal",

@@ -54,6 +54,13 @@ def spelled(text: str) -> str | None:
     return "in/s2" if plain.startswith("in") else f"{found[1] or ''}m/s2"
 
 
+def acceleration_in(text: str) -> float | None:
+    """Return an acceleration in m/s² that is written with its unit, such as 0.25g or 2.45 m/s2; None without one."""
+    found = FACTOR.fullmatch(text) if len(text) < LONGEST else None
+    name = found and spelled(found[2])
+    return None if not found or name is None else float(found[1]) * UNITS[name]
+
+
 def declared(units: object) -> Unit:
     """Return the unit that a caller names, with a number before it for a multiple, such as "2.4e-4 cm/s2".
 
