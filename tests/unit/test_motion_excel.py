@@ -1,6 +1,7 @@
 """Excel workbooks, written with openpyxl."""
 
 import io
+import subprocess
 import sys
 import zipfile
 
@@ -88,6 +89,63 @@ def test_a_workbook_that_unpacks_to_more_than_it_may(tmp_path, monkeypatch):
     monkeypatch.setattr(_excel, "LARGEST", 100)
     with pytest.raises(rf.InputError, match=r"has 0 MB when unpacked, above 0\.0001 MB\. Save it as CSV"):
         rf.read_motion(file)
+
+
+MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+PACKAGE = "http://schemas.openxmlformats.org/package/2006"
+KINDS = "application/vnd.openxmlformats-officedocument.spreadsheetml."
+PARTS = {
+    "[Content_Types].xml": f'<Types xmlns="{PACKAGE}/content-types">'
+    f'<Override PartName="/xl/workbook.xml" ContentType="{KINDS}sheet.main+xml"/>'
+    f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{KINDS}worksheet+xml"/></Types>',
+    "xl/workbook.xml": f'<workbook xmlns="{MAIN}" xmlns:r="{OFFICE}">'
+    '<sheets><sheet name="S" sheetId="1" r:id="r1"/></sheets></workbook>',
+    "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{PACKAGE}/relationships">'
+    f'<Relationship Id="r1" Type="{OFFICE}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
+}
+BOUNDED = """
+import resource, sys
+import rockflex as rf
+import openpyxl
+resource.setrlimit(resource.RLIMIT_AS, (2_000_000_000, 2_000_000_000))
+try:
+    print(rf.read_motion(sys.argv[1], units="g").acceleration.size)
+except rf.InputError as error:
+    print(error)
+"""
+
+
+def crafted(file, last_row, dimension="", columns=""):
+    """Write a workbook of some kilobytes: three rows of a record, and one far below them."""
+    cells = [f"<c><v>{0.01 * k:.2f}</v></c><c><v>{a}</v></c>" for k, a in enumerate((0.1, -0.2, 0.3, 0.0))]
+    places = [*range(1, len(cells)), last_row]
+    rows = "".join(f'<row r="{place}">{each}</row>' for place, each in zip(places, cells, strict=True))
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in PARTS.items():
+            archive.writestr(name, text)
+        sheet = f'<worksheet xmlns="{MAIN}">{dimension}<sheetData>{rows}{columns}</sheetData></worksheet>'
+        archive.writestr("xl/worksheets/sheet1.xml", sheet)
+    return file
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the memory of a process is limited as on Unix")
+@pytest.mark.parametrize(
+    ("last_row", "more", "said"),
+    [
+        (2**20, {"dimension": '<dimension ref="A1:XFD1048576"/>'}, "4"),
+        (10**12, {}, "million cells lie before its last filled ones"),
+        (4, {"columns": "".join(f'<row r="{k}"><c r="XFD{k}"/></row>' for k in range(5, 30_000))}, "million cells lie"),
+    ],
+    ids=["claimed size", "row far below", "columns far away"],
+)
+def test_a_small_workbook_with_cells_far_apart_takes_little_time_and_memory(tmp_path, last_row, more, said):
+    file = crafted(tmp_path / "far.xlsx", last_row, **more)
+    found = subprocess.run(
+        [sys.executable, "-c", BOUNDED, file], capture_output=True, text=True, timeout=60.0, check=False
+    )
+    assert found.returncode == 0, found.stderr
+    assert said in found.stdout
 
 
 def test_without_openpyxl(tmp_path, monkeypatch):

@@ -16,6 +16,7 @@ from rockflex.motion._units import Unit
 
 ZIPPED, OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 LARGEST = 100_000_000  # bytes of a workbook when unpacked
+MOST = 5_000_000  # cells of a workbook, also empty ones; every 20 characters in a cell count as one
 INSTALL = "Install it: pip install 'rockflex[excel]', or save the sheet as CSV."
 
 
@@ -52,7 +53,7 @@ def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
     Raises
     ------
     InputError
-        If it is none, or one of the old format, it cannot be read, or openpyxl is not installed.
+        If it is none, or one of the old format, it is too large or cannot be read, or openpyxl is not installed.
     """
     if content.startswith(OLD):
         raise InputError(f"{file} is a workbook of the old format. Save it as .xlsx or CSV.")
@@ -74,12 +75,34 @@ def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about styles and other extensions that do not matter here
             book: Any = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
-            sheets = {
-                str(sheet.title): [[_text(cell) for cell in row] for row in sheet.iter_rows(values_only=True)]
-                for sheet in book.worksheets
-            }
+            return _cells(file, book)
+    except InputError:
+        raise
     except Exception as error:  # damaged workbooks raise many kinds of errors
         raise InputError(f"{file} cannot be read as an Excel workbook: {str(error)[:200]}.") from error
+
+
+def _cells(file: Path, book: Any) -> dict[str, list[list[str]]]:
+    """Return the cells of the sheets of an open workbook; those that only lie far apart are not filled up for long."""
+    sheets: dict[str, list[list[str]]] = {}
+    count, empty = 0, list[str]()
+    for sheet in book.worksheets:
+        sheet.reset_dimensions()  # a file may claim any, and each row would be filled up to them
+        rows = sheets[str(sheet.title)] = list[list[str]]()
+        for row in sheet.iter_rows(values_only=True):
+            cells = [""] * len(row)
+            for k, cell in enumerate(row):
+                cells[k] = _text(cell)
+                count += 1 + len(cells[k]) // 20
+                if count > MOST:
+                    break
+            count += not cells
+            if count > MOST:
+                raise InputError(
+                    f"{file}: more than {MOST / 1e6:g} million cells lie before its last filled ones, with the empty "
+                    "ones between them. Delete what is far from the record, or save the sheet as CSV."
+                )
+            rows.append(cells if any(cells) else empty)
     return sheets
 
 
@@ -97,7 +120,7 @@ def _table(cells: list[list[str]]) -> Table | None:
         return None
     rows = [(i, row) for i, row in numbered[begin:] if any(row)]
     heads = [row for _, row in numbered[:begin] if any(row)]
-    used = [k for k in range(max(len(row) for _, row in rows)) if any(k < len(row) and row[k] for _, row in rows)]
+    used = sorted({k for _, row in rows for k, cell in enumerate(row) if cell})
 
     def kept(row: list[str]) -> list[str]:
         return [row[k] if k < len(row) else "" for k in used]
