@@ -3,7 +3,7 @@ import pytest
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.motion import read_components, read_motion
+from rockflex.motion import group_stations, read_components, read_motion
 
 VALUES = np.array([0.001, -0.02, 0.3, 0.0, 0.125])
 
@@ -289,3 +289,50 @@ def test_components_in_columns(tmp_path):
 )
 def test_labels_in_other_languages(tmp_path, head):
     assert read_motion(write(tmp_path, f"{head}\n0;9;1\n0,1;9;2\n0,2;9;3\n")).pga == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize(
+    ("head", "names"),
+    [
+        ("t;a_x;a_z", ("x", "vertical")),
+        ("time (s);a NS (g);a UD (g)", ("NS", "vertical")),
+        ("t [s];a_x [g];a_y [g];a_z [g]", ("x", "y", "vertical")),
+        ("Zeit;ax;ay;az", ("x", "y", "vertical")),
+        ("t;a 000;a 090;a V", ("000", "090", "vertical")),
+        ("a_x;a_z", ("x", "vertical")),
+        ("a NS;a UD", ("NS", "vertical")),
+        ("acc NS;acc UD", ("NS", "vertical")),
+        ("NS (g);EW (g)", ("NS", "EW")),
+    ],
+)
+@pytest.mark.parametrize("point", [".", ","])
+def test_labels_that_name_components(tmp_path, head, names, point):
+    timed = head.startswith(("t", "Z"))
+    columns = [VALUES / (k + 1) for k in range(len(names))]
+    rows = zip(*([0.01 * np.arange(VALUES.size)] if timed else []), *columns, strict=True)
+    lines = [";".join(f"{value:.17g}".replace(".", point) for value in row) for row in rows]
+    file = write(tmp_path, "\n".join([head, *lines, ""]), "lab.csv")
+    found = read_components(file, units="g", dt=None if timed else 0.01)
+    along = [motion for motion in found if not motion.metadata.is_vertical]
+    upwards = [motion.vertical for motion in found if motion.vertical is not None]
+    upwards += [motion.acceleration for motion in found if motion.metadata.is_vertical]
+    wanted = [name for name in names if name != "vertical"]
+    if len(wanted) > 1:
+        assert [motion.metadata.component for motion in along] == wanted
+        assert group_stations(found)[0].pair == tuple(along)
+    read = [*(motion.acceleration for motion in along), *upwards]
+    assert len(read) == len(names)
+    for given, values in zip(columns, read, strict=True):
+        np.testing.assert_allclose(values, given * GRAVITY, rtol=1e-14)
+    assert {motion.dt for motion in found} == {0.01}
+
+
+@pytest.mark.parametrize("head", ["t;a;b", "t;as;at", "t;avg;all", "t;a_filtered;a_raw"])
+def test_labels_that_name_no_component_are_refused(tmp_path, head):
+    rows = "".join(f"{0.01 * k};{value};{value}\n" for k, value in enumerate(VALUES))
+    with pytest.raises(InputError, match="has 3 columns, and its header does not name"):
+        read_components(write(tmp_path, f"{head}\n{rows}", "lab.csv"), units="g")
+
+
+def test_two_columns_of_a_curve_are_time_and_acceleration(tmp_path):
+    assert read_motion(write(tmp_path, table(";", "X;Y\n"), "lab.csv"), units="g").dt == 0.01

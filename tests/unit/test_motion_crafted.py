@@ -38,6 +38,7 @@ CRAFTED = {
     "signs": f"'+-' * {SIZE // 2}",
     "blanks": f"'time' + ' ' * {SIZE} + 'x{ROWS}'",
     "blanks in a bracket": f"'time (s) acc (' + ' ' * {SIZE} + 'g){ROWS}'",
+    "label of a component": f"'t;a ' + '1' * {SIZE} + 'x;a_' + ' ' * {SIZE} + 'z;b\\n0;1;2;3\\n1;1;2;3\\n2;1;2;3'",
     "tabs and blanks": f"'time' + '\\t ' * {SIZE // 2} + 'x{ROWS}'",
     "brackets": f"'(' * {SIZE} + '{ROWS}'",
     "brackets closed once": f"'()' + '[(' * {SIZE // 2} + '{ROWS}'",

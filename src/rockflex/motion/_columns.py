@@ -9,7 +9,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion._direction import azimuth_of, direction_of, is_horizontal_name, told_apart
+from rockflex.motion._direction import HORIZONTAL, VERTICAL, azimuth_of, direction_of, is_horizontal_name, told_apart
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._table import BRACKET, TIME, Table, after_brackets
@@ -17,10 +17,16 @@ from rockflex.motion._text import DECIMAL, acceleration_of, build_motion, number
 from rockflex.motion._units import Unit, spelled
 
 SECONDS = ("s", "sec", "secs", "second", "seconds")
+PREFIX = r"(?:acc[a-z]*+|a)[\s_.-]++"
 UPWARDS = re.compile(
-    r"(?:acc[a-z]*+[\s_-]++)?(?:ver|vert|vertical|up|ud|u-d)(?![a-z])|acc[a-z]*+[\s_-]++[vz](?![a-z])", re.I
+    rf"(?:{PREFIX})?+(?:ver|vert|vertical|up|ud|u-d)(?![a-z])|(?:{PREFIX}|a)[vz](?![a-z])", re.IGNORECASE
 )
-ACCELERATION = re.compile(r"(?:acc|acel|beschl)[^\W\d_]*+\.?", re.IGNORECASE)
+# The letter a alone needs the name of a component: a_x, ax, a NS.
+ACCELERATION = re.compile(
+    r"(?:acc|acel|beschl)[^\W\d_]*+\.?|"
+    rf"a(?=(?:[xyz]|[\s_.-]++(?:[xyz]|{HORIZONTAL.pattern}|{VERTICAL.pattern}))(?!\w))",
+    re.IGNORECASE,
+)
 STATED = re.compile(r"\bunits?\s*+[:=]\s*+\(?([^\s,;()]++)", re.IGNORECASE)
 STEP = re.compile(rf"\bdt\s*+[:=]\s*+({DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
 REMEDY = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
@@ -91,15 +97,17 @@ def _component(label: str) -> str:
 def _choose(file: Path, labels: list[str], n_columns: int) -> Chosen:
     """Return which columns are which."""
     times = [i for i, label in enumerate(labels) if TIME.match(label)]
-    upwards = _vertical_columns(labels)
+    # Of two columns one is the time, unless the labels are those of two components.
+    beside = len(labels) > 2 or (len(labels) == 2 and not times)
+    upwards = [i for i, label in enumerate(labels) if UPWARDS.match(label)] if beside else []
     others = [i for i in range(len(labels)) if i not in (*times, *upwards)]
     along = [i for i in others if ACCELERATION.match(labels[i])]
-    if not along and len(labels) > 2:
+    if not along and beside and (len(labels) > 2 or not {"X", "Y"}.intersection(labels)):  # X and Y may be a curve
         along, alone = _by_names(labels, others)
         upwards = [*upwards, *alone]
     vertical = _vertical_column(file, labels, upwards)
-    if len(along) == 1 and len(times) == 1:
-        return Chosen(times[0], (along[0],), vertical)
+    if len(along) == 1 and (len(times) == 1 or (n_columns == 2 and vertical is not None)):
+        return Chosen(times[0] if times else None, (along[0],), vertical)
     names = {_component(labels[i]) for i in along} - {""}
     if len(along) > 1 and len(times) <= 1 and len(names) == len(along):
         return Chosen(times[0] if times else None, tuple(along), vertical)
@@ -123,11 +131,6 @@ def _by_names(labels: list[str], others: list[int]) -> tuple[list[int], list[int
     upwards = [i for i in others if _component(labels[i]).upper() in ("Z", "V")]
     along = [i for i in others if i not in upwards]
     return (along, upwards) if all(is_horizontal_name(_component(labels[i])) for i in along) else ([], [])
-
-
-def _vertical_columns(labels: list[str]) -> list[int]:
-    """Return the columns of vertical acceleration beside the time and a horizontal one."""
-    return [i for i, label in enumerate(labels) if UPWARDS.match(label)] if len(labels) > 2 else []
 
 
 def _vertical_column(file: Path, labels: list[str], found: list[int]) -> int | None:

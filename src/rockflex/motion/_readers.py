@@ -41,10 +41,11 @@ def read_motion(
     - COSMOS (V1, V2; V0 if the header says what a count is), with one or more channels.
     - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks; decimals may be marked by
       commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A single column is the
-      acceleration, two columns are time (s) and acceleration. With more columns, a header line must have exactly one
-      label that begins with "t" or "time" and one that begins with "acc"; a label "vertical" or "up", also after
-      "acc", is the vertical acceleration, positive upwards. More than one horizontal acceleration needs names, as in
-      "acc NS (g), acc EW (g)" or "NS (gal), EW (gal), UD (gal)".
+      acceleration, two columns are time (s) and acceleration, unless a header line names them as two components. With
+      more columns, a header line must have exactly one label that begins with "t" or "time" and one that begins with
+      "acc"; a label "vertical" or "up", also after "acc", is the vertical acceleration, positive upwards. More than one
+      horizontal acceleration needs names, as in "acc NS (g), acc EW (g)", "a_x (g), a_y (g), a_z (g)" or "NS (gal),
+      EW (gal), UD (gal)"; z, v and UD are vertical.
     - Excel workbooks (.xlsx), with the same columns in one or more sheets; needs openpyxl, ``rockflex[excel]``.
     - What ObsPy reads, such as MiniSEED, SAC, GSE2 and Kinemetrics EVT; needs ObsPy, ``rockflex[obspy]``.
 
