@@ -25,6 +25,11 @@ def few(texts: Sequence[str]) -> str:
     return ", ".join(texts if len(texts) <= FEW else [*texts[:4], "...", *texts[-2:]])
 
 
+def counted(n: int, one: str, several: str = "") -> str:
+    """Return a number with its noun: 1 record, 2 records; `several` is the plural if it is not `one` with an s."""
+    return f"{n} {one if n == 1 else several or f'{one}s'}"
+
+
 class _Short(reprlib.Repr):
     def __init__(self) -> None:
         super().__init__()

@@ -35,8 +35,8 @@ def test_whole_suite():
 
 
 def test_directory(tmp_path):
-    for name in ("b", "a"):
-        np.savetxt(tmp_path / f"{name}.txt", np.column_stack((0.02 * np.arange(50), ACCELERATION)))
+    for name, factor in (("b", 1.0), ("a", 2.0)):
+        np.savetxt(tmp_path / f"{name}.txt", np.column_stack((0.02 * np.arange(50), factor * ACCELERATION)))
     assert names(find_motions([str(tmp_path)], units="m/s2")) == ["a", "b"]
 
 

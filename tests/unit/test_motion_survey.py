@@ -1,5 +1,6 @@
 """A folder as it comes: what is taken, and what is not, and why; and the components by recording."""
 
+import numpy as np
 import pytest
 
 import rockflex as rf
@@ -140,3 +141,52 @@ def test_stations_bring_their_vertical_component():
         rf.group_stations(3)
     with pytest.raises(rf.InputError, match="motions must hold GroundMotion objects, but str was given"):
         rf.group_stations(["a"])
+
+
+def long_at2(component, samples):
+    lines = "\n".join(f" {value: .7E}" for value in samples)
+    return f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= {len(samples)}, DT= .01\n{lines}\n"
+
+
+def table_of(samples, head, unit=1.0):
+    return f"time (s),{head}\n" + "".join(f"{0.01 * k:.2f},{unit * value:.6f}\n" for k, value in enumerate(samples))
+
+
+def test_a_record_that_several_files_hold_is_taken_once_and_its_pair_stays_a_pair(tmp_path):
+    first, second = 0.2 * np.random.default_rng(1).standard_normal((2, 300))
+    files = {
+        "RSN5_ABC000.AT2": long_at2("000", first),
+        "RSN5_ABC090.AT2": long_at2("090", second),
+        "Copy of RSN5_ABC000.AT2": long_at2("000", first),
+        "a.csv": table_of(first, "acc (g)"),
+        "b.csv": table_of(second, "acc (m/s2)", 9.80665),
+        "half.csv": table_of(0.5 * first, "acc (g)"),
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    survey = rf.survey_records(tmp_path)
+    assert [entry.file for entry in survey.taken] == ["RSN5_ABC000.AT2", "RSN5_ABC090.AT2", "half.csv"]
+    kept = {entry.file: name for entry in survey.left_out for name in files if name in entry.reason}
+    assert kept == {
+        "Copy of RSN5_ABC000.AT2": "RSN5_ABC000.AT2",
+        "a.csv": "RSN5_ABC000.AT2",
+        "b.csv": "RSN5_ABC090.AT2",
+    }
+    with pytest.warns(rf.RecordWarning, match=r"Left out: 3 copies .*a\.csv \(of RSN5_ABC000\.AT2\)"):
+        suite = rf.read_suite(tmp_path)
+    assert suite.names == ("RSN5_ABC000", "RSN5_ABC090", "half")
+    assert [each.pair for each in rf.group_stations(suite) if len(each.horizontal) == 2] == [tuple(suite)[:2]]
+    assert [len(each.horizontal) for each in survey.stations] == [2, 1]
+
+
+def test_components_that_names_tell_apart_are_no_copies(tmp_path):
+    samples = 0.1 * np.random.default_rng(2).standard_normal(100)
+    both = "time (s),acc NS (g),acc EW (g)\n" + "".join(f"{0.01 * k:.2f},{a},{a}\n" for k, a in enumerate(samples))
+    for name in ("ABC000.csv", "ABC090.csv"):
+        (tmp_path / name).write_text(table_of(samples, "acc (g)"))
+    assert rf.read_suite(tmp_path).names == ("ABC000", "ABC090")
+    (tmp_path / "both.csv").write_text(both)
+    assert rf.read_suite([tmp_path / "both.csv"]).names == ("both-NS", "both-EW")
+    for name in ("RSN1_A000.AT2", "RSN2_A000.AT2"):
+        (tmp_path / name).write_text(long_at2("000", samples))
+    assert len(rf.read_suite([tmp_path / "RSN1_A000.AT2", tmp_path / "RSN2_A000.AT2"])) == 2

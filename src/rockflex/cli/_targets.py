@@ -29,8 +29,8 @@ def parse_target(text: str, damping: float | None) -> TargetSpectrum:
     Raises
     ------
     InputError
-        If a code or a key is unknown, a key is missing or repeated, a value is no number, an acceleration has no unit, or
-        the file cannot be read.
+        If a code or a key is unknown, a key is missing or repeated, a value is no number or has no unit, or the file
+        cannot be read.
     """
     code, colon, rest = text.partition(":")
     if not colon or code not in ("ec8", "ec8-2024", "asce7"):

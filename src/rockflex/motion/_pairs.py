@@ -82,6 +82,22 @@ def _stems(file: Path, motion: GroundMotion) -> list[str]:
     return [file.stem[: len(str(key[1]))] for key in _keys(file, None) if key[1]]
 
 
+def are_apart(file: Path, info: RecordInfo | None, other: Path, known: RecordInfo | None) -> bool:
+    """Return whether two files are of different recordings by their numbers, or of different components."""
+    one, two = info or RecordInfo(), known or RecordInfo()
+    for fact in ("rsn", "azimuth"):
+        values = {getattr(one, fact), getattr(two, fact)} - {None}
+        if len(values) > 1:
+            return True
+    first, second = _components(file), _components(other)
+    return any(first[station] != second[station] for station in first.keys() & second.keys())
+
+
+def _components(file: Path) -> dict[Key, str]:
+    """Return what the name of a file may say of its component, by the station that the rest of it then is."""
+    return {key: file.stem[len(str(key[1])) :].lstrip(APART).casefold() for key in _keys(file, None)}
+
+
 def named(files: Iterable[Path]) -> str:
     """Return the names of files, of the first ones if they are many."""
     names = [file.name for file in files]
@@ -104,11 +120,17 @@ def _index(vertical: Mapping[Path, GroundMotion]) -> dict[Key, list[Path]]:
 def _keys(file: Path, info: RecordInfo | None) -> Iterator[Key]:
     """Yield the keys under which the vertical record of a horizontal one may be, the surest ones first."""
     splits = [(file.stem[:end], file.stem[end:]) for end in reversed(range(len(file.stem)))]
-    possible = [(station, word) for station, word in splits if is_horizontal_name(word.lstrip(APART))]
+    possible = [(station, word) for station, word in splits if _is_component(word)]
     # In G1230 the azimuth is 230, although 30 or 0 would also do.
     for station, _ in sorted(possible, key=lambda each: not (each[1][0] in APART or re.fullmatch(r"\d{3}", each[1]))):
         yield _by_name(file, station.rstrip(APART))
     yield from _by_header(info)
+
+
+def _is_component(word: str) -> bool:
+    """Return whether the end of a name is a horizontal component; a small x or y only if it is set apart."""
+    name = word.lstrip(APART)
+    return is_horizontal_name(name) or (name != word and name in ("x", "y"))
 
 
 def _by_name(file: Path, station: str) -> Key:

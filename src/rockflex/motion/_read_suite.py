@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from rockflex._errors import InputError, RecordWarning
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
 from rockflex.motion._collect import Units, collect
 from rockflex.motion._folder import files_of
 from rockflex.motion._ground_motion import GroundMotion
@@ -38,6 +38,10 @@ def read_suite(
     of NGA, or a CSV file or workbook of one's own with a column ``file`` or ``RSN`` and any of ``units``, ``dt``,
     ``magnitude``, ``Rrup (km)``, ``Rjb (km)``, ``Vs30 (m/s)``, ``event``, ``year``, ``station``. In the column
     ``file``, ``*`` and ``?`` stand for other characters, for units and steps.
+
+    A record that two files hold, under different names or in different formats, is taken once, from the file that says
+    more of it: if the steps and the samples (50 and more) are the same within 0.1 % of the peak, unless record sequence
+    numbers, azimuths or names (ABC000, ABC090) say that they are different components.
 
     Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out, and a warning lists them; with
     ``vertical="pair"`` each horizontal component gets the vertical one of its station. The direction of a record is
@@ -79,9 +83,9 @@ def read_suite(
     Warns
     -----
     RecordWarning
-        If a vertical component, a borehole component beneath one at the surface (KiK-net), or a file that cannot be
-        read is left out, a record has no vertical component although `vertical` is "pair", or a peak differs by 1 to
-        20 % from that in the header.
+        If a vertical component, a borehole component beneath one at the surface (KiK-net), a copy of another record, or
+        a file that cannot be read is left out, a record has no vertical component although `vertical` is "pair", or a
+        peak differs by 1 to 20 % from that in the header.
 
     Examples
     --------
@@ -158,14 +162,21 @@ def _tell_left_out(result: Sorted) -> None:
         If none is left.
     """
     if result.below:
-        count = f"{len(result.below)} borehole component{'s' * (len(result.below) > 1)}"
+        count = counted(len(result.below), "borehole component")
         warnings.warn(
             f"Left out: {count} beneath records at the surface, {named(result.below)}.", RecordWarning, stacklevel=4
+        )
+    if result.copies:
+        first = [f"{path.name} (of {kept.name})" for path, kept in list(result.copies.items())[:REPORTED]]
+        more = f" and {len(result.copies) - REPORTED} more" if len(result.copies) > REPORTED else ""
+        count = counted(len(result.copies), "copy", "copies")
+        warnings.warn(
+            f"Left out: {count} of records in other files, {', '.join(first)}{more}.", RecordWarning, stacklevel=4
         )
     if not result.vertical:
         return
     names = ", ".join(path.name for path in result.vertical)
-    components = f"{len(result.vertical)} vertical component{'s' * (len(result.vertical) > 1)}"
+    components = counted(len(result.vertical), "vertical component")
     if not result.taken:
         raise InputError(
             f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "

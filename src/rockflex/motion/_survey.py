@@ -87,7 +87,7 @@ class RecordSurvey(Value):
     motions : tuple of GroundMotion
         The horizontal motions that are taken.
     stations : tuple of StationRecord
-        All components that can be read, by recording; see `group_stations`.
+        All components that can be read, except copies, by recording; see `group_stations`.
 
     Examples
     --------
@@ -212,7 +212,7 @@ def _survey(
         entries += [
             SurveyEntry(file=file.name, taken=False, reason="no record, by suffix and beginning") for file in others
         ]
-    motions = [motion for each in found for motion in each.motions.values()]
+    motions = [motion for each in found for path, motion in each.motions.items() if path not in result.copies]
     return RecordSurvey(
         name,
         tuple(sorted(entries, key=lambda entry: entry.file)),
@@ -256,7 +256,9 @@ def _entry(each: FileRead, path: Path, motion: GroundMotion, result: Sorted) -> 
 
 def _reason(each: FileRead, path: Path, result: Sorted) -> str:
     parts: list[str] = []
-    if path in result.below:
+    if path in result.copies:
+        parts.append(f"a copy of {result.copies[path].name}")
+    elif path in result.below:
         parts.append("borehole component beneath a record at the surface")
     elif path in result.vertical:
         parts.append("vertical component")
