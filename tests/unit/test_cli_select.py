@@ -1,6 +1,7 @@
 """``rockflex select``: the same choice as in Python, as a table, a figure and records."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -8,7 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
+from report_page import read
 from rockflex.cli import app
+from rockflex.study.plan import record_group
 
 G = 9.81
 SUITE = "fema-p695-far-field"
@@ -151,6 +154,41 @@ def test_files(tmp_path):
     assert "The folder" in refused(*USUAL, "--records", records)
     assert invoke(*USUAL, "--records", records, "--force").exit_code == 0
     assert len(rf.read_suite(records)) == 3
+
+
+def test_scaled_records_keep_their_origin_and_their_scale(tmp_path):
+    records, page = tmp_path / "records", tmp_path / "run.html"
+    found = json.loads(invoke(*USUAL, "--measure", "geometric-mean", "--records", records, "--json").stdout)
+    factors = {name: row["factor"] for row in found["records"] for name in row["record"].split(" + ")}
+    original, back = rf.load_suite(SUITE), rf.read_suite(records)
+    for motion in back:
+        kept = replace(original[motion.name].metadata, scale=factors[motion.name], source_format="columns")
+        assert motion.metadata == kept
+        assert rf.read_motion(records / f"{motion.name}.csv").metadata == kept
+    pairs = {frozenset(motion.name for motion in each.pair) for each in rf.group_stations(back)}
+    assert pairs == {frozenset(row["record"].split(" + ")) for row in found["records"]}
+    assert {record_group(motion) for motion in back} == {record_group(original[motion.name]) for motion in back}
+    name, factor = next(iter(factors.items()))
+    block = tmp_path / "block.toml"
+    block.write_text("block = { slenderness = 0.3, half_diagonal = 2.5, mass = 5e3 }")
+    ran = [block, records / f"{name}.csv", "--model", "rigid", "--scale", 0.5, "--report", page]
+    assert CliRunner().invoke(app, ["run", *map(str, ran)]).exit_code == 0
+    facts = read(page).facts
+    assert facts["scale"][2] == pytest.approx(0.5 * factor)
+    assert facts["pga"][2] == pytest.approx(0.5 * factor * original[name].pga)
+    again = json.loads(invoke(records, *USUAL[1:], "--limits", "0.5,0.5", "--records", tmp_path / "b", "--json").stdout)
+    twice = {motion.name: motion.metadata.scale for motion in rf.read_suite(tmp_path / "b")}
+    assert twice == {row["record"]: pytest.approx(0.5 * factors[row["record"]]) for row in again["records"]}
+
+
+@pytest.mark.parametrize(
+    ("line", "word"),
+    [("scale: twice", "scale"), ("year: 1999.5", "year"), ("direction: sideways", "direction")],
+)
+def test_a_fact_of_a_written_record_that_was_spoilt(tmp_path, line, word):
+    (tmp_path / "a.csv").write_text(f"# Record of rockflex\n# {line}\ntime (s),acc (m/s2)\n0,0\n0.1,1\n0.2,0\n")
+    with pytest.raises(rf.InputError, match=f"{word} must be"):
+        rf.read_motion(tmp_path / "a.csv")
 
 
 def test_records_keep_their_vertical_component(tmp_path):

@@ -60,11 +60,14 @@ def test_refuses(arguments, text):
         GroundMotion(*arguments)
 
 
-def test_scaling_keeps_name_and_metadata():
-    info = RecordInfo(event="x")
-    scaled = GroundMotion([0, 1, -2], 0.5, "a", info).scaled(-2)
+def test_scaling_keeps_name_and_metadata_and_tells_the_whole_factor():
+    motion = GroundMotion([0, 1, -2], 0.5, "a", RecordInfo(event="x"))
+    scaled = motion.scaled(-2)
     assert scaled.acceleration.tolist() == [0, -2, 4]
-    assert (scaled.name, scaled.metadata) == ("a", info)
+    assert (scaled.name, scaled.metadata) == ("a", RecordInfo(event="x", scale=-2.0))
+    assert scaled.scaled(1.5).metadata.scale == -3.0
+    assert scaled.scaled(-0.5) == motion == motion.scaled(1.0)
+    assert GroundMotion([0, 1, -2], 0.5).scaled(3.0).metadata == RecordInfo(scale=3.0)
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,7 @@ def test_selection_is_what_it_says():
         assert factor == pytest.approx(expected, rel=1e-12)
         np.testing.assert_allclose(row, spectrum, rtol=1e-11)
         np.testing.assert_allclose(motion.acceleration, factor * SUITE[name].acceleration, rtol=1e-14)
-        assert motion.metadata == SUITE[name].metadata
+        assert motion.metadata == dataclasses.replace(SUITE[name].metadata, scale=factor)
     rows = chosen.sa
     np.testing.assert_allclose(chosen.mean, rows.sum(axis=0) / 5, rtol=1e-12)
     np.testing.assert_allclose(chosen.median, np.prod(rows, axis=0) ** 0.2, rtol=1e-12)

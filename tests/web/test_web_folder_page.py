@@ -125,7 +125,7 @@ def test_it_is_a_suite_of_the_fragility_and_design_tabs(visitor, folder, frame) 
     with page.expect_download() as waiting:
         page.locator('[data-file="cloud-records"]').click()
     with zipfile.ZipFile(waiting.value.path()) as archive:
-        assert set(archive.namelist()) == {"RSN7_TEST000.csv", "RSN7_TEST090.csv", "alone.csv", "_records.csv"}
+        assert set(archive.namelist()) == {"RSN7_TEST000.csv", "RSN7_TEST090.csv", "alone.csv"}
     assert json.loads(json.dumps(visitor.state()))["record"]["folder"]
 
 

@@ -145,7 +145,11 @@ def test_records_of_a_folder_are_chosen(client, tmp_path, monkeypatch) -> None:
     assert view["offered"] == 3
     packed = client.download("/api/download/selection-records", state)[1]
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
-        assert len(archive.namelist()) == 3
+        assert len(archive.namelist()) == 2
+        archive.extractall(tmp_path / "scaled")
+    scaled = rf.read_suite(tmp_path / "scaled")
+    factors = {each["record"]: each["factor"] for each in view["records"]}
+    assert {motion.name: motion.metadata.scale for motion in scaled} == pytest.approx(factors)
     program = client.download("/api/download/selection-python", state)[1].decode()
     name, packed = client.download("/api/download/records", state)
     assert f"# unpacked from {name}, which the page saves: Your records (ZIP)" in program

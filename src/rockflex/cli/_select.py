@@ -228,15 +228,11 @@ def _write(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, 
 
 
 def _write_records(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
-    import pandas as pd
-
     from rockflex.cli._console import note
     from rockflex.cli._output import file_stems, staged
+    from rockflex.motion import record_csv
 
     with staged(folder, document, force=force) as stage:
         for stem, motion in zip(file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
-            columns = {"time (s)": motion.time, "acceleration (m/s2)": motion.acceleration}
-            if motion.vertical is not None:
-                columns["vertical (m/s2)"] = motion.vertical
-            pd.DataFrame(columns).to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
+            (stage / f"{stem}.csv").write_text(record_csv(motion), "utf-8", newline="\n")
     note(f"{len(chosen.suite)} scaled records written to {folder}")

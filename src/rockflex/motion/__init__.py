@@ -20,6 +20,7 @@ from rockflex.motion._pulses import (
 from rockflex.motion._read_suite import OnError, Vertical, read_files, read_suite
 from rockflex.motion._read_target import read_target
 from rockflex.motion._readers import read_components, read_motion, read_plain
+from rockflex.motion._record_file import record_csv
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._recordings import Combination
 from rockflex.motion._rotation import RotatedSpectrum, rotated_spectrum
@@ -74,6 +75,7 @@ __all__ = [
     "read_plain",
     "read_suite",
     "read_target",
+    "record_csv",
     "record_measures",
     "rectangular_pulse",
     "ricker_pulse",

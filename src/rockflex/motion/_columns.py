@@ -11,6 +11,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._direction import HORIZONTAL, VERTICAL, azimuth_of, direction_of, is_horizontal_name, told_apart
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_file import stated_facts
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._table import BRACKET, TIME, Table, after_brackets
 from rockflex.motion._text import DECIMAL, acceleration_of, build_motion, number
@@ -49,7 +50,7 @@ def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None
     values = {k: _column(file, table, k) for k in places}
     step = _time_step(file, table, chosen.time, dt)
     if len(chosen.along) == 1:
-        return [_single(file, table.labels, chosen, stated, values, step, name)]
+        return [_single(file, table, chosen, stated, values, step, name)]
     names = [_component(table.labels[k]) or str(k + 1) for k in places]
     motions: list[GroundMotion] = []
     for k, component, apart in zip(places, names, told_apart(names), strict=True):
@@ -66,7 +67,7 @@ def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None
 
 def _single(
     file: Path,
-    labels: list[str],
+    table: Table,
     chosen: Chosen,
     stated: dict[int, Unit],
     values: dict[int, Array],
@@ -75,12 +76,13 @@ def _single(
 ) -> GroundMotion:
     """Build the motion from the only horizontal column, with the vertical one."""
     column, upwards = chosen.along[0], chosen.upwards
-    alone = bool(labels) and UPWARDS.match(labels[column])
+    alone = bool(table.labels) and UPWARDS.match(table.labels[column])
     info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file), source_format="columns")
+    info = stated_facts(file, table.heads).completed(info)
     motion = build_motion(file, values[column], stated[column], step, info, REMEDY, name)
     if upwards is None:
         return motion
-    return motion.with_vertical(acceleration_of(file, values[upwards], stated[upwards], REMEDY))
+    return motion.with_vertical(acceleration_of(file, values[upwards], stated[upwards], REMEDY, info.scale))
 
 
 def _column(file: Path, table: Table, k: int) -> Array:

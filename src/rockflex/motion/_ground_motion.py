@@ -196,6 +196,8 @@ class GroundMotion(ShownMotion, Samples):
     def scaled(self, factor: float) -> "GroundMotion":
         """Return the motion multiplied by `factor` (negative to reverse it), with the same name.
 
+        `RecordInfo.scale` of the result is the factor on the motion as it was recorded.
+
         Raises
         ------
         InputError
@@ -203,7 +205,7 @@ class GroundMotion(ShownMotion, Samples):
         """
         factor = finite("factor", factor, "")
         with np.errstate(over="ignore"):
-            return self._changed(lambda samples: samples * factor)
+            return self._changed(lambda samples: samples * factor, metadata=_scaled_info(self.metadata, factor))
 
     def scaled_to(
         self,
@@ -294,7 +296,18 @@ class GroundMotion(ShownMotion, Samples):
         """
         return self._changed(lambda samples: _processing.band_pass(samples, self.dt, low, high, order))
 
-    def _changed(self, change: Callable[[Array], Array], k: int = 1) -> "GroundMotion":
+    def _changed(
+        self, change: Callable[[Array], Array], k: int = 1, metadata: RecordInfo | None = None
+    ) -> "GroundMotion":
         """Return the motion with both components changed alike; the new step is 1/k of the present one."""
         upwards = None if self.vertical is None else change(self.vertical)
-        return GroundMotion(change(self.acceleration), self.dt / k, self.name, self.metadata, upwards)
+        return GroundMotion(change(self.acceleration), self.dt / k, self.name, metadata or self.metadata, upwards)
+
+
+def _scaled_info(info: RecordInfo | None, factor: float) -> RecordInfo | None:
+    """Return the metadata of a motion multiplied by a factor; None if they stay as they are."""
+    if factor == 1.0:
+        return None
+    before = info or RecordInfo()
+    scale = factor if before.scale is None else factor * before.scale
+    return replace(before, scale=None if scale == 1.0 else scale)

@@ -55,6 +55,8 @@ class RecordInfo:
         What was done to the samples when they were read, such as "mean subtracted".
     event_id : str, optional
         Identifier of the earthquake in the catalogue of the source, such as "EMSC-20161030_0000029".
+    scale : float, optional
+        Factor by which the samples of the source were multiplied, as by `GroundMotion.scaled`; None if they were not.
 
     Examples
     --------
@@ -87,6 +89,7 @@ class RecordInfo:
     stated_pga: float | None = None
     processing: str | None = None
     event_id: str | None = None
+    scale: float | None = None
 
     @property
     def is_vertical(self) -> bool:

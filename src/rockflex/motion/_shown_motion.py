@@ -7,7 +7,7 @@ from rockflex._arrays import Array
 from rockflex._html import HtmlTable
 from rockflex.motion._record_info import RecordInfo
 
-KNOWN = ("event", "year", "magnitude", "distance_km", "vs30", "station", "component", "source")
+KNOWN = ("event", "year", "magnitude", "distance_km", "vs30", "station", "component", "source", "scale")
 
 
 class ShownMotion(HtmlTable):

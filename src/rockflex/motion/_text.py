@@ -95,19 +95,19 @@ def build_motion(
     file: Path, values: Array, unit: Unit, dt: float, info: RecordInfo, remedy: str, name: str | None = None
 ) -> GroundMotion:
     """Build a motion named after its file."""
-    acceleration = acceleration_of(file, values, unit, remedy)
+    acceleration = acceleration_of(file, values, unit, remedy, info.scale)
     try:
         return GroundMotion(acceleration, dt, name=file.stem if name is None else name, metadata=info)
     except InputError as error:
         raise InputError(f"{file}: {error}") from error
 
 
-def acceleration_of(file: Path, values: Array, unit: Unit, remedy: str) -> Array:
-    """Convert to m/s² and reject amplitudes that indicate a wrong unit."""
+def acceleration_of(file: Path, values: Array, unit: Unit, remedy: str, scale: float | None = None) -> Array:
+    """Convert to m/s² and reject amplitudes that indicate a wrong unit, unless a factor on the record explains them."""
     with np.errstate(over="ignore"):
         acceleration = values * unit.si
     peak = float(np.max(np.abs(values), initial=0.0))
-    if peak * unit.si > LIMIT * GRAVITY:
+    if peak * unit.si > LIMIT * GRAVITY * max(abs(scale or 1.0), 1.0):
         smaller = {"g": "m/s² or cm/s²", "m/s2": "cm/s²"}.get(str(unit), "a smaller unit")
         raise InputError(
             f"{file}: the peak acceleration is {peak:g} {unit}, above {LIMIT:g} g. "

@@ -10,13 +10,13 @@ from typing import Any
 import tomli_w
 
 from rockflex.kinds import KINDS
-from rockflex.motion import GroundMotion
+from rockflex.motion import GroundMotion, record_csv
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
 from rockflex.web._animation import animation
 from rockflex.web._given import FOLDER, HEAD, WHOLE, given_suite
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
-from rockflex.web._record_files import packed_records, record_table
+from rockflex.web._record_files import packed_records
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._report import run_report
@@ -152,7 +152,7 @@ def _of_elements(response: Response) -> dict[str, Any]:
 
 def _record(state: State, uploads: Uploads) -> tuple[str, str]:
     motion = motion_of(state.record, uploads)
-    return f"{_file_name(motion)}.csv", record_table(motion)
+    return f"{_file_name(motion)}.csv", record_csv(motion)
 
 
 def _records(state: State, uploads: Uploads) -> tuple[str, bytes]:

@@ -51,8 +51,9 @@ def record_of(about: Given) -> Record:
         facts = [fact(f"PGA{cut}", pga, "g", "pga", GRAVITY), fact(f"PGV{cut}", pgv, "m/s", "pgv"), *vertical, ends]
         return Record(name, "", time, acceleration, history.vertical_ground_acceleration, facts)
     motion = about.motion.scaled(about.scale)
+    scale = about.scale if motion.metadata is None or motion.metadata.scale is None else motion.metadata.scale
     facts = [
-        Fact("Scale", Cell(f"{about.scale:.6g}", about.scale, "scale")),
+        Fact("Scale", Cell(f"{scale:.6g}", scale, "scale")),
         fact("PGA", motion.pga, "g", "pga", GRAVITY),
         fact("PGV", motion.pgv, "m/s", "pgv"),
         *vertical,

@@ -49,8 +49,8 @@ def write_report(
         The structure, or its `RockingProperties`: it gives the page its kind, and all of its modes. Default: the
         properties of the response with the most modes.
     motion
-        The record, scaled or not: the page then has its origin, its measures and its scale. Default: the ground
-        acceleration of the responses.
+        The record, scaled or not: the page then has its origin, its measures and its scale, relative to the
+        record as `RecordInfo.scale` knows it. Default: the ground acceleration of the responses.
     title
         Heading. Default: the kind of the structure, and the record.
     date
