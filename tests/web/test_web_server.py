@@ -1,5 +1,6 @@
 """The server's answers: the library's own numbers, and refusals that keep it alive."""
 
+import asyncio
 import base64
 import json
 import math
@@ -232,8 +233,44 @@ def test_nan_is_refused(client) -> None:
 def test_only_this_machines_names_are_answered(client) -> None:
     assert client.request("/", Host="evil.example")[0] == 400
     assert client.request("/", Host="localhost:1")[0] == 200
-    names = [[each.cls.__name__ for each in make_app(host).user_middleware] for host in ("127.0.0.1", "0.0.0.0")]
-    assert ["TrustedHostMiddleware" in each for each in names] == [True, False]
+    assert client.request("/", Host="[::1]:1")[0] == 200
+    assert client.request("/", Origin="http://evil.example")[0] == 400
+    assert client.request("/", Origin="null")[0] == 400
+    assert client.request("/", Origin=client.url)[0] == 200
+
+
+def answers(app, host: str) -> bool:
+    """Whether an application answers to a host name."""
+    said = []
+
+    async def send(message) -> None:
+        said.append(message)
+
+    async def receive():
+        return {"type": "http.disconnect"}
+
+    scope = {"type": "http", "method": "GET", "path": "/", "query_string": b"", "headers": [(b"host", host.encode())]}
+    asyncio.run(app(scope, receive, send))
+    return said[0]["status"] == 200
+
+
+@pytest.mark.parametrize(
+    ("host", "known", "foreign"),
+    [
+        ("127.0.0.1", ["127.0.0.1:80", "localhost", "[::1]:80"], ["evil.example", "10.0.0.1", "", "localhost.evil.example"]),
+        ("127.0.0.2", ["127.0.0.2:80", "LOCALHOST:80"], ["evil.example", "10.0.0.1"]),
+        ("::1", ["[::1]:80", "localhost:80"], ["evil.example", "::1.evil.example"]),
+        ("localhost", ["localhost:80", "127.0.0.1"], ["evil.example"]),
+        ("10.0.0.1", ["10.0.0.1:80", "localhost"], ["evil.example", "10.0.0.2"]),
+        ("0.0.0.0", ["10.0.0.1:80", "[fd00::1]", socket.gethostname()], ["evil.example", "[evil"]),
+        ("::", ["10.0.0.1:80", "[fd00::1]:80"], ["evil.example"]),
+    ],
+)  # fmt: skip
+def test_every_address_to_listen_on_has_its_own_names(host, known, foreign) -> None:
+    app = make_app(host)
+    assert [name for name in known if not answers(app, name)] == []
+    assert [name for name in foreign if answers(app, name)] == []
+    assert answers(make_app(host, ["page.example"]), "page.example:80")
 
 
 def test_the_page_forbids_foreign_content(client) -> None:

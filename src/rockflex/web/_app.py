@@ -2,7 +2,7 @@
 
 import asyncio
 import logging
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Event, Thread
@@ -12,7 +12,6 @@ import anyio
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
-from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Mount, Route
@@ -25,7 +24,7 @@ from rockflex.web._download import download, study_file
 from rockflex.web._exchange import file_answer, file_of, question_of, state_of, step_of
 from rockflex.web._folder_requests import folder_routes
 from rockflex.web._forms import forms
-from rockflex.web._headers import Headers
+from rockflex.web._headers import Headers, Hosts
 from rockflex.web._jobs import Job, Jobs
 from rockflex.web._limit_states import limit_states
 from rockflex.web._limits import DURATION, FILE, FILES, FOLDER, FREEDOMS, MODELS, MOST_ELEMENTS, RUNS
@@ -43,7 +42,6 @@ from rockflex.web._uploads import Uploads, read_matrices, read_record, read_vert
 
 LOOK = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
-LOOPBACK = ("127.0.0.1", "localhost")
 THREADS = 4  # answers computed at once: the kernels release the lock, and short answers must not wait for long ones
 WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 LONGEST = 1000  # characters of a message: some repeat an input
@@ -70,7 +68,7 @@ class Server:
         """Compute outside the event loop, with a limited number of answers at once."""
         if most not in self._limiters:
             self._limiters[most] = anyio.CapacityLimiter(most)
-        return await anyio.to_thread.run_sync(work, limiter=self._limiters[most])
+        return await anyio.to_thread.run_sync(work, limiter=self._limiters[most], abandon_on_cancel=True)
 
     async def run(self, request: Request, work: Answer, most: int = THREADS) -> Any:
         """Compute as `answer` does, and stop its runs when the visitor no longer waits for them."""
@@ -202,8 +200,8 @@ def _kind(request: Request) -> str:
     return kind
 
 
-def create(host: str) -> Starlette:
-    """Return the application for a host name; on a loopback address it answers only to loopback names."""
+def create(host: str, names: Sequence[str]) -> Starlette:
+    """Return the application for a host name; it answers to that and to some others (`Hosts`)."""
     server = Server()
 
     @asynccontextmanager
@@ -212,9 +210,11 @@ def create(host: str) -> Starlette:
         yield
         server.jobs.close()
 
-    middleware = [Middleware(Headers), Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3)]
-    if host in LOOPBACK:  # a foreign page whose host name resolves to this machine must not read the answers
-        middleware.insert(1, Middleware(TrustedHostMiddleware, allowed_hosts=list(LOOPBACK)))
+    middleware = [
+        Middleware(Headers),
+        Middleware(Hosts, host=host, names=names),
+        Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3),
+    ]
     routes = [
         Route("/", _page),
         Route("/api/about", server.about),

@@ -1,5 +1,7 @@
 """Start of the web page."""
 
+from collections.abc import Sequence
+from ipaddress import ip_address
 from typing import TYPE_CHECKING
 
 from rockflex._checks import whole_number
@@ -9,15 +11,19 @@ if TYPE_CHECKING:
     from starlette.applications import Starlette
 
 NEEDED = ("anyio", "starlette", "tomli_w", "uvicorn")
+GRACE = 3  # s for the answers in progress when the server is stopped
 
 
-def make_app(host: str = "127.0.0.1") -> "Starlette":
+def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
     """Return the page as an ASGI application, for another server.
 
     Parameters
     ----------
     host
-        Address that it will listen on. At a loopback address it answers only to the names 127.0.0.1 and localhost.
+        Address that it will listen on. It answers only to this name, to localhost and to loopback addresses; if it
+        listens on all addresses ("0.0.0.0" or "::"), to each of them and to the name of the machine.
+    names
+        Other names by which it is reached, such as that of a server in front of it.
 
     Raises
     ------
@@ -27,11 +33,16 @@ def make_app(host: str = "127.0.0.1") -> "Starlette":
     _check_installed()
     from rockflex.web._app import create
 
-    return create(host)
+    return create(host, names)
 
 
-def serve(port: int = 8080, host: str = "127.0.0.1", *, open_browser: bool = False) -> None:
+def serve(
+    port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (), open_browser: bool = False
+) -> None:
     """Serve the web page until interrupted.
+
+    A client must send a request within 20 s, and its content within 60 s. Where more than 400 connections are open,
+    those that have waited longest for their client are closed.
 
     Parameters
     ----------
@@ -40,6 +51,8 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, open_browser: bool = Fal
     host
         Address to listen on; the default accepts only this machine. There are no users and passwords: before opening
         it to a network, put a server with authentication in front of it.
+    names
+        As for `make_app`.
     open_browser
         Whether to open the page in the browser of this machine.
 
@@ -49,10 +62,14 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, open_browser: bool = Fal
         If the packages of ``rockflex[web]`` are missing, or the port cannot be opened.
     """
     number = whole_number("port", port, 1, 65535)
-    app = make_app(host)
+    app = make_app(host, names)
+    import signal
     import socket
+    from threading import Thread, Timer, current_thread, main_thread
 
     import uvicorn
+
+    from rockflex.web._connection import PATIENCE, Connection
 
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -63,14 +80,51 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, open_browser: bool = Fal
         raise InputError(
             f"The page cannot listen on {host}, port {number}: {error.strerror or error}. Choose another --port."
         ) from error
-    config = uvicorn.Config(app, log_level="warning", timeout_keep_alive=20, limit_concurrency=500, server_header=False)
+    config = uvicorn.Config(
+        app, log_level="warning", http=Connection, ws="none", timeout_keep_alive=PATIENCE, limit_concurrency=500,
+        timeout_graceful_shutdown=GRACE, server_header=False,
+    )  # fmt: skip
+    server = uvicorn.Server(config)
+    # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.
+    running = Thread(target=server.run, args=([listener],), name="server", daemon=True)
+    if current_thread() is main_thread():
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
     with listener:
+        running.start()
         if open_browser:
-            import threading
             import webbrowser
 
-            threading.Timer(1.0, webbrowser.open, [f"http://{host}:{number}"]).start()
-        uvicorn.Server(config).run(sockets=[listener])
+            Timer(1.0, webbrowser.open, [address_of(host, number)]).start()
+        try:
+            while running.is_alive():
+                running.join(0.5)
+        finally:
+            server.should_exit = True
+            running.join(GRACE + 2.0)
+
+
+def address_of(host: str, port: int) -> str:
+    """Return the address of the page in a browser."""
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}"
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether an address is reached from this machine only."""
+    return host.lower() == "localhost" or (is_address(host) and ip_address(host).is_loopback)
+
+
+def is_everywhere(host: str) -> bool:
+    """Tell whether an address stands for all addresses of this machine."""
+    return not host or (is_address(host) and ip_address(host).is_unspecified)
+
+
+def is_address(host: str) -> bool:
+    """Tell whether a host is given by numbers."""
+    try:
+        ip_address(host)
+    except ValueError:
+        return False
+    return True
 
 
 def _check_installed() -> None:
