@@ -247,7 +247,7 @@ def answers(app, host: str) -> bool:
         said.append(message)
 
     async def receive():
-        return {"type": "http.disconnect"}
+        await asyncio.Event().wait()  # the visitor stays
 
     scope = {"type": "http", "method": "GET", "path": "/", "query_string": b"", "headers": [(b"host", host.encode())]}
     asyncio.run(app(scope, receive, send))

@@ -52,15 +52,27 @@ function controls(element) {
   return element.querySelectorAll("input, select, textarea");
 }
 
+// Text that is not a number, or may be one of two, is sent unchanged: the server's message names the field.
 export function parseNumber(text) {
   const clean = text.trim().replace("−", "-");
   if (/^[+]?(inf|infinity|∞)$/i.test(clean)) return "inf";
-  // Text that is not a number is sent unchanged: the server's message names the field.
-  return clean !== "" && Number.isFinite(Number(clean)) ? Number(clean) : clean;
+  const point = decimal(clean) ? clean.replace(",", ".") : clean;
+  return point !== "" && Number.isFinite(Number(point)) ? Number(point) : clean;
 }
 
-const list = (text) => text.split(/[,;\s]+/).filter(Boolean).map(parseNumber);
-const rows = (text) => text.split(/[\n;]+/).map((row) => row.trim()).filter(Boolean).map(list);
+// Whether a text is a number with a decimal comma; 1,234 may have a thousands separator instead.
+const decimal = (text) => /^[+-]?\d*,\d+(e[+-]?\d+)?$/i.test(text) && !/^[+-]?[1-9]\d{0,2},\d{3}$/.test(text);
+
+// Commas within numbers are decimal commas where spaces or semicolons separate these: 0,5 1,5 or 0,5; 1,5. One comma
+// alone may be either, and is sent unchanged, unless the numbers are `whole`.
+function list(text, whole = false) {
+  const words = text.trim().split(/[;\s]+/).filter(Boolean);
+  const commas = words.filter((word) => word.includes(","));
+  if (!whole && commas.length && commas.every((word) => decimal(word.replace("−", "-")))) return words.map(parseNumber);
+  return text.split(/[,;\s]+/).filter(Boolean).map(parseNumber);
+}
+
+const rows = (text) => text.split(/[\n;]+/).map((row) => row.trim()).filter(Boolean).map((row) => list(row, !/\s/.test(row)));
 
 function read(type, text) {
   if (text.trim() === "") return undefined;
@@ -68,7 +80,7 @@ function read(type, text) {
     const found = rows(text);
     return found.length === 1 ? found[0] : found;
   }
-  if (type === "list" || type === "indices") return list(text);
+  if (type === "list" || type === "indices") return list(text, type === "indices");
   if (type === "number or list") {
     const found = list(text);
     return found.length === 1 ? found[0] : found;
