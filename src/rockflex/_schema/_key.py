@@ -25,6 +25,8 @@ class Key:
         The smallest and the largest number that the page accepts; None for any of a reasonable size.
     flag, metavar
         The option and its placeholder on the command line, where they are not the key and its unit.
+    page
+        What the page says in place of `expected`, where a file may hold what a form cannot.
     hint
         What the help of the option says besides the description, the unit and the default.
     """
@@ -38,6 +40,7 @@ class Key:
     flag: str = ""
     metavar: str = ""
     hint: str = ""
+    page: str = ""
 
     @property
     def expected(self) -> str:

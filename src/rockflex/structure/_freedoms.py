@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_vector, whole_number
+from rockflex._checks import finite_vector, float_array, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._matrix_files import Given, numbers
 
 Heights = Given | Mapping[int, float]
-"""Height of every degree of freedom in m, or a map {index: height} of those that translate horizontally."""
+"""Height of every degree of freedom in m, NaN for none, or a map {index: height} of those that translate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,18 +47,6 @@ class Freedoms:
         InputError
             If a height is missing or not positive, or an index is out of range or named twice.
         """
-        if isinstance(heights, Mapping):
-            where = [whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
-            values = finite_vector("heights", list(heights.values()), "m")
-        else:
-            values = finite_vector("heights", numbers("heights", heights), "m")
-            where = list(range(values.size))
-            if values.size != size:
-                raise InputError(
-                    f"heights must contain one height for each of the {size} degrees of freedom, but {values.size} "
-                    "were given. If some do not translate horizontally, give a map {index: height} of those that do.",
-                    field="heights",
-                )
         if not isinstance(rotations, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
                 f"rotations must be a sequence of indices of degrees of freedom, but {type(rotations).__name__} was "
@@ -66,19 +54,20 @@ class Freedoms:
                 field="rotations",
             )
         turning = [whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
+        where, values = _translating(heights, turning, size)
         twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
         if twice:
             raise InputError(
                 f"rotations must list each degree of freedom once, and none that has a height, but {twice[0]} is "
-                "listed twice. Give heights as a map {index: height} of the degrees of freedom that translate "
-                "horizontally.",
+                "listed twice.",
                 field="rotations",
             )
         if values.min(initial=np.inf) <= 0.0 or values.size == 0:
             lowest = f"{values.min():g} m" if values.size else "none"
             raise InputError(
                 f"heights must contain at least one height in m above the base, all positive, but {lowest} was given. "
-                "A mass at the base belongs to base_mass.",
+                "A mass at the base belongs to base_mass; what does not translate horizontally has no height, not a height "
+                "of zero.",
                 field="heights",
             )
         order = np.argsort(values, kind="stable")
@@ -131,3 +120,27 @@ class Freedoms:
             first_moment=float(translation @ mass @ rotation),
             inertia=float(rotation @ mass @ rotation),
         )
+
+
+def _translating(heights: Heights, turning: Sequence[int], size: int) -> tuple[list[int], Array]:
+    """Return the degrees of freedom that translate horizontally, and their heights."""
+    if isinstance(heights, Mapping):
+        where = [whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
+        return where, finite_vector("heights", list(heights.values()), "m")
+    given = numbers("heights", heights)
+    values = float_array(given)
+    if values is None or values.ndim != 1:
+        finite_vector("heights", given, "m")  # says what is wrong
+        raise AssertionError
+    others = [i for i in range(size) if i not in turning]
+    if values.size == size:
+        values = values[others]  # that of a rotation is the height of its node, which does not matter
+    elif values.size != len(others):
+        raise InputError(
+            f"heights must contain one height for each of the {size} degrees of freedom, but {values.size} were given. "
+            "List those that rotate in rotations; if others do not translate horizontally, give the heights of those "
+            "that do with their indices, such as {0: 3.0, 2: 6.0}.",
+            field="heights",
+        )
+    moves = ~np.isnan(values)
+    return [i for i, each in zip(others, moves, strict=True) if each], finite_vector("heights", values[moves], "m")

@@ -8,7 +8,7 @@ import anyio
 from starlette.requests import Request
 from starlette.responses import Response
 
-from rockflex.web._limits import BODY, FILE
+from rockflex.web._limits import BODY, FILE, unclear
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State, parse_json, parse_state
 
@@ -89,7 +89,7 @@ def step_of(text: str, field: str = "record.upload") -> float | None:
     try:
         return float(text)
     except ValueError as error:
-        message = f"the sampling step must be a number in s, but {text[:40]!r} was given."
+        message = f"the sampling step must be a number in s, but {text[:40]!r} was given.{unclear(text)}"
         raise Refusal({field: message}) from error
 
 

@@ -40,7 +40,7 @@ def _field(name: str, field: FieldInfo) -> dict[str, Any]:
         "name": name,
         "label": key.label or name.replace("_", " ").capitalize(),
         "unit": key.unit,
-        "help": _sentence(key.description),
+        "help": _sentence(key.page or key.description),
         "type": _type(field.annotation),
         "choices": _choices(field.annotation),
         "required": field.is_required(),
@@ -70,7 +70,8 @@ def _type(annotation: Any) -> str:
     if any(get_args(part) == (int,) for part in lists):
         return "indices"
     if lists:
-        return "number or list" if float in kinds else "list"
+        mapped = any(get_origin(kind) is dict for kind in kinds)
+        return "number or list" if float in kinds else "list or map" if mapped else "list"
     if int in kinds and float not in kinds:
         return "whole"
     return "number" if float in kinds else "table"

@@ -1,5 +1,6 @@
 """The limits of what one visitor may request: the same for forms, links and files."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, get_origin
 
@@ -10,7 +11,7 @@ from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.solve import Task
-from rockflex.structure.file import ELEMENTS, ElementTable, Table, inner_table, key_of, parts
+from rockflex.structure.file import ELEMENTS, ElementTable, Table, expected, inner_table, key_of, parts
 from rockflex.study import Case
 from rockflex.study._arguments import ground_under
 from rockflex.study._yielding import labelled_hysteresis
@@ -54,7 +55,8 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
     for place, field, each in _leaves(path, value, table):
         if isinstance(each, str):
             if field is None or not _takes_text(field):
-                errors[place] = "it must be numbers, not the name of a file: import the file instead."
+                needed = "numbers" if field is None else wanted(field)
+                errors[place] = f"it must be {needed}, but {each[:60]!r} was given.{unclear(each)}"
         elif isinstance(each, list):
             errors[place] = f"it holds {len(each)} values, but the page takes {_most(each)} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
@@ -63,6 +65,22 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
     return errors
+
+
+def wanted(field: FieldInfo) -> str:
+    """Say what a field of a form must be."""
+    return key_of(field).page or expected(field)
+
+
+def unclear(value: Any) -> str:
+    """Return how to write numbers whose commas may be read in two ways; empty if there are none."""
+    values = value if isinstance(value, list) else [value]
+    if not any(isinstance(each, str) and re.fullmatch(r"[-+\d.,\s]*\d,\d[\d.,\s]*", each) for each in values):
+        return ""
+    return (
+        " A comma may separate thousands, decimals or numbers: write a decimal point, no thousands separators, and spaces "
+        "between numbers."
+    )
 
 
 def _takes_text(field: FieldInfo) -> bool:

@@ -8,12 +8,12 @@ from typing import Annotated, Any, Literal
 from pydantic import AliasChoices, Field, StringConstraints, ValidationError
 
 from rockflex._errors import InputError
-from rockflex.structure.file import StructureEntry, Table, expected, spot_of
+from rockflex.structure.file import StructureEntry, Table, spot_of
 from rockflex.study._ground_table import GroundTable
 from rockflex.study._yielding import yielding
 from rockflex.study.assumed import Assumed, BoucWenTable
 from rockflex.web._limit_states import DesignLimit, LimitName
-from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers
+from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers, unclear, wanted
 from rockflex.web._measures import MeasureName, SameForAll
 from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._target_choice import TargetChoice
@@ -235,15 +235,15 @@ def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]
     found: dict[str, str] = {}
     for problem in error.errors(include_url=False)[:TOLD]:
         spot = spot_of(problem["loc"], content, State)
-        wanted = "something else" if spot.field is None else expected(spot.field)
+        needed = "something else" if spot.field is None else wanted(spot.field)
         if problem["type"] == "extra_forbidden":
             said = "it is not known here."
         elif problem["type"] in ("missing", "union_tag_not_found"):
-            said = f"it is missing: {wanted}."
+            said = f"it is missing: {needed}."
         elif problem["type"] == "value_error":
             said = str(problem.get("ctx", {}).get("error", problem["msg"]))
         else:
-            said = f"it must be {wanted}, but {_short(spot.value)} was given."
+            said = f"it must be {needed}, but {_short(spot.value)} was given.{unclear(spot.value)}"
         found[".".join(map(str, spot.path))] = said
     return found
 

@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,9 @@ from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
-from rockflex.structure.file import Structure, StructureEntry
+from rockflex.structure._freedoms import Freedoms
+from rockflex.structure.file import Structure, StructureEntry, StructureTable
+from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
 from rockflex.study._ground_table import GroundTable
 from rockflex.web._ground import ground_of, ground_view
 from rockflex.web._refusal import Refusal, refusing
@@ -111,6 +114,7 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
             "ground": ground_view(ground_of(table, p), p),
             "shapes": built.shapes[:, :SHOWN].T,
             "properties": _parameters(p),
+            "freedoms": _freedoms(entry.table),
             "section": section_facts(entry.table),
             "warnings": structure_warnings(built.structure),
             "modes": modes,
@@ -131,6 +135,22 @@ def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
         "eccentricity": p.eccentricity,
         "elements": [{"kind": table.kind, "position": table.position} for table in entry.elements or []],
     }
+
+
+def _freedoms(table: StructureTable) -> str:
+    """Say what the degrees of freedom of given matrices do; empty for other structures."""
+    if not isinstance(table, MatricesTable | ModesTable):
+        return ""
+    given = table.arguments(Path())
+    mass = np.asarray(given["mass"])
+    size = len(mass)
+    found = Freedoms.of(given["heights"], given.get("rotations", ()), size)
+    others = size - found.translates.size - found.rotates.size
+    kinds = ((found.translates.size, "move sideways"), (found.rotates.size, "rotate in the plane"), (others, "do neither"))
+    counted = ", ".join(f"{count} {does}" for count, does in kinds if count)
+    bare = size - int(np.count_nonzero(mass.any(axis=1) if mass.ndim == 2 else mass))
+    condensed = f" {bare} have no mass and are condensed out." if bare and isinstance(table, MatricesTable) else ""
+    return f"Degrees of freedom: {counted}.{condensed}"
 
 
 def _judged(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:

@@ -28,6 +28,7 @@ from rockflex.motion import (
 )
 from rockflex.solve import check_interruption
 from rockflex.web._given import GIVEN, given_suite
+from rockflex.web._limits import unclear
 from rockflex.web._records import motion_of
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import State
@@ -254,7 +255,7 @@ def factor_view(state: State, uploads: Uploads, period: object) -> dict[str, Any
     else:
         if not isinstance(period, int | float) or isinstance(period, bool) or not 0.0 <= period <= 100.0:
             raise Refusal(
-                {"target.period": f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given."}
+                {"target.period": f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given.{unclear(period)}"}
             )
         try:
             wanted = float(target.at([period])[0])

@@ -145,8 +145,10 @@ def _check_size(name: str, content: bytes, field: str) -> None:
         raise Refusal({field: message}, 413)
 
 
-def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
-    """Read matrices from a ``.npz`` with arrays mass, stiffness and heights, or one of them from a CSV file.
+def read_matrices(name: str, content: bytes, part: str) -> dict[str, Any]:
+    """Read matrices from a ``.npz`` with arrays mass, stiffness, heights and rotations, or one of them from a CSV file.
+
+    Heights are one for each freedom, NaN for none; or rows of an index and a height, or with NaN, which become a table.
 
     Raises
     ------
@@ -161,9 +163,7 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
         if part not in MATRICES:
             message = f"say which of {', '.join(MATRICES)} the file {shown} holds."
             raise Refusal({"structure": message})
-        return {
-            part: _numbers(shown, part, np.loadtxt(io.StringIO(content.decode("utf-8-sig")), delimiter=",", ndmin=2))
-        }
+        return {part: _numbers(shown, part, _from_text(content.decode("utf-8-sig")))}
     except Refusal:
         raise
     except Exception as error:  # damaged files raise many kinds of errors
@@ -171,8 +171,17 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, list[Any]]:
         raise Refusal({"structure": message}) from error
 
 
-def _from_npz(name: str, content: bytes) -> dict[str, list[Any]]:
-    found: dict[str, list[Any]] = {}
+def _from_text(text: str) -> Any:
+    """Return the numbers of a CSV file; empty cells, which heights may have, are NaN."""
+    if ";" in text:  # then commas are decimal commas
+        text = text.replace(",", ".").replace(";", ",")
+    return np.loadtxt(
+        io.StringIO(text), delimiter=",", ndmin=2, converters=lambda cell: float(cell) if cell.strip(" -–") else np.nan
+    )
+
+
+def _from_npz(name: str, content: bytes) -> dict[str, Any]:
+    found: dict[str, Any] = {}
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         for part in MATRICES:
             if f"{part}.npy" not in archive.namelist():
@@ -196,13 +205,26 @@ def _from_npz(name: str, content: bytes) -> dict[str, list[Any]]:
     return found
 
 
-def _numbers(name: str, part: str, array: Any) -> list[Any]:
+def _numbers(name: str, part: str, array: Any) -> Any:
+    """Return what a state of the page holds of an array: numbers, or heights by the indices of their freedoms."""
     values = np.asarray(array, dtype=np.float64)
-    if not np.isfinite(values).all() or values.size == 0 or max(values.shape) > FREEDOMS:
+    blank = np.isnan(values) & (part == "heights")
+    if not (np.isfinite(values) | blank).all() or blank.all() or max(values.shape) > FREEDOMS:
         message = f"{name}: {part} must hold finite numbers for up to {FREEDOMS} freedoms."
         raise Refusal({"structure": message})
     if values.ndim == 2 and 1 in values.shape and part != "stiffness":
         values = values.ravel()
     if part == "rotations":
-        return values.ravel().astype(int).tolist()
+        return [_index(name, part, each) for each in values.ravel()]
+    if part == "heights" and values.ndim == 2 and values.shape[1] == 2:
+        return {str(_index(name, part, each)): float(height) for each, height in values}
+    if blank.any():
+        return {str(i): float(values.ravel()[i]) for i in np.flatnonzero(~blank)}
     return values.tolist()
+
+
+def _index(name: str, part: str, number: float) -> int:
+    if number != int(number):
+        message = f"{name}: {part} must hold whole indices of freedoms, counted from 0, but {number:g} was found."
+        raise Refusal({"structure": message})
+    return int(number)

@@ -17,14 +17,24 @@ _OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
 class _FromFiles(StructureTable):
     """The keys that both kinds share: degrees of freedom above a base."""
 
-    mass: Annotated[Vector | Matrix | str, Key("a list of masses in kg, or the mass matrix", "kg", form=_OR_FILE)]
+    mass: Annotated[
+        Vector | Matrix | str,
+        Key(
+            "a list of masses in kg, or the mass matrix",
+            "kg",
+            form=_OR_FILE,
+            page="the masses in kg, or the rows of the mass matrix; 0 for a freedom without mass, which is condensed out",
+        ),
+    ]
     heights: Annotated[
         Vector | dict[Index, float] | str,
         Key(
-            "a list of the heights of all freedoms in m, or a table { index = height } of those that move "
-            "sideways, counted from 0",
+            "a list of the heights of all freedoms in m (nan: does not move sideways), or a table { index = height } of "
+            "those that move sideways, counted from 0",
             "m",
             form=_OR_FILE,
+            page="the heights in m of the freedoms that move sideways: of all freedoms but the rotations in their order, "
+            "or each after its index, counted from 0 (0: 3, 2: 6)",
         ),
     ]
     rotations: Annotated[
@@ -55,7 +65,15 @@ class MatricesTable(_FromFiles):
     makes = from_matrices
     title = "Mass and stiffness matrices"
 
-    stiffness: Annotated[Matrix | str, Key("the stiffness matrix in N/m, a list of rows", "N/m", form=_OR_FILE)]
+    stiffness: Annotated[
+        Matrix | str,
+        Key(
+            "the stiffness matrix in N/m, a list of rows",
+            "N/m",
+            form=_OR_FILE,
+            page="the stiffness matrix in N/m, a line for each row",
+        ),
+    ]
 
 
 class ModesTable(_FromFiles):
@@ -67,9 +85,20 @@ class ModesTable(_FromFiles):
     omega: Annotated[
         Vector | str,
         Key(
-            "a list of circular frequencies in rad/s, one a mode", "rad/s", form=_OR_FILE, low=1e-3, high=1e6, label="ω"
+            "a list of circular frequencies in rad/s, one a mode",
+            "rad/s",
+            form=_OR_FILE,
+            low=1e-3,
+            high=1e6,
+            label="ω",
+            page="the circular frequencies in rad/s, one a mode",
         ),
     ]
     shapes: Annotated[
-        Matrix | str, Key("the mode shapes, a list of rows, one a freedom with a column for each mode", form=_OR_FILE)
+        Matrix | str,
+        Key(
+            "the mode shapes, a list of rows, one a freedom with a column for each mode",
+            form=_OR_FILE,
+            page="the mode shapes, a line for each freedom with a column for each mode",
+        ),
     ]

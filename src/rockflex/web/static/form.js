@@ -52,44 +52,69 @@ function controls(element) {
   return element.querySelectorAll("input, select, textarea");
 }
 
+const DECIMAL = /^[+-]?\d+,\d+(e[+-]?\d+)?$/i; // with a comma
+const THOUSANDS = /^[+-]?[1-9]\d{0,2},\d{3}(\.\d*)?$/; // perhaps: 1,234 may be either
+
 // Text that is not a number, or may be one of two, is sent unchanged: the server's message names the field.
 export function parseNumber(text) {
   const clean = text.trim().replace("−", "-");
   if (/^[+]?(inf|infinity|∞)$/i.test(clean)) return "inf";
-  const point = decimal(clean) ? clean.replace(",", ".") : clean;
+  const point = DECIMAL.test(clean) && !THOUSANDS.test(clean) ? clean.replace(",", ".") : clean;
   return point !== "" && Number.isFinite(Number(point)) ? Number(point) : clean;
 }
 
-// Whether a text is a number with a decimal comma; 1,234 may have a thousands separator instead.
-const decimal = (text) => /^[+-]?\d*,\d+(e[+-]?\d+)?$/i.test(text) && !/^[+-]?[1-9]\d{0,2},\d{3}$/.test(text);
-
-// Commas within numbers are decimal commas where spaces or semicolons separate these: 0,5 1,5 or 0,5; 1,5. One comma
-// alone may be either, and is sent unchanged, unless the numbers are `whole`.
-function list(text, whole = false) {
-  const words = text.trim().split(/[;\s]+/).filter(Boolean);
+// A comma within a number is a decimal comma where spaces or semicolons separate the numbers, or if there is `one`; else
+// commas separate them. What may be either is sent unchanged.
+function list(text, { one = false, separates = false } = {}) {
+  const words = text.replaceAll("−", "-").split(/\s*,\s+|[;\s]+/).filter(Boolean);
   const commas = words.filter((word) => word.includes(","));
-  if (!whole && commas.length && commas.every((word) => decimal(word.replace("−", "-")))) return words.map(parseNumber);
-  return text.split(/[,;\s]+/).filter(Boolean).map(parseNumber);
+  if (!separates && commas.length) {
+    const alone = words.length === 1 && !one && DECIMAL.test(words[0]) && !/^[+-]?0,/.test(words[0]);
+    if (alone || words.some((word) => THOUSANDS.test(word))) return words;
+    if (commas.every((word) => DECIMAL.test(word))) return words.map(parseNumber);
+  }
+  return words.flatMap((word) => word.split(",")).filter(Boolean).map(parseNumber);
 }
 
-const rows = (text) => text.split(/[\n;]+/).map((row) => row.trim()).filter(Boolean).map((row) => list(row, !/\s/.test(row)));
+// Rows end with their lines, or with semicolons if there is one line.
+function matrix(text) {
+  const ends = text.trim().includes("\n") ? /;?\s*\n\s*/ : /;/;
+  const found = text.split(ends).filter((row) => row.trim()).map((row) => list(row, { separates: !/\S[\s;]+\S/.test(row) }));
+  return found.length === 1 ? found[0] : found;
+}
+
+// Numbers by their indices, such as 0: 3, 2: 6; other text is sent unchanged.
+function map(text) {
+  const words = text.replace(/[{}"']/g, " ").replace(/\s*[:=]\s*/g, ":").trim().split(/\s*,\s+|[;\s]+|,(?=\d+:)/);
+  const pairs = words.filter(Boolean).map((word) => word.replace(/,$/, "").split(":"));
+  return pairs.every(([index, value]) => /^\d+$/.test(index) && value)
+    ? Object.fromEntries(pairs.map(([index, value]) => [index, parseNumber(value)])) : text;
+}
 
 function read(type, text) {
   if (text.trim() === "") return undefined;
-  if (type === "matrix") {
-    const found = rows(text);
-    return found.length === 1 ? found[0] : found;
-  }
-  if (type === "list" || type === "indices") return list(text, type === "indices");
+  if (type === "matrix") return matrix(text);
+  if (type === "list") return list(text);
+  if (type === "list or map") return /[:=]/.test(text) ? map(text) : list(text);
+  if (type === "indices") return list(text, { separates: true });
   if (type === "number or list") {
-    const found = list(text);
+    const found = list(text, { one: true });
     return found.length === 1 ? found[0] : found;
   }
   return parseNumber(text);
 }
 
+// Show numbers with commas as they were understood.
+function understood(control, value) {
+  const clear = (each) => typeof each === "number" || (typeof each === "object" && Object.values(each).every(clear));
+  if (control.value.includes(",") && clear(value)) control.value = write(value);
+  return value;
+}
+
 function write(value) {
   if (value === undefined || value === null) return "";
+  if (typeof value === "object" && !Array.isArray(value))
+    return Object.entries(value).map(([index, each]) => `${index}: ${plain(each)}`).join(", ");
   if (!Array.isArray(value)) return plain(value);
   if (Array.isArray(value[0])) return value.map((row) => row.map(plain).join(", ")).join("\n");
   return value.map(plain).join(", ");
@@ -115,7 +140,7 @@ export function tableField(path, spec, value, change) {
     const many = spec.type === "matrix";
     control = h(many ? "textarea" : "input", {
       type: many ? null : "text", inputmode: many ? null : "text", spellcheck: "false", autocomplete: "off",
-      value: write(shown), onchange: () => change(read(spec.type, control.value)),
+      value: write(shown), onchange: () => change(understood(control, read(spec.type, control.value))),
     });
   }
   const unit = spec.unit ? ` ${spec.unit}` : "";
@@ -155,7 +180,7 @@ export function tableGroup(path, spec, value, start, change) {
 export function box(path, label, value, change, { many = false, ...extra } = {}) {
   const control = h("input", {
     type: "text", inputmode: many ? "text" : "decimal", autocomplete: "off", value: write(value),
-    onchange: () => change(many ? list(control.value) : parseNumber(control.value)),
+    onchange: () => change(understood(control, many ? list(control.value) : parseNumber(control.value))),
   });
   return field(path, label, control, extra);
 }
@@ -211,8 +236,9 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
   const entry = h("input", {
     type: "text", class: "short", inputmode: "decimal", autocomplete: "off", value,
     onchange: () => {
-      range.value = to(Number(entry.value));
-      change(parseNumber(entry.value));
+      const given = understood(entry, parseNumber(entry.value));
+      range.value = to(Number(given));
+      change(given);
     },
   });
   range.value = to(value);

@@ -2,7 +2,7 @@
 
 import { ask, attempt } from "../api.js";
 import { h, latest, number, symbol } from "../dom.js";
-import { box, field, fileBox, select, tableField, trouble } from "../form.js";
+import { box, field, fileBox, parseNumber, select, tableField, trouble } from "../form.js";
 import { CHOSEN, GIVEN, suitesOf } from "../measures.js";
 import { Spectra } from "./spectra.js";
 
@@ -71,7 +71,7 @@ export function target(app, root) {
   const scaling = h("fieldset", {}, h("legend", {}, "Scale the present record"),
     field("target.period", "to the target at the period", period, { unit: "s" }),
     h("div", { class: "buttons" },
-      h("button", { type: "button", onclick: () => scale(Number(period.value.trim() || NaN)) }, "At this period"),
+      h("button", { type: "button", onclick: () => scale(parseNumber(period.value)) }, "At this period"),
       h("button", { type: "button", onclick: () => scale(null) }, "Over the range")), scaled);
   const form = h("div", { class: "side" },
     h("fieldset", { "data-path": "target" }, h("legend", {}, "Target"), kind, Object.values(made), trouble()),
@@ -105,7 +105,7 @@ export function target(app, root) {
   async function scale(at) {
     scaled.textContent = "";
     await attempt(async () => {
-      const { factor } = await ask("/api/factor", { state: app.state, period: Number.isNaN(at) ? period.value : at });
+      const { factor } = await ask("/api/factor", { state: app.state, period: at });
       app.complain(root(), {});
       app.change({ scale: factor });
       scaled.textContent = `Scaled by ${number(factor)}; the scale factor is on the Response tab, too.`;

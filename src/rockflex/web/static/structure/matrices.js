@@ -20,14 +20,19 @@ export function importing(limit, structure, put) {
       const found = await send(`/api/matrices?name=${encodeURIComponent(file.name)}&part=${part.value}`, file);
       const now = structure();
       const name = now.matrices ? now.name : file.name.replace(/\.\w+$/, "");
-      put({ name, matrices: { ...(now.matrices ?? REST), ...found } });
+      const kept = { ...(now.matrices ?? REST) };
+      if (found.stiffness && /\.npz$/i.test(file.name)) for (const each of PARTS) delete kept[each]; // of another structure
+      put({ name, matrices: { ...kept, ...found } });
     }, (error) => {
       said.textContent = Object.values(error.errors).join(" ");
     });
   }
 
   return h("fieldset", { "data-path": "import" }, h("legend", {}, "Import matrices"),
-    h("p", { class: "help" }, "From any finite element program: a .npz file with the arrays mass, stiffness and heights,",
-      " or one CSV file for each. Units: kg, N/m, m; fixed base."),
+    h("p", { class: "help" }, "From any finite element program: a .npz file with the arrays mass, stiffness, heights and, if there",
+      " are any, rotations, or one CSV file for each. Units: kg, N/m, m, rad; fixed base."),
+    h("p", { class: "hint" }, "heights: one for each degree of freedom, nan for those that do not move sideways; or rows of an",
+      " index and a height. rotations: the indices of the rotations in the plane, counted from 0; they need no height. Degrees",
+      " of freedom without mass are condensed out."),
     h("div", { class: "buttons" }, h("label", { for: "part" }, "CSV contains"), part), input, said);
 }

@@ -138,6 +138,7 @@ export default function structureTab(app) {
         "which affect the base shear most: compare with MDOF-S on the Response tab.") : "",
       view.warnings.length
         ? h("div", { class: "warning", id: "warnings", role: "alert" }, view.warnings.map((text) => h("p", {}, text))) : "",
+      view.freedoms ? h("p", { class: "hint", id: "freedoms" }, view.freedoms) : "",
       pictures(view),
       view.elements.length || view.ground ? base(app.about, view) : "",
       h("dl", { class: "values" }, view.properties.map(parameter)),
