@@ -61,6 +61,24 @@ class Client:
         assert status == 200, body
         return headers["content-disposition"].split('"')[1], body
 
+    def make(self, what: str, state: dict[str, Any]) -> str:
+        """Start to make a file, and return its token."""
+        return self.ask(f"/api/file/{what}", state)["token"]
+
+    def made(self, what: str, state: dict[str, Any], seconds: float = 120.0) -> Any:
+        """How the making of a file ended, with the file itself if there is one."""
+        path = f"/api/file/{self.make(what, state)}"
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            answer = json.loads(self.request(path)[2])
+            if answer["status"] not in ("waiting", "running"):
+                if answer["status"] == "done":
+                    _, headers, body = self.request(f"{path}/content")
+                    answer |= {"name": headers["content-disposition"].split('"')[1], "content": body}
+                return answer
+            time.sleep(0.1)
+        pytest.fail(f"The file took more than {seconds} s.")
+
     def state(self, **changes: Any) -> dict[str, Any]:
         """The first state of the page, changed."""
         return json.loads(self.request("/api/about")[2])["state"] | changes

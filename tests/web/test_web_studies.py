@@ -10,7 +10,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.study.design import TendonLevel, smallest_width
-from rockflex.web._jobs import Job, Jobs
+from rockflex.web._jobs import KEPT, Job, Jobs
 from rockflex.web._presets import PRESETS
 from rockflex.web._refusal import Refusal
 
@@ -204,10 +204,10 @@ def test_a_failure_is_told_without_a_traceback(caplog) -> None:
 
 
 def test_jobs_are_many_but_limited() -> None:
-    jobs = Jobs()
-    tokens = [jobs.start(Plan(), "cloud") for _ in range(12)]
+    jobs = Jobs("studies", KEPT)
+    tokens = [jobs.start(Job(Plan(), "cloud")) for _ in range(12)]
     with pytest.raises(Refusal, match="busy with other studies"):
-        jobs.start(Plan(), "cloud")
+        jobs.start(Job(Plan(), "cloud"))
     jobs.cancel(tokens[-1])
     assert jobs.get(tokens[-1]).status == "cancelled"
     assert len(set(tokens)) == 12

@@ -1,9 +1,9 @@
 """The Response tab as a moving picture."""
 
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from rockflex.solve import check_interruption
 from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._response import responses
 from rockflex.web._state import State
@@ -14,15 +14,13 @@ RATES = ((60.0, 25.0), (120.0, 12.5))
 WIDTH = 800  # pixels
 
 
-def animation(state: State, uploads: Uploads) -> tuple[str, bytes]:
-    """Return the name and the content of a GIF of the models that are shown, at their true speed.
+def animation(state: State, uploads: Uploads, told: Callable[[int, int], None]) -> tuple[str, bytes]:
+    """Return the name and the content of a GIF of the models that are shown, at their true speed; `told` gets the frames drawn and all.
 
     Raises
     ------
     Refusal
         If a run cannot be made, or the animation would be too long.
-    RunStoppedError
-        If nobody waits for it any more.
     """
     from rockflex.plot import animate
     from rockflex.plot._style import literal
@@ -40,6 +38,6 @@ def animation(state: State, uploads: Uploads) -> tuple[str, bytes]:
     with TemporaryDirectory() as folder, refusing("models"):
         file = animate(
             found, Path(folder) / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,
-            width=WIDTH, progress=lambda _done, _total: check_interruption(),
+            width=WIDTH, progress=told,
         )  # fmt: skip
         return file.name, file.read_bytes()

@@ -20,12 +20,14 @@ from starlette.staticfiles import StaticFiles
 from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
 from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.web._download import download, study_file
+from rockflex.web._animation import animation
+from rockflex.web._download import KINDS_OF_FILES, download, study_file
 from rockflex.web._exchange import file_answer, file_of, question_of, state_of, step_of
 from rockflex.web._folder_requests import folder_routes
 from rockflex.web._forms import forms
 from rockflex.web._headers import Headers, Hosts
-from rockflex.web._jobs import Job, Jobs
+from rockflex.web._jobs import FILES as FILES_KEPT
+from rockflex.web._jobs import KEPT, FileJob, Job, Jobs
 from rockflex.web._limit_states import limit_states
 from rockflex.web._limits import DURATION, FILE, FILES, FOLDER, FREEDOMS, MODELS, MOST_ELEMENTS, RUNS
 from rockflex.web._measures import measures
@@ -52,7 +54,8 @@ class Server:
     """The requests of the page; only uploads and running studies are stored."""
 
     def __init__(self) -> None:
-        self.uploads, self.jobs = Uploads(), Jobs()
+        self.uploads = Uploads()
+        self.jobs, self.files = Jobs[Job]("studies", KEPT), Jobs[FileJob]("files", FILES_KEPT)
         self._ready = Event()
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
@@ -164,7 +167,7 @@ class Server:
         state = await state_of(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(planned(PAGES[kind].study(state, self.uploads), kind), kind)}
+            return {"token": self.jobs.start(Job(planned(PAGES[kind].study(state, self.uploads), kind), kind))}
 
         return JSONResponse(await self.answer(work))
 
@@ -184,6 +187,33 @@ class Server:
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
         self.jobs.cancel(request.path_params["token"])
+        return JSONResponse({})
+
+    async def make(self, request: Request) -> Response:
+        """Start to make a file that takes long."""
+        what = request.path_params["what"]
+        if what != "animation":
+            raise Refusal(f"There is no file named {what[:40]!r} to make.", 404)
+        state = await state_of(request)
+        return JSONResponse({"token": self.files.start(FileJob(lambda told: animation(state, self.uploads, told)))})
+
+    async def making(self, request: Request) -> Response:
+        """Progress of a file."""
+        job = self.files.get(request.path_params["token"])
+        errors = job.errors or ({"": job.message} if job.message else {})
+        return JSONResponse({"status": job.status, "done": job.done, "total": job.total, "errors": errors})
+
+    async def made(self, request: Request) -> Response:
+        """Hand out a file that was made."""
+        job = self.files.get(request.path_params["token"])
+        if job.file is None:
+            raise Refusal("The file is not finished.", 404)
+        name, content = job.file
+        return file_answer(name, KINDS_OF_FILES[Path(name).suffix], content)
+
+    async def unmake(self, request: Request) -> Response:
+        """Stop to make a file."""
+        self.files.cancel(request.path_params["token"])
         return JSONResponse({})
 
     def _job(self, request: Request) -> tuple[str, Job]:
@@ -209,6 +239,7 @@ def create(host: str, names: Sequence[str]) -> Starlette:
         Thread(target=server.warm_up, name="warm-up", daemon=True).start()
         yield
         server.jobs.close()
+        server.files.close()
 
     middleware = [
         Middleware(Headers),
@@ -232,6 +263,10 @@ def create(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),
         Route("/api/study/{kind}/{token}/{what}", server.study_file, methods=["POST"]),
         Route("/api/job/{token}", server.cancel, methods=["DELETE"]),
+        Route("/api/file/{what}", server.make, methods=["POST"]),
+        Route("/api/file/{token}", server.making),
+        Route("/api/file/{token}", server.unmake, methods=["DELETE"]),
+        Route("/api/file/{token}/content", server.made),
         Mount("/static", StaticFiles(directory=STATIC)),
     ]
     handlers: dict[Any, Any] = {

@@ -12,7 +12,6 @@ import tomli_w
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, record_csv
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
-from rockflex.web._animation import animation
 from rockflex.web._given import FOLDER, HEAD, WHOLE, given_suite
 from rockflex.web._jobs import Job
 from rockflex.web._pages import PAGES
@@ -49,7 +48,7 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     state
         The state of the page.
     what
-        ``"report"``, ``"figure"``, ``"animation"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``,
+        ``"report"``, ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``,
         ``"record"``, ``"records"``, ``"study"``, ``"structure"``, ``"python"``, those of `SELECTION_FILES`, and
         ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``,
         ``"design-records"``.
@@ -233,7 +232,6 @@ def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str,
 
 _MAKERS: dict[str, Any] = SELECTION_FILES | {
     "figure": _figure,
-    "animation": animation,
     "energy": _energy,
     "report": run_report,
     "modes": _modes,

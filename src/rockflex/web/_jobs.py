@@ -1,36 +1,42 @@
-"""Studies that run in the background, chunk by chunk, while the page shows the results so far."""
+"""Long work in the background, studies and files, while the page shows its progress and may cancel it."""
 
 import logging
 import secrets
 from collections import OrderedDict
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
-from threading import Event, Lock
+from collections.abc import Callable
+from queue import SimpleQueue
+from threading import Event, Lock, Thread
 from time import monotonic
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from rockflex._errors import InputError, SolverError
-from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.solve import RunStoppedError, check_interruption, stopping_when
 from rockflex.study.plan import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
-KEPT = 40  # jobs that are remembered
-WAITING = 12  # jobs that may wait or run at the same time
+KEPT = 40  # studies that are remembered
+FILES = 4  # files
+WAITING = 12  # jobs of a kind that may wait or run at the same time
 FORGOTTEN = 30.0  # s without a request after which a job stops, because its page was closed
 
 
-@dataclass
-class Job:
-    """A study that one thread computes and others read; `tables` only grows."""
+class Work:
+    """What one thread computes and others watch.
 
-    plan: ChunkedPlan
-    kind: str
-    status: str = "waiting"
-    message: str = ""
-    tables: list[Any] = field(default_factory=list[Any])
-    runs: int = 0
-    cancelled: Event = field(default_factory=Event)
-    seen: float = field(default_factory=monotonic)
+    Attributes
+    ----------
+    status : str
+        "waiting", "running", "done", "cancelled" or "failed".
+    message : str
+        Why it failed.
+    errors : dict of str
+        The same by the field at fault, if that is known.
+    """
+
+    def __init__(self) -> None:
+        self.status, self.message = "waiting", ""
+        self.errors: dict[str, str] = {}
+        self.cancelled, self.seen = Event(), monotonic()
 
     @property
     def over(self) -> bool:
@@ -38,36 +44,88 @@ class Job:
         return self.status in ("done", "cancelled", "failed")
 
     def compute(self) -> None:
-        """Compute chunk after chunk until done, cancelled or forgotten."""
+        """Work until done, cancelled or forgotten."""
         self.status = "running"
         try:
-            for number in range(self.plan.n_chunks):
-                if self.cancelled.is_set() or monotonic() - self.seen > FORGOTTEN:
-                    self.status = "cancelled"
-                    return
-                with stopping_when(self.cancelled.is_set):
-                    table = self.plan.chunk(number)
-                self.tables.append(table)
-                self.runs += table.num_rows
+            with stopping_when(self._unwanted):
+                self.work()
             self.status = "done"
         except RunStoppedError:
             self.status = "cancelled"
+        except Refusal as error:
+            self.errors, self.message, self.status = error.errors, str(error), "failed"
         except (InputError, SolverError) as error:
-            self.status, self.message = "failed", str(error)
+            self.message, self.status = str(error), "failed"
         except Exception:
-            logging.getLogger(__name__).exception("A study of the page failed")
-            self.status, self.message = "failed", "An internal error occurred; the log of the server has the details."
+            logging.getLogger(__name__).exception("Work in the background of the page failed")
+            self.message = "An internal error occurred; the log of the server has the details."
+            self.status = "failed"
+
+    def work(self) -> None:
+        """Compute the result, and call `check_interruption` often."""
+        raise NotImplementedError
+
+    def _unwanted(self) -> bool:
+        return self.cancelled.is_set() or monotonic() - self.seen > FORGOTTEN
 
 
-class Jobs:
-    """Jobs by token, which cannot be guessed. One job runs at a time, so that a core is free for answers."""
+class Job(Work):
+    """A study, computed chunk after chunk; `tables` only grows."""
 
-    def __init__(self) -> None:
-        self._jobs: OrderedDict[str, Job] = OrderedDict()
+    def __init__(self, plan: ChunkedPlan, kind: str) -> None:
+        super().__init__()
+        self.plan, self.kind, self.runs = plan, kind, 0
+        self.tables: list[Any] = []
+
+    def work(self) -> None:
+        """Compute all chunks."""
+        for number in range(self.plan.n_chunks):
+            check_interruption()
+            table = self.plan.chunk(number)
+            self.tables.append(table)
+            self.runs += table.num_rows
+
+
+class FileJob(Work):
+    """A file that takes long: `make` returns its name and content, and reports how many parts of how many are done."""
+
+    def __init__(self, make: Callable[[Callable[[int, int], None]], tuple[str, bytes]]) -> None:
+        super().__init__()
+        self.done, self.total = 0, 0
+        self.file: tuple[str, bytes] | None = None
+        self._make = make
+
+    def work(self) -> None:
+        """Make the file."""
+        self.file = self._make(self._report)
+
+    def _report(self, done: int, total: int) -> None:
+        check_interruption()
+        self.done, self.total = done, total
+
+
+AnyWork = TypeVar("AnyWork", bound=Work)
+
+
+class Jobs(Generic[AnyWork]):
+    """Jobs by token, which cannot be guessed. One runs at a time, so that a core is free for answers.
+
+    Parameters
+    ----------
+    what
+        Their name in messages.
+    kept
+        How many are remembered.
+    """
+
+    def __init__(self, what: str, kept: int) -> None:
+        self._what, self._kept = what, kept
+        self._jobs: OrderedDict[str, AnyWork] = OrderedDict()
         self._lock = Lock()
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="study")
+        self._queue: SimpleQueue[AnyWork | None] = SimpleQueue()
+        self._thread: Thread | None = None
 
-    def start(self, plan: ChunkedPlan, kind: str) -> str:
+    def start(self, job: AnyWork) -> str:
         """Queue a job, and return its token.
 
         Raises
@@ -76,17 +134,22 @@ class Jobs:
             If too many jobs are waiting.
         """
         with self._lock:
-            if sum(not job.over for job in self._jobs.values()) >= WAITING:
-                raise Refusal("The server is busy with other studies. Try again in a minute.", 503)
+            if sum(not each.over for each in self._jobs.values()) >= WAITING:
+                raise Refusal(f"The server is busy with other {self._what}. Try again in a minute.", 503)
             token = secrets.token_urlsafe(18)
-            job = self._jobs[token] = Job(plan, kind)
-            while len(self._jobs) > KEPT:
-                old = next((key for key, each in self._jobs.items() if each.over), token)
+            self._jobs[token] = job
+            while len(self._jobs) > self._kept:
+                old = next((key for key, each in self._jobs.items() if each.over), None)
+                if old is None:
+                    break
                 del self._jobs[old]
-        self._pool.submit(job.compute)
+            if self._thread is None:  # a daemon: work that cannot be interrupted does not keep the server from stopping
+                self._thread = Thread(target=self._run, name=self._what, daemon=True)
+                self._thread.start()
+        self._queue.put(job)
         return token
 
-    def get(self, token: str) -> Job:
+    def get(self, token: str) -> AnyWork:
         """Return a job, and record that its page is still open.
 
         Raises
@@ -97,7 +160,7 @@ class Jobs:
         with self._lock:
             job = self._jobs.get(token)
         if job is None:
-            raise Refusal("The server does not have this study (any more). Start it again.", 404)
+            raise Refusal(f"The server does not have these {self._what} (any more). Start again.", 404)
         job.seen = monotonic()
         return job
 
@@ -113,4 +176,8 @@ class Jobs:
         with self._lock:
             for job in self._jobs.values():
                 job.cancelled.set()
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        self._queue.put(None)
+
+    def _run(self) -> None:
+        while (job := self._queue.get()) is not None:
+            job.compute()

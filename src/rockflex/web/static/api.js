@@ -73,7 +73,7 @@ export async function drop(path) {
 }
 
 export async function file(path, body) {
-  const response = await post(path, "json", JSON.stringify(body));
+  const response = await (body ? post(path, "json", JSON.stringify(body)) : request(path));
   const name = /filename\*=UTF-8''(\S+)/.exec(response.headers.get("Content-Disposition") ?? "")?.[1] ?? "file";
   return [decodeURIComponent(name), await response.blob()];
 }

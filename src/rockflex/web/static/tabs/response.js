@@ -5,6 +5,7 @@ import { overTime } from "../chart.js";
 import { decode, h, latest } from "../dom.js";
 import { select, slider } from "../form.js";
 import { looks } from "../looks.js";
+import { making } from "../making.js";
 import { legend } from "../marks.js";
 import { models } from "../models.js";
 import { assumptions } from "../response/assumptions.js";
@@ -32,7 +33,7 @@ const DISPLACEMENTS = [
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
-  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["energy", "Energy (SVG)"],
+  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["energy", "Energy (SVG)"],
   ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
   ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
 ];
@@ -81,7 +82,10 @@ export default function responseTab(app) {
       h("fieldset", {}, h("legend", {}, "Runs"), scale, labels, free, h("p", { class: "error foot", role: "alert" })),
       h("fieldset", {}, h("legend", {}, "Assumptions"), assumed.element)),
     results);
-  results.append(app.downloads(element, FILES));
+  const moving = making(app, element, "animation", "Animation (GIF)");
+  const files = app.downloads(element, FILES);
+  files.querySelector('[data-file="figure"]').after(moving.button);
+  results.append(files, moving.element);
 
   function draw() {
     const [first] = view.models;
