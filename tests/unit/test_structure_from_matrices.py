@@ -213,6 +213,26 @@ def test_files_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "heights",
+    [[8.0, np.nan, 16.0, np.nan], [8.0, 8.0, 16.0, 16.0], [8.0, 0.0, 16.0, 0.0], [8.0, 16.0], {2: 16.0, 0: 8.0}],
+)
+def test_heights_of_translations_in_any_layout(heights, tmp_path):
+    given = {"stiffness": beam_matrices(2, 16.0, 4.0e9, 1.0)[0], "rotations": [1, 3], **SCALARS}
+    mass = [30e3, 0.0, 80e3, 0.0]
+    p = rf.from_matrices(mass, heights=heights, **given).rocking()
+    low, top = 8.0, 16.0  # the flexibility of a cantilever at its nodes, which knows no rotations
+    both = low**2 * (3 * top - low) / 6
+    f = np.array([[low**3 / 3, both], [both, top**3 / 3]]) / 4.0e9
+    expected = np.sort(1.0 / np.sqrt(np.linalg.eigvals(f @ np.diag([30e3, 80e3]))))
+    np.testing.assert_allclose(p.omega, expected, rtol=1e-10)
+    assert p.l0r == pytest.approx(30e3 * low + 80e3 * top, rel=1e-12)
+    if not isinstance(heights, dict):
+        np.savetxt(tmp_path / "heights.csv", heights)
+        same = rf.from_matrices(mass, heights=tmp_path / "heights.csv", **given).rocking()
+        np.testing.assert_allclose(same.omega, p.omega, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
     ("changes", "words"),
     [
         (
@@ -234,7 +254,7 @@ def test_files_refused(tmp_path):
         ),
         (
             {"heights": [1.0]},
-            "heights must contain one height for each of the 2 degrees of freedom, but 1 were given. If some",
+            "heights must contain one height for each of the 2 degrees of freedom, but 1 were given. List those that rotate",
         ),
         (
             {"heights": {}},
@@ -243,10 +263,10 @@ def test_files_refused(tmp_path):
         ({"heights": {0: -1.0}}, "all positive, but -1 m was given. A mass at the base belongs to base_mass"),
         ({"heights": {2: 1.0}}, "heights, index must be a whole number from 0 to 1, but 2 was given"),
         (
-            {"rotations": [1]},
+            {"heights": {0: 1.0, 1: 2.0}, "rotations": [1]},
             "rotations must list each degree of freedom once, and none that has a height, but 1 is listed twice",
         ),
-        ({"heights": {0: 1.0}, "rotations": [1, 1]}, "but 1 is listed twice. Give heights as a map"),
+        ({"heights": {0: 1.0}, "rotations": [1, 1]}, "but 1 is listed twice"),
         (
             {"heights": {0: 1.0}, "rotations": [5]},
             "rotations, index must be a whole number from 0 to 1, but 5 was given",

@@ -71,6 +71,102 @@ def test_matrices_are_imported(visitor, tmp_path) -> None:
     assert "does not hold matrices that can be read" in visitor.error("import")
 
 
+def test_matrices_with_rotations_are_imported_and_edited(visitor, tmp_path) -> None:
+    page = visitor.page
+    k = np.array([[8e6, -4e6, 0.0], [-4e6, 4e6, -2e6], [0.0, -2e6, 9e6]])
+    kept = {"base_mass": 0.0, "half_width": 1.0, "damping_ratio": 0.02}
+    np.savez(tmp_path / "fe.npz", mass=[2e4, 2e4, 0.0], stiffness=k, heights=[3.0, 6.0], rotations=[2])
+    page.get_by_label("File of matrices").set_input_files(tmp_path / "fe.npz")
+    given = {"mass": [2e4, 2e4, 0.0], "stiffness": k, **kept}
+    expected = rf.from_matrices(heights={0: 3.0, 1: 6.0}, rotations=[2], **given)
+    visitor.wait_for("#modes tbody td", expected.modal().period[0])
+    assert page.locator("#freedoms").inner_text() == (
+        "Degrees of freedom: 2 move sideways, 1 rotate in the plane. 1 have no mass and are condensed out."
+    )
+    visitor.fill("structure.matrices.heights", "0: 3,5; 1: 7")  # by index, with a decimal comma
+    path = '[data-path="structure.matrices.heights"] input'
+    expected = rf.from_matrices(heights={0: 3.5, 1: 7.0}, rotations=[2], **given)
+    page.wait_for_function(
+        "v => [...document.querySelectorAll('dd[data-value]')].some((e) => Math.abs(Number(e.dataset.value) / v - 1) < 1e-12)",
+        arg=expected.rocking().l0r,
+    )
+    assert page.locator(path).input_value() == "0: 3.5, 1: 7"
+    assert visitor.state()["structure"]["matrices"]["heights"] == {"0": 3.5, "1": 7}
+    visitor.fill("structure.matrices.heights", "0: 3, tall")
+    assert visitor.error("structure.matrices.heights").startswith("It must be the heights in m of the freedoms")
+    assert page.locator(".error:visible").count() == 1
+
+
+def test_decimal_commas_are_read_in_every_number_field(visitor) -> None:
+    page = visitor.page
+    kinds = page.evaluate("Object.entries(rockflexPage.about.kinds).map(([name, k]) => [name, k.fields])")
+    for kind, fields in kinds:
+        page.get_by_label("Kind").select_option(kind)
+        page.wait_for_function("k => k in rockflexPage.state.structure", arg=kind)
+        for each in fields:
+            box = page.locator(f'[data-path="structure.{kind}.{each["name"]}"] > .row > input[type="text"]')
+            if each["type"] in ("number", "number or list") and box.count():
+                visitor.fill(f"structure.{kind}.{each['name']}", "0,5")
+                assert visitor.state()["structure"][kind][each["name"]] == 0.5, (kind, each["name"])
+                assert box.input_value() == "0.5"
+
+
+@pytest.mark.parametrize(
+    ("kind", "field", "text", "value"),
+    [
+        ("frame", "period", "−0,75e0", -0.75),
+        ("frame", "period", "1,25e-1", 0.125),
+        ("frame", "period", "0,125", 0.125),
+        ("frame", "period", "1,250", "1,250"),  # or a thousand and more
+        ("frame", "period", "1,234.5", "1,234.5"),
+        ("lumped", "heights", "3, 6, 9", [3, 6, 9]),
+        ("lumped", "heights", "3,6,9", [3, 6, 9]),
+        ("lumped", "heights", "3,5; 6,5", [3.5, 6.5]),
+        ("lumped", "heights", "3,5 6,5", [3.5, 6.5]),
+        ("lumped", "heights", "3,5, 6,5", [3.5, 6.5]),
+        ("lumped", "heights", "3.5,6.5", [3.5, 6.5]),
+        ("lumped", "heights", "3,6", ["3,6"]),  # one number or two
+        ("lumped", "heights", "1,000 2,000", ["1,000", "2,000"]),
+        ("lumped", "stiffness", "4,5; -2\n-2; 2", [[4.5, -2], [-2, 2]]),
+        ("lumped", "stiffness", "4, -2; -2, 2", [[4, -2], [-2, 2]]),
+        ("lumped", "stiffness", "4,2\n2,4", [[4, 2], [2, 4]]),
+        ("matrices", "rotations", "1,3", [1, 3]),
+        ("matrices", "heights", "0:8,5 2:16,5", {"0": 8.5, "2": 16.5}),
+        ("matrices", "heights", "{0: 8.5, 2: 16}", {"0": 8.5, "2": 16}),
+        ("matrices", "heights", "0:8,2:16", {"0": 8, "2": 16}),
+    ],
+)
+def test_what_commas_mean(visitor, kind, field, text, value) -> None:
+    page = visitor.page
+    page.get_by_label("Kind").select_option(kind)
+    page.wait_for_function("k => k in rockflexPage.state.structure", arg=kind)
+    control = page.locator(f'[data-path="structure.{kind}.{field}"] > .row > :is(input, textarea)')
+    control.fill(text)
+    control.blur()
+    assert visitor.state()["structure"][kind][field] == value
+    if isinstance(value, str) or "3,6" in value or "1,000" in value:
+        assert "write a decimal point, no thousands separators" in visitor.error(f"structure.{kind}.{field}")
+
+
+def test_decimal_commas_on_the_other_tabs(visitor) -> None:
+    page = visitor.page
+    visitor.tab("response")
+    visitor.fill("scale", "0,5")
+    assert visitor.state()["scale"] == 0.5
+    assert page.locator('[data-path="scale"] input[type="text"]').input_value() == "0.5"
+    visitor.fill("scale", "1,234.5")
+    assert "no thousands separators" in visitor.error("scale")
+    visitor.fill("scale", "1")
+    visitor.tab("fragility")
+    visitor.fill("cloud.scales", "0,5; 1; 1,5")
+    assert visitor.state()["cloud"]["scales"] == [0.5, 1, 1.5]
+    visitor.fill("cloud.scales", "0,5")
+    assert visitor.state()["cloud"]["scales"] == [0.5]
+    visitor.tab("design")
+    visitor.fill("design.at", "0,7")
+    assert visitor.state()["design"]["at"] == 0.7
+
+
 @pytest.mark.parametrize(("preset", "kind"), [(0, "frame"), (6, "tapered_tower"), (8, "cantilever"), (10, "lumped")])
 def test_nonsense_in_any_field_is_answered_beside_it(visitor, preset, kind) -> None:
     page = visitor.page

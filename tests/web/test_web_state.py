@@ -108,9 +108,30 @@ def test_links_with_the_old_name_of_the_confidence_still_open() -> None:
 def test_text_never_becomes_the_path_of_a_file() -> None:
     matrices = {"mass": "/etc/passwd", "stiffness": "secret.npz", "heights": [3.0], "base_mass": 1.0}
     found = errors({"structure": {"matrices": matrices | {"half_width": 1.0, "damping_ratio": 0.0}}})
-    assert found["structure.matrices.mass"] == "it must be numbers, not the name of a file: import the file instead."
-    assert "import the file" in found["structure.matrices.stiffness"]
+    assert found["structure.matrices.mass"].startswith("it must be the masses in kg")
+    assert found["structure.matrices.stiffness"].endswith("but 'secret.npz' was given.")
 
+
+@pytest.mark.parametrize(
+    ("change", "path"),
+    [
+        ({"scale": "1,234.5"}, "scale"),
+        ({"scale": "1,234"}, "scale"),
+        ({"cloud": {"scales": ["1,5"]}}, "cloud.scales"),
+        ({"structure": {"lumped": {"heights": ["3,000", "6,000"]}}}, "structure.lumped.heights"),
+        ({"structure": {"matrices": {"mass": ["1,234", "5"]}}}, "structure.matrices.mass"),
+    ],
+)
+def test_a_comma_that_may_mean_two_things_is_explained(change, path) -> None:
+    assert "write a decimal point, no thousands separators" in errors({"structure": FRAME} | change)[path]
+    assert "thousands" not in errors({"structure": FRAME, "scale": "soon, 1 or 2"})["scale"]
+
+
+def test_messages_about_matrices_speak_of_the_page() -> None:
+    found = errors({"structure": {"matrices": {"mass": True, "heights": "x", "omega": 1}}})
+    for text in found.values():
+        for word in ("path", ".npz", "file", "table", "{ index"):
+            assert word not in text
 
 @pytest.mark.parametrize(
     "structure",

@@ -3,6 +3,7 @@
 import io
 import json
 import time
+import tomllib
 import zipfile
 from contextlib import suppress
 from urllib.parse import urlencode
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 
 import rockflex as rf
 from record_samples import cosmos, esm, knet
+from rockflex.structure.file import StructureEntry
 from rockflex.web._download import download
 from rockflex.web._records import record_view
 from rockflex.web._refusal import Refusal
@@ -144,6 +146,17 @@ def test_a_record_with_a_slip_is_read_or_refused(data) -> None:
         read_record("mine.at2", bytes(content), None, None)
 
 
+def beam(length, ei):
+    """Stiffness of a cantilever of two equal elements, with freedoms (w, φ) from the bottom up."""
+    h = length / 2.0
+    k_e = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], dtype=float)
+    k_e *= ei / h**3 * np.outer([1, h, 1, h], [1, h, 1, h])
+    k = np.zeros((6, 6))
+    for at in (0, 2):
+        k[at : at + 4, at : at + 4] += k_e
+    return k[2:, 2:]
+
+
 def test_matrices_are_read() -> None:
     m, k, h = np.diag([2.0, 3.0]), np.array([[4.0, -2.0], [-2.0, 2.0]]), np.array([3.0, 6.0])
     found = read_matrices("fe.npz", npz(mass=m, stiffness=k, heights=h), "")
@@ -152,9 +165,55 @@ def test_matrices_are_read() -> None:
     assert read_matrices("h.csv", b"3\n6\n", "heights") == {"heights": [3.0, 6.0]}
 
 
+NAN = np.nan
+BAR = {"mass": [30e3, 0.0, 80e3, 0.0], "stiffness": beam(16.0, 4e9)}
+SCALARS = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
+
+
+@pytest.mark.parametrize(
+    "heights",
+    [[8.0, NAN, 16.0, NAN], [8.0, 8.0, 16.0, 16.0], [8.0, 0.0, 16.0, 0.0], [8.0, 16.0], [[0.0, 8.0], [2.0, 16.0]]],
+)
+def test_rotations_are_imported_in_any_layout(client, heights) -> None:
+    expected = rf.from_matrices(**BAR, heights={0: 8.0, 2: 16.0}, rotations=[1, 3], **SCALARS)
+    found = read_matrices("fe.npz", npz(**BAR, heights=heights, rotations=[1, 3]), "")
+    view = client.ask("/api/structure", client.state(structure={"matrices": found | SCALARS}))
+    periods = [mode["period"] for mode in view["modes"]]
+    np.testing.assert_allclose(periods, expected.modal().period, rtol=1e-12)
+    assert [each["value"] for each in view["properties"] if each["symbol"] == "I_θ"] == pytest.approx(
+        [expected.rocking().i_theta], rel=1e-12
+    )
+    assert view["freedoms"] == (
+        "Degrees of freedom: 2 move sideways, 2 rotate in the plane. 2 have no mass and are condensed out."
+    )
+    state = client.state(structure={"matrices": found | SCALARS})
+    _, toml = client.download("/api/download/structure", state)
+    again = StructureEntry.model_validate(tomllib.loads(toml.decode())).build()
+    np.testing.assert_allclose(again.modal().period, expected.modal().period, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("content", "part", "found"),
+    [
+        (b"8,nan,16,nan\n", "heights", {"0": 8.0, "2": 16.0}),
+        (b"8,,16,-\n", "heights", {"0": 8.0, "2": 16.0}),
+        (b"0,8\n2,16.5\n", "heights", {"0": 8.0, "2": 16.5}),
+        (b"0;8\n2;16,5\n", "heights", {"0": 8.0, "2": 16.5}),
+        (b"1\n3\n", "rotations", [1, 3]),
+        (b"4,5;-2\n-2;2\n", "stiffness", [[4.5, -2.0], [-2.0, 2.0]]),
+    ],
+)
+def test_freedoms_in_csv_files(content, part, found) -> None:
+    assert read_matrices("a.csv", content, part) == {part: found}
+
+
 @pytest.mark.parametrize(
     ("name", "content", "part", "text"),
     [
+        ("r.csv", b"1.5\n", "rotations", "whole indices of freedoms, counted from 0, but 1.5"),
+        ("h.csv", b"0.5,3\n1,6\n2,9\n", "heights", "whole indices"),
+        ("h.csv", b"nan\nnan\n", "heights", "finite numbers"),
+        ("k.csv", b"4,\n,2\n", "stiffness", "finite numbers"),
         ("k.csv", b"4,-2\n-2,2\n", "soul", "say which of mass, stiffness, heights, rotations"),
         ("k.csv", b"4,x\n", "mass", "does not hold matrices that can be read"),
         ("k.csv", b"4,nan\n", "mass", "mass must hold finite numbers"),

@@ -23,7 +23,7 @@ class _FromFiles(StructureTable):
             "a list of masses in kg, or the mass matrix",
             "kg",
             form=_OR_FILE,
-            page="the masses in kg, or the rows of the mass matrix; 0 for a freedom without mass, which is condensed out",
+            page="the masses in kg, 0 for freedoms without mass, or the rows of the mass matrix",
         ),
     ]
     heights: Annotated[
