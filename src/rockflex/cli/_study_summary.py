@@ -41,9 +41,8 @@ def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: fl
         typer.echo(to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
     else:
         _print(tables)
-        for each in lifts:
-            if each.lifting:
-                typer.echo(f"\n{each}")
+        for text in (text for each in lifts for text in each.warnings):
+            typer.echo(f"\n{text}")
         typer.echo(f"\n{len(table)} rows in {duration(seconds)}")
     for remark in found.remarks:
         note(remark)

@@ -19,6 +19,7 @@ from rockflex.fragility._limit_states import (
     beyond,
     limit_label,
     residual_beyond,
+    rocked,
     symbol_of_nominal,
 )
 from rockflex.fragility._logistic import LogisticFit, fit_logistic
@@ -69,6 +70,7 @@ __all__ = [
     "resampled_exceedance",
     "residual_beyond",
     "risk_targeted_median",
+    "rocked",
     "symbol_of_nominal",
     "write_nrml",
     "write_pelicun",

@@ -11,7 +11,7 @@ from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, fit_cloud
-from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED
+from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED, UPLIFT, rocked
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 from rockflex.fragility._words import power_law
 
@@ -91,7 +91,7 @@ def fit_clouds(
     measure
         Column of the intensity measure.
     threshold
-        A run counts as rocking if its rotation in rad is larger.
+        A run counts as rocking if its base uplifted and its rotation in rad is larger.
     nominal
         Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
 
@@ -171,9 +171,10 @@ def _fits(
         raise InputError(f"No run of {shown(structure)} with {model} was solved. See the column error of the table.")
     fallen = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
     im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
-    rocked = ~fallen & (rotation > threshold)
-    outcomes = fit_outcomes(im, rotation, fallen, threshold=threshold)
-    relative, total = (_line(im[rocked], solved[name].to_numpy(dtype=float)[rocked]) for name in DISPLACEMENTS)
+    rocks = ~fallen & rocked(solved, threshold).to_numpy(dtype=bool)
+    lifts = UPLIFT.exceeded(solved).to_numpy(dtype=bool)
+    outcomes = fit_outcomes(im, rotation, fallen, uplifted=lifts, threshold=threshold)
+    relative, total = (_line(im[rocks], solved[name].to_numpy(dtype=float)[rocks]) for name in DISPLACEMENTS)
     return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved))
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from rockflex._errors import InputError
 
 OVERTURNED = 0.5 * math.pi  # rad
-ROCKED = 1e-4  # rad; a run counts as rocking if its rotation is larger
+ROCKED = 1e-4  # rad; uplift with a smaller rotation does not count as rocking
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,24 @@ def residual_beyond(rotation: float) -> LimitState:
 UPLIFT = LimitState(
     name="uplift", label="uplift", symbol="uplift", exceeded=lambda runs: runs["status"] != "no_uplift", threshold=0.0
 )
-ROCKING = beyond(ROCKED, "rocking", "θ_max > 1e-4 rad")
+
+
+def rocked(runs: Any, threshold: float = ROCKED) -> Any:
+    """Return which runs of a table rocked: the base uplifted, and turned by more than `threshold` in rad.
+
+    A base on springs also turns without uplift, which is no rocking. The threshold is that of Silva & Stojadinović
+    2024, Section 3.2, for rotations that matter.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import rocked
+    >>> [bool(rocked({"max_rotation": 0.003, "status": status})) for status in ("no_uplift", "rocking")]
+    [False, True]
+    """
+    return UPLIFT.exceeded(runs) & (runs["max_rotation"] > threshold)
+
+
+ROCKING = LimitState(name="rocking", label="uplift with θ_max > 1e-4 rad", symbol="rocking", exceeded=rocked)
 NOMINAL = LimitState(
     name="nominal",
     label="0.7 atan(B/h*_1)",

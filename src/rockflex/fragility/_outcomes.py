@@ -83,7 +83,9 @@ class OutcomeFragility(HtmlTable, Value):
     rotation : CloudFit or None
         log θ_max on log IM, of the runs that rocked without overturning, as in Figure 6. None if it cannot be fitted.
     threshold : float
-        A run counts as rocking if its rotation in rad is larger.
+        A run counts as rocking if its base uplifted and its rotation in rad is larger.
+    lowest_limit : float
+        Smallest limit in rad of `exceedance`: the threshold or, on springs, the largest rotation without uplift.
     highest_limit : float
         Smallest rotation in rad of an overturned run, π/2 if there is none; they exceed every limit below it.
     n_no_rocking, n_rocking, n_overturned : int
@@ -109,6 +111,7 @@ class OutcomeFragility(HtmlTable, Value):
     initiation: LogisticFit | UnanimousOutcome
     rotation: CloudFit | None
     threshold: float
+    lowest_limit: float
     highest_limit: float
     n_no_rocking: int
     n_rocking: int
@@ -150,13 +153,14 @@ class OutcomeFragility(HtmlTable, Value):
         Raises
         ------
         InputError
-            If a measure is not positive, or a limit is below the threshold of rocking or not below `highest_limit`.
+            If a measure is not positive, or a limit is below `lowest_limit` or not below `highest_limit`.
         """
         limits = np.exp(log_at(limit, "limit"))
-        if (limits < self.threshold * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
+        if (limits < self.lowest_limit * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
             raise InputError(
-                f"limit must lie in [{self.threshold:g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was given. "
-                "Below, a run counts as not rocking; above, an overturned run need not exceed it."
+                f"limit must lie in [{self.lowest_limit:.4g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was "
+                "given. Below, a run that does not rock may exceed it, as a base on springs turns without uplift (fit "
+                "the rotations by fit_outcomes without uplifted); above, an overturned run need not exceed it."
             )
         falls = self.overturning.probability(im)
         rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
@@ -165,7 +169,12 @@ class OutcomeFragility(HtmlTable, Value):
 
 
 def fit_outcomes(
-    im: ArrayLike, rotation: ArrayLike, overturned: ArrayLike, *, threshold: float = ROCKED
+    im: ArrayLike,
+    rotation: ArrayLike,
+    overturned: ArrayLike,
+    *,
+    uplifted: ArrayLike | None = None,
+    threshold: float = ROCKED,
 ) -> OutcomeFragility:
     """Fit the three outcomes of a cloud of runs, and the rotations of those that rocked.
 
@@ -181,8 +190,11 @@ def fit_outcomes(
     overturned : array_like, shape (n,)
         Whether the run overturned, by the caller's definition: the rotation reached π/2, or passed the nominal
         0.7 atan(B/h*_1) (columns `status` and `nominal_overturning` of a study).
+    uplifted : array_like, shape (n,), optional
+        Whether the base of the run uplifted (column `status`). Default: wherever it turned, as on rigid ground; one
+        on springs also turns without uplift.
     threshold
-        A run counts as rocking if its rotation in rad is larger.
+        A run counts as rocking if its base uplifted and its rotation in rad is larger.
 
     Raises
     ------
@@ -203,11 +215,12 @@ def fit_outcomes(
     log_measures(im)
     measures = finite_vector("im", im, "one unit")
     rotations, falls = finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
-    same_length(im=measures, rotation=rotations, overturned=falls)
+    lifts = np.ones(falls.size, dtype=bool) if uplifted is None else flags("uplifted", uplifted)
+    same_length(im=measures, rotation=rotations, overturned=falls, uplifted=lifts)
     limit = positive("threshold", threshold, "rad")
     _check(rotations, falls, limit)
 
-    stands, moves = ~falls, rotations > limit
+    stands, moves = ~falls, (rotations > limit) & (lifts | falls)
     rocked = stands & moves
     counts = int((~moves).sum()), int(rocked.sum()), int(falls.sum())
     notes = [
@@ -221,6 +234,7 @@ def fit_outcomes(
         initiation=_curve("initiation", measures, moves, notes) or UnanimousOutcome(bool(moves[0]), moves.size),
         rotation=_cloud(measures[rocked], rotations[rocked], notes),
         threshold=limit,
+        lowest_limit=float(rotations[~moves].max(initial=limit)),
         highest_limit=float(rotations[falls].min(initial=0.5 * math.pi)),
         n_no_rocking=counts[0],
         n_rocking=counts[1],

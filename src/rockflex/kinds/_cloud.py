@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 def report(_: Any, runs: Runs, found: Findings) -> None:
     """Count the outcomes, and fit the regressions."""
     from rockflex._cases import cases
-    from rockflex.fragility import OVERTURNING, ROCKED, ROCKING, LogisticFit, fit_each_cloud
+    from rockflex.fragility import OVERTURNING, ROCKING, LogisticFit, fit_each_cloud
     from rockflex.motion import MEASURES
 
     pgv = MEASURES["pgv"]
-    fits, reasons = fit_each_cloud(runs, pgv.name, threshold=ROCKED)
+    fits, reasons = fit_each_cloud(runs, pgv.name)
     found.unfitted += [f"{structure} with {model}: {reason}" for (structure, model), reason in reasons.items()]
     fits_of = {(each.structure, each.model): each for each in fits}
     outcomes = found.tables[f"Outcomes, and P({ROCKING.label}) by logistic regression on log {pgv.label}"] = []
@@ -23,7 +23,7 @@ def report(_: Any, runs: Runs, found: Findings) -> None:
     for structure, model, group in cases(runs):
         name = {"structure": structure, "model": model}
         solved, fallen = group["status"].notna(), OVERTURNING.exceeded(group)
-        rocked = solved & ~fallen & (group["max_rotation"] > ROCKED)
+        rocked = solved & ~fallen & ROCKING.exceeded(group)
         fit = fits_of.get((structure, model))
         curve = fit and fit.outcomes.initiation
         fitted = isinstance(curve, LogisticFit)

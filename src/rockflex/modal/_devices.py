@@ -171,6 +171,20 @@ def locked_force(element: BaseElement) -> float:
     return element.force if isinstance(element, FrictionDamper) else 0.0
 
 
+def pushed_force(element: BaseElement, elongation: float) -> float:
+    """Return the force in N of an element as built that is stretched slowly by an elongation in m, or shortened."""
+    if isinstance(element, FrictionDamper):
+        return math.copysign(element.force, elongation)
+    if isinstance(element, ViscousDamper) or elongation >= (element.rupture_elongation or math.inf):
+        return 0.0
+    pull = element.stiffness * elongation + (element.initial_force if isinstance(element, Tendon) else 0.0)
+    if element.post_yield_ratio is not None and element.yield_force is not None and abs(pull) > element.yield_force:
+        beyond = element.post_yield_ratio * (abs(pull) - element.yield_force)
+        pull = math.copysign(element.yield_force + beyond, pull)
+    pushes = isinstance(element, YieldingDissipator) and not element.tension_only
+    return pull if pushes else max(pull, 0.0)
+
+
 def mirrored(elements: Sequence[BaseElement]) -> bool:
     """Return whether every off-centre element has a mirror image: the same at the same distance on the other side."""
     left = sorted(_values(each, -each.position) for each in elements if each.position < 0.0)

@@ -96,7 +96,8 @@ class Pivot:
         """λ = `resisting_moment`/`dissipator_moment`, infinite without dissipators; self-centring above 1.
 
         The ratio of Palermo, Pampanin & Marriott (2007, doi 10.1061/(ASCE)0733-9445(2007)133:11(1648)), with the
-        dissipators' moment that can be locked in. The flag-shaped loop of fuses without hardening has the parameter
+        dissipators' moment that can be locked in, at |θ| → 0. `RockingProperties.recentring_ratio_at` gives it at a
+        design rotation. The flag-shaped loop of fuses without hardening has the parameter
         β = 2/(1 + λ) of Christopoulos, Filiatrault & Folz (2002).
         """
         locked = self.dissipator_moment

@@ -11,7 +11,7 @@ from rockflex._arrays import Array
 from rockflex._cases import cases
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud
+from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud, rocked
 from rockflex.plot._study_tables import (
     check_columns,
     keys_of,
@@ -74,7 +74,7 @@ def plot_clouds(
     measure
         Column of the intensity measure.
     threshold
-        A run counts as rocking if its rotation in rad is larger.
+        A run counts as rocking if its base uplifted and its rotation in rad is larger.
     nominal
         Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
 
@@ -139,11 +139,11 @@ def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float,
     for structure, model, group in cases(runs):
         solved = group[group["status"].notna()]
         fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
-        rocked = ~fell & (solved["max_rotation"].to_numpy(dtype=float) > threshold)
+        rocks = ~fell & rocked(solved, threshold).to_numpy(dtype=bool)
         fit = fit_of.get((structure, model))
         line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
         failed = len(group) - len(solved)
-        clouds.append(_Cloud(structure, model, solved[rocked], solved[fell], failed, line, fit is not None))
+        clouds.append(_Cloud(structure, model, solved[rocks], solved[fell], failed, line, fit is not None))
     return clouds
 
 

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from rockflex._cases import rows_of
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
-from rockflex.fragility import CloudFits, LogisticFit, fit_clouds, observed_fractions
+from rockflex.fragility import CloudFits, LogisticFit, fit_clouds, observed_fractions, rocked
 from rockflex.plot._study_tables import keys_of, looks_of, measure_name, names_in, structure_panels
 from rockflex.plot._style import GRAY, SHADE, SMALL, Look, columns, styled
 
@@ -33,9 +33,9 @@ def plot_fragility(
 ) -> Figure:
     r"""Plot the probability of rocking over an intensity measure, one panel per structure and one curve per model.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of θ_max > 1e-4 rad. If all runs
-    rock, or none, the line is flat. In the shaded range, below the weakest motion, curves are extrapolated. For another
-    threshold, pass the result of `fit_clouds`.
+    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of uplift with θ_max > 1e-4 rad. If
+    all runs rock, or none, the line is flat. In the shaded range, below the weakest motion, curves are extrapolated.
+    For another threshold, pass the result of `fit_clouds`.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def plot_fragility(
     >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
     >>> figure = rf.plot_fragility(runs, "pga")
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
-    ('PGA [m/s²]', '$P(θ_{\\mathrm{max}}>10^{-4}\\ \\mathrm{rad})$')
+    ('PGA [m/s²]', '$P(\\mathrm{uplift},\\ θ_{\\mathrm{max}}>10^{-4}\\ \\mathrm{rad})$')
     """
     groups = whole_number("bins", bins, 0)
     fits, runs = _fits(clouds, measure, groups)
@@ -78,7 +78,8 @@ def plot_fragility(
     names = names_in(fit.structure for fit in fits)
     limit = _limit(fits, runs, whole=overturning or groups > 0)
     with styled():
-        y = "probability" if overturning else rf"$P(θ_{{\mathrm{{max}}}}>{_power(fits[0].outcomes.threshold)})$"
+        event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{_power(fits[0].outcomes.threshold)}"
+        y = "probability" if overturning else f"$P({event})$"
         figure, panels = structure_panels(names, 3, 2.1, measure_name(fits[0].measure), y)
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
@@ -158,7 +159,7 @@ def _draw(axes: Axes, fit: CloudFits, look: Look, limit: float, confidence: floa
 
 def _mark(axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
-    rocks = runs["max_rotation"].to_numpy(dtype=float) > fit.outcomes.threshold
+    rocks = rocked(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
     points = observed_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
         [at for at, _ in points], [fraction for _, fraction in points],

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex.models import RockingModel, SpringModel
+from rockflex.response._edges import balance_ratio
 from rockflex.response._global import GLOBAL, is_sided
 from rockflex.response._respond import MAXIMA, TIMES, respond
 from rockflex.response._response import PEAKS, Response
@@ -70,6 +71,7 @@ def _of_bare_base(model: RockingModel, solutions: Solutions) -> Columns:
         "tendon_yield": never,
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
+        "balance_ratio": balance_ratio(model, right, left),
         "max_slip": nothing,
         "residual_slip": nothing,
         "max_edge_uplift": 2.0 * p.half_width * lever,

@@ -1,6 +1,6 @@
-"""How far the edges of the base rise above the ground, and how far they sink into it."""
+"""How far the base turns, and how far its edges rise above the ground or sink into it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,3 +29,14 @@ def edges_of(model: RockingModel, rotation: tuple[float, float], solution: Solut
     if model.complete:
         right, left = float(np.sin(right)), float(np.sin(left))
     return Edges((width * left, width * right), (0.0, 0.0))
+
+
+def tilt_at_rest(model: RockingModel) -> float:
+    """Return the rotation of the base under its weight in rad: zero on rigid ground."""
+    return model.rest[0] if isinstance(model, SpringModel) else 0.0
+
+
+def balance_ratio(model: RockingModel, right: Any, left: Any) -> Any:
+    """Return the largest |θ|/α of runs with these largest rotations in rad to the right and to the left."""
+    of = model.properties.pivot
+    return np.maximum(right / of(1).balance_rotation, left / of(-1).balance_rotation)

@@ -41,6 +41,7 @@ from rockflex.models import (
     VVELComplete,
     VVELSimplified,
 )
+from rockflex.response._edges import balance_ratio, tilt_at_rest
 from rockflex.response._element_peaks import ELEMENT_PEAKS, NONE, Reach, element_peaks, moves_about_pivots
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._history import History
@@ -156,6 +157,10 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
     later = _later(scalars, history) if scalars["format"] == OLDEST else _of_elements(arrays, history)
     if scalars["format"] != FORMAT:
         later |= _of_ground(scalars, history)
+    if "balance_ratio" not in scalars:  # nor was the residual rotation measured from that at rest
+        later["balance_ratio"] = math.nan if history is None else _balance_ratio(scalars, history)
+        if history is not None and isinstance(history.model, SpringModel):
+            later["residual_rotation"] = scalars["residual_rotation"] - tilt_at_rest(history.model)
     peaks = later | {name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in later}
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
@@ -201,6 +206,12 @@ def _of_ground(scalars: dict[str, Any], history: History | None) -> dict[str, fl
     if scalars["max_rotation"] > 0.0:
         uplift = math.nan if history is None else float(history.edge_uplift.max())
     return {"max_slip": 0.0, "residual_slip": 0.0, "max_edge_uplift": uplift, "max_edge_settlement": 0.0}
+
+
+def _balance_ratio(scalars: dict[str, Any], history: History) -> float:
+    right, left = (float(np.max(side * history.rotation, initial=0.0)) for side in (1, -1))
+    largest = scalars["max_rotation"]
+    return float(balance_ratio(history.model, *((largest, left) if right >= left else (right, largest))))
 
 
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:

@@ -4,7 +4,7 @@ import numpy as np
 
 from rockflex._arrays import Array, Bools
 from rockflex.models import RISE, SIDE, TIME, RockingModel, SpringModel, lifted_springs, spring_forces
-from rockflex.response._pressure import pressure_of
+from rockflex.response._pressure import no_area, pressure_of
 
 
 class GroundHistory:
@@ -75,6 +75,30 @@ class GroundHistory:
             If the springs have no `area`.
         """
         return pressure_of(self.spring_force, self.model.springs if isinstance(self.model, SpringModel) else None)
+
+    @property
+    def bearing_pressure(self) -> Array:
+        """Static bearing pressure in Pa, shape (n_states,): the resultant of the springs over its effective area.
+
+        Without dashpots, and uniform over the part 2 (B - |e|) of the base whose middle is the resultant, at the
+        eccentricity e: the area of Meyerhof (1953), by which bearing capacities are given, whatever the distribution of
+        stiffness. The end zones of a bed and its dashpots raise `soil_pressure` above it. Zero in flight.
+
+        Raises
+        ------
+        InputError
+            If the springs have no `area`.
+        """
+        model = self.model
+        springs = model.springs if isinstance(model, SpringModel) else None
+        if springs is None or springs.area is None:
+            raise no_area()
+        turn = model.layout.of(self.states, model.layout.rotation)[:, None]
+        pushes = springs.stiffness * np.maximum(springs.positions * turn - self.heave[:, None], 0.0)
+        force, p = pushes.sum(axis=1), model.properties
+        middle = 0.5 * (p.pivot(1).arm - p.pivot(-1).arm)
+        moved = np.abs(pushes @ (springs.positions - middle)) / np.where(force > 0.0, force, 1.0)
+        return force / (springs.area.sum() * (1.0 - moved / p.half_width))
 
     def _of_base(self, place: int) -> Array:
         return self.model.layout.of(self.states, place) if place >= 0 else np.zeros(self.states.shape[0])

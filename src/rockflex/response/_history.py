@@ -28,6 +28,7 @@ from rockflex.response._history_columns import TabledHistory
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._reaction_history import ReactionHistory
 from rockflex.response._sampled import even_instants, instants, of_run, states_at
+from rockflex.response._settled import settled_rotation
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -99,6 +100,34 @@ class History(GroundHistory, ReactionHistory, ElementHistory, FloorMotions, Tabl
             If an instant is not a number or outside the history.
         """
         return SampledHistory(self.model, states_at(self.model, self.states, instants(times, self.time)))
+
+    def settled_rotation(self, work_limit: float | None = 30.0) -> float:
+        """Return the rotation in rad that remains once the base has come to rest, from that at rest under gravity.
+
+        The run is continued in free vibration from its last state, with all that its elements remember. NaN if the base
+        overturned or then overturns.
+
+        Parameters
+        ----------
+        work_limit
+            Limit of the work of the continued run in s, as of `simulate`.
+
+        Raises
+        ------
+        InputError
+            If the superstructure is hysteretic, or the run would exceed its work limit.
+        SolverError
+            If the run does not settle, or has done the work of its limit.
+
+        Examples
+        --------
+        >>> import rockflex as rf
+        >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+        >>> rocking = rf.simulate(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8), "2DOF-S")
+        >>> round(rocking.residual_rotation, 4), rocking.settled_rotation()
+        (0.0191, 0.0)
+        """
+        return settled_rotation(self.model, self.states, work_limit)
 
     def resample(self, dt: float) -> "SampledHistory":
         """Return the motion at equal steps from the first state to the last, as `at` does.

@@ -55,6 +55,7 @@ OTHERS = {
     "tendon_force": "N",
     "edge_uplift": "m",
     "soil_pressure": "Pa",
+    "bearing_pressure": "Pa",
     "friction_demand": "",
     "yielding": "",
     "uplifted": "",

@@ -14,8 +14,13 @@ def pressure_of(force: Array, springs: Springs | None) -> Array:
         If there are no springs, or they have no `area`.
     """
     if springs is None or springs.area is None:
-        raise MissingQuantityError(
-            "The springs under the base have no area, so there is no soil pressure. Give Springs the area that each "
-            "supports, in m², or use winkler_bed."
-        )
+        raise no_area()
     return force / springs.area
+
+
+def no_area() -> MissingQuantityError:
+    """Return the error of a pressure without areas."""
+    return MissingQuantityError(
+        "The springs under the base have no area, so there is no soil pressure. Give Springs the area that each "
+        "supports, in m², or use winkler_bed."
+    )

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models import RockingModel, SpringModel, floor_accelerations, swing_by_side
-from rockflex.response._edges import edges_of
+from rockflex.models import HEADER, RockingModel, SpringModel, floor_accelerations, lifted_springs, swing_by_side
+from rockflex.response._edges import balance_ratio, edges_of, tilt_at_rest
 from rockflex.response._element_peaks import Reach, element_peaks, moves_about_pivots, moves_on_springs
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._global import EDGES, GLOBAL, is_damped, is_sided, tracked_of_floors
@@ -44,7 +44,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         moves = moves_about_pivots(model, Reach((right, left), swing))
     edges = edges_of(model, (right, left), solution)
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0
-    left_ground = left_ground or (rotation > 0.0 and not isinstance(model, SpringModel))
+    left_ground = left_ground or _open_throughout(model, rotation, solution.final_state)
     status = "rocking" if left_ground else "no_uplift"
     known = dict(zip(MAXIMA, peaks[: len(GLOBAL)].tolist(), strict=True))
     times = dict(zip(TIMES, solution.peak_times[1 : 1 + len(GLOBAL)].tolist(), strict=True))
@@ -63,7 +63,10 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         min_vertical_reaction=_least_support(model, p.resting_reaction - solution.lost_support),
         time_of_min_vertical_reaction=solution.time_of_lost_support,
         **of_elements._asdict(),
-        residual_rotation=math.nan if solution.overturned else float(final[model.layout.rotation]),
+        residual_rotation=math.nan
+        if solution.overturned
+        else float(final[model.layout.rotation]) - tilt_at_rest(model),
+        balance_ratio=float(balance_ratio(model, right, left)),
         max_slip=slid,
         residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
         max_edge_uplift=max(edges.uplift),
@@ -77,6 +80,14 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
         history=None if solution.states is None else History(model, solution.states),
     )
+
+
+def _open_throughout(model: RockingModel, rotation: float, final: Array) -> bool:
+    """Return whether the base of a run without uplift and impact was off the ground from its start to its end."""
+    if not isinstance(model, SpringModel):
+        return rotation > 0.0
+    edges = lifted_springs(model, np.concatenate((np.zeros(HEADER), final))[None])[0, [0, -1]]
+    return bool(edges.any())
 
 
 def _least_support(model: RockingModel, found: float) -> float:

@@ -53,11 +53,11 @@ class Response(HtmlTable, Value):
     `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
     `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `element_force`,
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
-    `soil_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`, `horizontal_reaction`,
-    `vertical_reaction`, `friction_demand`, `required_friction`, `required_friction_excluding_impacts()`,
-    `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()`, `resample()`,
-    `floor_motion()` and `floor_spectrum()`; see `History`. A response with peaks only has none of them: `hasattr`
-    returns False, and accessing one raises an `InputError`.
+    `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
+    `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
+    `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()`,
+    `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`; see `History`. A response with peaks
+    only has none of them: `hasattr` returns False, and accessing one raises an `InputError`.
 
     Parameters
     ----------
@@ -95,8 +95,12 @@ class Response(HtmlTable, Value):
         Whether a tendon without `post_yield_ratio`, which stays elastic in the model, carries more than its yield
         force. The results are not valid then.
     residual_rotation
-        θ at the end of the run in rad: zero if the base is closed, NaN if it overturned. A run that does not settle
-        (``free_vibration="settle"``) may end while the base still rocks.
+        θ at the end of the run in rad: zero if the base is closed, NaN if it overturned. On springs it is measured from
+        the rotation at rest under gravity. A run that does not settle (``free_vibration="settle"``) may end while the
+        base still rocks: `settled_rotation()` continues it.
+    balance_ratio
+        Largest |θ| over α, the rotation at which the static moment vanishes (`Pivot.balance_rotation`): zero where
+        tendons prevent that. A simplified model beyond 1 has left its range.
     max_slip, residual_slip
         Largest displacement |x| of the base along the ground in m, and x at the end of the run, positive to the right;
         zero unless the ground has a `friction`.
@@ -166,6 +170,7 @@ class Response(HtmlTable, Value):
     tendon_yield: bool
     tendon_overload: bool
     residual_rotation: float
+    balance_ratio: float
     max_slip: float
     residual_slip: float
     max_edge_uplift: float
@@ -211,6 +216,7 @@ class Response(HtmlTable, Value):
     edge_uplift = _OfHistory[Array]()
     spring_force = _OfHistory[Array]()
     soil_pressure = _OfHistory[Array]()
+    bearing_pressure = _OfHistory[Array]()
     uplifted = _OfHistory[Bools]()
     vertical_ground_acceleration = _OfHistory[Array]()
     tendon_force = _OfHistory[Array]()
@@ -224,6 +230,7 @@ class Response(HtmlTable, Value):
     to_frame = _OfHistory[Callable[..., Any]]()
     to_xarray = _OfHistory[Callable[..., Any]]()
     floor_motion = _OfHistory[Callable[..., GroundMotion]]()
+    settled_rotation = _OfHistory[Callable[..., float]]()
     floor_spectrum = _OfHistory[Callable[..., Any]]()
     at = _OfHistory[Callable[..., SampledHistory]]()
     resample = _OfHistory[Callable[..., SampledHistory]]()
@@ -243,7 +250,7 @@ class Response(HtmlTable, Value):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings if the ground or the tendons cannot provide the forces that the run assumes, one text each.
+        """Warnings, a text each: forces that ground or tendons cannot provide, rotations too large for the model.
 
         A response with a history also warns if its energy balance does not close to 1e-6; `energy` is computed for it.
         """
@@ -277,7 +284,8 @@ class Response(HtmlTable, Value):
         """Read a response that `save` wrote.
 
         Files of earlier versions without a history do not tell the tendons apart: the peaks of the elements are empty.
-        Without a history of a run that did not settle they lack the residual rotation too, which is then NaN.
+        Without a history of a run that did not settle they lack the residual rotation too, which is then NaN, as is
+        `balance_ratio`; the residual rotation on springs is then that from the unloaded ground.
 
         Raises
         ------

@@ -1,8 +1,9 @@
-"""Warnings about forces that the ground or the tendons cannot provide, and about energies that do not balance."""
+"""Warnings: forces that ground or tendons cannot provide, rotations beyond a model's range, unbalanced energies."""
 
 from collections.abc import Mapping
 from typing import Any
 
+FALLEN = 1.57  # rad: an overturned run has a status of its own
 BALANCED = 1e-6  # closing error of the energy balance up to which only rounding is at work
 
 
@@ -21,6 +22,12 @@ def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
             f"A tendon carries more than its yield force, up to {peaks['tendon_utilisation']:.4g} times it. It stays "
             "elastic in the model, so the results are not valid. Give it a post_yield_ratio."
         )
+    if leaves_range(model, peaks["balance_ratio"], peaks["max_rotation"]):
+        found.append(
+            f"θ reaches {peaks['max_rotation']:.4g} rad, {peaks['balance_ratio']:.3g} times the rotation α at which "
+            f"the static moment vanishes. {model} is for small rotations: whether the structure overturns is to be "
+            "decided by a complete model, such as MDOF-C."
+        )
     return tuple(found)
 
 
@@ -33,3 +40,9 @@ def warnings_of_energy(closing_error: float) -> tuple[str, ...]:
         "rounding: an event was missed, or the motion of an element or of the ground was misread. Do not use the run, "
         "and report it as an error of the program.",
     )
+
+
+def leaves_range(model: Any, balance_ratio: Any, rotation: Any) -> Any:
+    """Return whether a run of a simplified model, or of many, went beyond α without overturning."""
+    small = "-C" not in model if isinstance(model, str) else ~model.astype(str).str.contains("-C", regex=False)
+    return small & (balance_ratio > 1.0) & (rotation < FALLEN)

@@ -118,7 +118,7 @@ class Engine:
         dt: float,
         *,
         free_vibration: float | None = 0.0,
-        state: Array | None = None,
+        state: Array | tuple[Key, Array] | None = None,
         history: bool = False,
         work_limit: float | None = None,
         slice_of_work: float = SLICE_OF_WORK,
@@ -142,12 +142,14 @@ class Engine:
         dt: float,
         *,
         free_vibration: float | None = 0.0,
-        state: Array | None = None,
+        state: Array | tuple[Key, Array] | None = None,
         history: bool = False,
         work_limit: float | None = None,
         slice_of_work: float = SLICE_OF_WORK,
     ) -> Solutions:
         """Run records, each followed by `free_vibration` s (None: until settled), from a state [D.., D'.., θ, θ'].
+
+        The state may also be that of a run that goes on: its branches, and all that the layout holds.
 
         The ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the
         actual work of each run in s, see `Pace`; None means no limit. After every `slice_of_work`, in s, the runs can
@@ -169,7 +171,8 @@ class Engine:
         if len(failures) == len(tasks):
             start, log = np.zeros(self.model.layout.size), self._log(tasks[0], history=False)
             return self._solutions(batch_of([None] * len(tasks), progress_at_start(0), start, log), dt, failures)
-        key, start = self._at_rest if state is None else self.model.initial(state)
+        begun = self._at_rest if state is None else state
+        key, start = begun if isinstance(begun, tuple) else self.model.initial(begun)
         shaken = runs[0].vertical is not None
         phases = self._phases.at(dt, self.pace.fastest, shaken=shaken)
         progress = progress_at_start(self._place(phases, key))

@@ -67,7 +67,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
     if failed:
         first = runs["error"].dropna()
         view["notes"].append(f"{failed} runs could not be solved. {first.iloc[0] if len(first) else ''}")
-    view["notes"] += [str(each) for each in pivot_lifts(solved) if each.lifting]
+    view["notes"] += [text for each in pivot_lifts(solved) for text in each.warnings]
     if len(solved) < FEWEST:
         return plain(view)
     im = solved[choice.measure].to_numpy(dtype=float)
@@ -104,7 +104,8 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
     notes += [f"{fit.model}: {note}" for note in fit.outcomes.notes]
     if choice.limit == ROTATION:
         try:
-            found["p"] = fit.outcomes.exceedance(grid, choice.rotation)
+            # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
+            found["p"] = fit_outcomes(im, rotation, fallen).exceedance(grid, choice.rotation)
             found["median"] = _median(grid, found["p"])
             low, high = _band(part, im, rotation, fallen, choice, grid)
             found |= {"low": low, "high": high}

@@ -82,7 +82,7 @@ def design_view(job: Job, state: State) -> dict[str, Any]:
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
         view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
-    view["notes"] += [str(each) for each in pivot_lifts(KINDS["design"].runs(runs)) if each.lifting]
+    view["notes"] += [text for each in pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
     answers = smallest_width(table, choice.target)
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
         "records"

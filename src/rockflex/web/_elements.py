@@ -1,9 +1,8 @@
 """The elements between the base and the ground in a response: their peaks, and what closes the base."""
 
-from collections.abc import Iterable
 from typing import Any
 
-from rockflex.modal import Pivot, RockingProperties, Tendon, YieldingDissipator
+from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.response import Response
 
 
@@ -41,10 +40,14 @@ def _breaks_at(element: object) -> float:
     return float("inf") if found is None else found
 
 
-def self_centring(pivots: Iterable[Pivot]) -> list[dict[str, Any]]:
-    """Return whether weight and prestress close the base about each edge, where dissipators keep it open."""
+def self_centring(p: RockingProperties, rotation: float) -> list[dict[str, Any]]:
+    """Return whether weight and prestress close the base about each edge, where dissipators keep it open.
+
+    `ratio` is λ at a vanishing rotation, and `at` that at a rotation in rad, the smaller of both edges.
+    """
+    at = p.recentring_ratio_at(rotation) if rotation > 0.0 and p.elements else None
     return [
-        {"side": pivot.side, "closes": pivot.self_centring, "ratio": pivot.recentring_ratio}
-        for pivot in pivots
+        {"side": pivot.side, "closes": pivot.self_centring, "ratio": pivot.recentring_ratio, "at": at}
+        for pivot in p.pivots
         if pivot.dissipator_moment > 0.0
     ]

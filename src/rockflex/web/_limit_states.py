@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, NamedTuple
 
-from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKING, LimitState, beyond
+from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, beyond
 from rockflex.web._names import among
 
 
@@ -12,13 +12,12 @@ class Asked(NamedTuple):
     name: str
     clause: str  # in the list "Limit state"
     noun: str  # in the design tab; empty if it does not offer this limit
-    line: float | None = None  # rad at which it is drawn, if the visitor does not choose it
 
 
 LIMIT = f"the nominal limit {NOMINAL.label.replace('_1', '₁')}"
 ROTATION = "rotation"  # whose size the visitor chooses
 ASKED = (
-    Asked(ROCKING.name, f"it rocks (θ > {1e3 * ROCKING.threshold:g} mrad)", "", ROCKING.threshold),
+    Asked(ROCKING.name, f"it rocks (uplift with θ > {1e3 * ROCKED:g} mrad)", ""),
     Asked(ROTATION, "the rotation exceeds …", "a rotation"),
     Asked(NOMINAL.name, LIMIT, LIMIT),
     Asked(OVERTURNING.name, "it overturns", OVERTURNING.label),

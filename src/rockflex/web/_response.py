@@ -77,7 +77,9 @@ def response_view(state: State, uploads: Uploads, focus: object = "", element: o
             "ground": ground_view(ground_of(state.ground, p), p),
             "element": drawn,
             "held": _held(p, motion, main, found, state),
-            "self_centring": self_centring(p.pivots),
+            "self_centring": self_centring(
+                p, max((r.max_rotation for r in found if r.status == "rocking"), default=0.0)
+            ),
             "suggested_yield": _suggested_yield(p, motion),
             "energy": energy,
         }

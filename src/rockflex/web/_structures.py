@@ -24,7 +24,7 @@ from rockflex.web._sections import section_facts
 
 DRAWN = 40  # heights of a structure, at most
 SHOWN = 6  # modes drawn
-CENTRING = "moment of weight and prestress over that of the dissipators; above 1 the base closes by itself"
+CENTRING = "moment of weight and prestress over that of the dissipators; above 1 the base closes by itself; at θ → 0"
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import partial
 
-from rockflex._errors import InputError
+from rockflex._errors import InputError, SolverError
 from rockflex.models import SpringModel
 from rockflex.report.run._base import ground_friction
 from rockflex.report.run._given import Given
@@ -16,6 +16,8 @@ from rockflex.report.run._table import Cell, Table, shows
 from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
 
 OMITTED = "not computed"
+CLOSED = 1e-9  # rad
+PATIENCE = 5.0  # s of computing, for a base to come to rest
 MOST = 2_000_000  # states times springs times modes: energies and friction of more take minutes
 
 
@@ -44,6 +46,11 @@ def _work_of(history: History, n_springs: int) -> int:
     return history.time.size * n_springs * max(history.model.properties.n_modes, 1)
 
 
+def is_bedded(history: History) -> bool:
+    """Return whether the base stands on springs with an area."""
+    return isinstance(history.model, SpringModel) and history.model.springs.area is not None
+
+
 def check_table(about: Given, friction: float | None, omitted: Collection[str]) -> Table:
     """Return the checks, a row for each run; long ones are left out for the labels in `omitted`."""
     runs = [
@@ -59,7 +66,7 @@ def check_table(about: Given, friction: float | None, omitted: Collection[str]) 
     if about.properties.tendons:
         columns.append((("tendons", ""), _tendons))
     if about.properties.elements:
-        columns.append((("re-centring", ""), _residual))
+        columns.append((("re-centring", ""), partial(_residual, about)))
     columns.append((("energy balance", ""), _energy))
     return Table(
         [("model", ""), *(head for head, _ in columns)],
@@ -79,7 +86,7 @@ def _uplift(run: Run) -> Cell:
 
 
 def _overturning(about: Given, run: Run) -> Cell:
-    """Compare the rotation to either side with the nominal limit 0.7 α of Section 3.3."""
+    """Compare the rotation to either side with the nominal limit θ_nom of Section 3.3."""
     if not run.history.model.lifts:
         return Cell("–")
     if run.response.status == "overturned":
@@ -94,7 +101,11 @@ def _overturning(about: Given, run: Run) -> Cell:
 def _contact(run: Run) -> Cell:
     least = run.response.min_vertical_reaction
     if isinstance(run.history.model, SpringModel):
-        return Cell("springs only push", least, "min_vertical_reaction")
+        if not (run.long and is_bedded(run.history)):
+            return Cell("springs only push", least, "min_vertical_reaction")
+        bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
+        words = f"q {rounded(bearing / 1e3)} kPa, {rounded(soil / 1e3)} at a spring"
+        return Cell(words, bearing, "bearing_pressure")
     held = least >= 0.0
     words = "N ≥ 0" if held else f"N < 0 at {rounded(run.response.time_of_min_vertical_reaction)} s"
     return Cell(words, least, "min_vertical_reaction", not held)
@@ -132,13 +143,35 @@ def _tendons(run: Run) -> Cell:
     return Cell(f"F/F_y = {rounded(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
 
 
-def _residual(run: Run) -> Cell:
-    left = run.response.residual_rotation
-    if not run.history.model.lifts or math.isnan(left):
+def _residual(about: Given, run: Run) -> Cell:
+    """Tell what rotation is left once the base is at rest, and λ at |θ| → 0 and at the largest rotation."""
+    p, response = about.properties, run.response
+    if not run.history.model.lifts or response.status == "overturned":
         return Cell("–")
-    if left == 0.0:
-        return Cell("closed at the end", left, "residual_rotation")
-    return Cell(f"θ = {rounded(1e3 * left)} mrad left", left, "residual_rotation", run.response.settled)
+    ratios = ""
+    if math.isfinite(p.recentring_ratio):
+        turned = response.max_rotation
+        ratios = f"; λ = {rounded(p.recentring_ratio)}"
+        ratios += f", {rounded(p.recentring_ratio_at(turned))} at θ_max" if turned > 0.0 else ""
+    left = _settled_rotation(run)
+    if left is None:
+        now = rounded(1e3 * response.residual_rotation)
+        return Cell(f"not settled, θ = {now} mrad{ratios}", response.residual_rotation, "residual_rotation")
+    if math.isnan(left):
+        return Cell(f"overturns after the run{ratios}", None, "settled_rotation", True)
+    if abs(left) < CLOSED:
+        return Cell(f"closes{ratios}", left, "settled_rotation")
+    return Cell(f"θ = {rounded(1e3 * left)} mrad left{ratios}", left, "settled_rotation", True)
+
+
+def _settled_rotation(run: Run) -> float | None:
+    """Return the rotation that remains in rad; None if it takes too long to find."""
+    if run.response.settled:
+        return run.response.residual_rotation
+    try:
+        return run.history.settled_rotation(PATIENCE) if run.long else None
+    except (InputError, SolverError):
+        return None
 
 
 def _energy(run: Run) -> Cell:
@@ -159,17 +192,25 @@ def _power(value: float) -> str:
     return "0" if value == 0.0 else f"10^{math.ceil(math.log10(value))}".replace("-", "−")
 
 
-def legend(friction: float | None, *, sided: bool, slides: bool, stays: bool, omitted: bool) -> list[str]:
+def legend(
+    friction: float | None, *, sided: bool, slides: bool, stays: bool, omitted: bool, held: bool, bedded: bool
+) -> list[str]:
     """Return what the columns mean, in sentences; `slides` and `stays` tell whether some base can slide, or cannot.
 
-    `sided` tells whether α differs between the sides.
+    `sided` tells whether the limit differs between the sides, and `held` whether elements hold the base.
     """
     limit = "" if friction is None else f", to be below the μ = {friction:.4g} given"
-    lines = [f"Overturning: nominal limit 0.7 α over θ_max{', to the side that is nearer to it' if sided else ''}."]
+    lines = [f"Overturning: nominal limit θ_nom over θ_max{', to the side that is nearer to it' if sided else ''}."]
     if stays:
         lines.append(f"Friction: largest |ΣF_x|/N without the {IMPACT_WINDOW:g} s after each impact{limit}.")
     if slides:
         lines.append("Friction of a base that can slide: how far it does.")
+    if bedded:
+        lines.append(
+            "Contact: q, the largest static bearing pressure of the effective area, and of a spring with its dashpot."
+        )
+    if held:
+        lines.append("Re-centring: what remains when the base is at rest, in free vibration after the run.")
     lines.append("Energy balance: its largest error over the input energy.")
     if omitted:
         lines.append(f"{OMITTED.capitalize()}: energies and friction of a run that would take too long here.")

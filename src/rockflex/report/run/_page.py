@@ -12,7 +12,7 @@ from rockflex._shown import shortened
 from rockflex._versions import versions_of
 from rockflex.report._svg import inline
 from rockflex.report.run._base import assumption_lines, element_table
-from rockflex.report.run._checks import check_table, ground_friction, legend, long_runs
+from rockflex.report.run._checks import check_table, ground_friction, is_bedded, legend, long_runs
 from rockflex.report.run._given import Given
 from rockflex.report.run._inputs import fingerprint
 from rockflex.report.run._peaks import FELL, peak_table
@@ -131,7 +131,7 @@ def page_of(
     sliding = [ground_friction(each.model) is not None for each in about.histories]
     told = legend(
         friction, sided=about.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
-        omitted=bool(left_out),
+        omitted=bool(left_out), held=bool(about.properties.elements), bedded=any(map(is_bedded, about.histories)),
     )  # fmt: skip
     return Page(
         title=shortened(title, LONGEST["title"]),

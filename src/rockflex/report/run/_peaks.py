@@ -9,7 +9,7 @@ from rockflex._constants import GRAVITY
 from rockflex.models import RockingModel
 from rockflex.report.run._given import Given
 from rockflex.report.run._numbers import moment_unit
-from rockflex.report.run._sides import slenderness_share
+from rockflex.report.run._sides import nominal_share
 from rockflex.report.run._table import Cell, Table, shows
 from rockflex.response import Response
 
@@ -54,10 +54,10 @@ def _columns(about: Given) -> list[_Column]:
     columns = [
         _Column("θ_max", "mrad", 1e-3, "max_rotation", peak("max_rotation")),
         _Column(
-            "θ_max/α",
+            "θ_max/θ_nom",
             "%",
             0.01,
-            "slenderness_share",
+            "nominal_share",
             lambda run: _share(about, run),
         ),
         _Column("u_top relative", "mm", 1e-3, "max_top_displacement", peak("max_top_displacement")),
@@ -83,7 +83,7 @@ def _columns(about: Given) -> list[_Column]:
 def _share(about: Given, run: Response) -> float | None:
     if run.status == "overturned" or run.history is None:
         return None
-    return slenderness_share(about.properties, run, run.history)
+    return nominal_share(about.properties, run, run.history)
 
 
 def _floor_acceleration(run: Response) -> float | None:

@@ -10,7 +10,6 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties, UpliftedModes, uplifted_modes
 from rockflex.report.run._numbers import moment_unit
-from rockflex.report.run._sides import slenderness_angle
 from rockflex.report.run._table import Cell, Fact, Table, fact, shows
 
 LISTED = 4  # modes
@@ -46,7 +45,7 @@ def structure_facts(p: RockingProperties) -> list[Fact]:
         fact("Half width of the base B", p.half_width, "m", "half_width"),
         *shift,
         fact(f"Slenderness {slope}", height / p.half_width, "", "slenderness"),
-        *_slenderness(p),
+        *_limits(p),
         fact("Inertia about a pivot I_θ", pivot.i_theta, "t m²", "i_theta", 1e3, 4),
         *held,
         fact("Resisting moment M_r", p.resisting_moment, unit, "resisting_moment", size, 4),
@@ -54,15 +53,21 @@ def structure_facts(p: RockingProperties) -> list[Fact]:
     ]
 
 
-def _slenderness(p: RockingProperties) -> list[Fact]:
-    """Return α, about both edges if the base is eccentric."""
-    height = "h*_1" if p.n_modes else "h"
-    if not p.eccentricity:
-        return [fact(f"α = atan(B/{height})", slenderness_angle(p, 1), "mrad", "alpha", 1e-3)]
-    return [
-        fact(f"α {name}, atan((B {sign} e)/{height})", slenderness_angle(p, side), "mrad", f"alpha_{name}", 1e-3)
-        for side, name, sign in ((1, "right", "−"), (-1, "left", "+"))
-    ]
+def _limits(p: RockingProperties) -> list[Fact]:
+    """Return θ_nom, and α where the static moment vanishes at all; about both edges if they differ."""
+    height, found = "h*_1" if p.n_modes else "h", list[Fact]()
+    for pivot, name, width in zip(p.pivots, ("right", "left"), ("B − e", "B + e"), strict=False):
+        one = p.symmetric
+        label = "θ_nom" if one else f"θ_nom {name}"
+        arm = "B" if not p.eccentricity else f"({width})"
+        nominal, end = pivot.nominal_overturning_rotation, "" if one else f"_{name}"
+        found.append(fact(f"{label} = 0.7 atan({arm}/{height})", nominal, "mrad", f"nominal{end}", 1e-3))
+        if math.isfinite(pivot.balance_rotation):
+            slope = "(L_0 g)" if not p.tendons else "(L_0 g − k_t)"
+            found.append(
+                fact(f"α{'' if one else f' {name}'} = M_r/{slope}", pivot.balance_rotation, "mrad", f"alpha{end}", 1e-3)
+            )
+    return found
 
 
 def mode_table(p: RockingProperties) -> Table | None:

@@ -62,5 +62,7 @@ function said(edges) {
     const about = edges.length > 1 ? ` after rocking ${EDGES[side]}` : "";
     return `${closes ? "close" : "need not close"} the base${about} against its dissipators (λ = ${number(ratio, 3)})`;
   });
-  return `Weight and prestress ${parts.join(" and ")}; above λ = 1 it centres itself.`;
+  const [{ at }] = edges;
+  const design = at === null ? "" : ` At the largest rotation of these runs λ = ${number(at, 3)}.`;
+  return `Weight and prestress ${parts.join(" and ")}; above λ = 1 it centres itself.${design}`;
 }

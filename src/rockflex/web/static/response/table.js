@@ -19,7 +19,7 @@ const MEANT = "In total: relative to the ground, including the part due to the r
 const SLIPS = [["max_slip", "slip_max [mm]", 1000], ["residual_slip", "slip_end [mm]", 1000]];
 const EDGES = [["max_edge_uplift", "Edge up [mm]", 1000], ["max_edge_settlement", "Edge down [mm]", 1000]];
 const ON_SPRINGS = " Edge up and down: how far an edge rises above the unloaded springs, and sinks below them.";
-const LEFT = " θ_res: rotation at the end of the run.";
+const LEFT = " θ_res: rotation at the end of the run, from that at rest.";
 
 // The fixed-base model to compare with, if any; preferably one that yields too if the model does.
 function reference(view, model) {
@@ -92,7 +92,9 @@ export function words(view) {
   } else if (first.status === "overturned") {
     text += `the structure overturns; it lies on its side at ${number(p.end_time, 3)} s.`;
   } else if (first.status === "no_uplift") {
-    text += "the base stays on the ground; the structure responds as on a fixed base.";
+    text += view.ground?.springs.length
+      ? `no edge of the base lifts; it turns by up to ${number(1000 * p.max_rotation, 3)} mrad on its springs.`
+      : "the base stays on the ground; the structure responds as on a fixed base.";
   } else {
     const event = view.ground?.springs.length ? "landing" : "impact";
     const impacts = `${p.n_impacts} ${event}${p.n_impacts === 1 ? "" : "s"}`;

@@ -77,8 +77,7 @@ export default function fragilityTab(app) {
         })),
       ],
     });
-    const at = choice().limit === "rotation" ? choice().rotation
-      : limitStates.find((each) => each.name === choice().limit).line;
+    const at = choice().limit === "rotation" ? choice().rotation : null;
     cloud.set({
       yRange: [1e-5, 2],
       series: all.map((c) => ({
