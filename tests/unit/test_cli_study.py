@@ -51,7 +51,7 @@ def invoke(*arguments, columns=220):
 @pytest.mark.parametrize(
     ("kind", "words"),
     [
-        ("cloud", ["Outcomes, and P(θ_max > 1e-4 rad)", "log y = c1 + c2 log PGV", "36 rows in"]),
+        ("cloud", ["Outcomes, and P(uplift with θ_max > 1e-4 rad)", "log y = c1 + c2 log PGV", "36 rows in"]),
         ("incremental", ["Capacities to |θ| = π/2, lognormal", "PGA", "resurrections"]),
         ("stripes", ["Runs beyond the limit at each level of pgv", "overturning", "/6", "24 rows in"]),
         ("population", ["Pairs by outcome", "MDOF-S against 2DOF-S (Section 3.3)", "SRSS", "30 rows in"]),

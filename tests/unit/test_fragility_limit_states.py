@@ -84,6 +84,13 @@ def test_names():
     assert symbol_of_nominal(0.5) == r"θ_{\mathrm{max}}>0.5\cdot0.7\,\mathrm{atan}(B/h^*_1)"
     assert beyond(0.02).symbol == r"θ_{\mathrm{max}}>0.02\ \mathrm{rad}"
     assert [limit_label(limit) for limit in ("0.5 nominal", 0.02)] == ["0.5 nominal", "0.02 rad"]
-    assert (ROCKING.label, ROCKING.threshold) == ("θ_max > 1e-4 rad", 1e-4)
+    assert ROCKING.label == "uplift with θ_max > 1e-4 rad"
+    assert math.isnan(ROCKING.threshold)  # it is not on the rotation alone
     assert math.isnan(NOMINAL.threshold)
     assert (TENDON_YIELD.label, residual_beyond(0.005).label) == ("tendon yield", "residual 0.005 rad")
+
+
+def test_a_base_on_springs_that_turns_without_uplift_does_not_rock():
+    tilted = RUNS.assign(status=["no_uplift", "no_uplift", "no_uplift", "rocking", "overturned"])
+    assert ROCKING.exceeded(tilted).tolist() == [False, False, False, True, True]
+    assert beyond(0.01).exceeded(tilted).tolist() == [False, False, True, True, True]  # it turned all the same

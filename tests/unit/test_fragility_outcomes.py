@@ -138,3 +138,19 @@ def test_limits_reach_up_to_the_nominal_definition_of_overturning():
 def test_columns_that_contradict_each_other_are_refused(change, text):
     with pytest.raises(InputError, match=text):
         fit_outcomes(**({"im": IM, "rotation": ROTATION, "overturned": FALLS} | change))
+
+
+def test_rotations_without_uplift_are_no_rocking():
+    lifts = FALLS | (ROCKS & (ROTATION > 0.003))
+    fit = fit_outcomes(IM, ROTATION, FALLS, uplifted=lifts)
+    stands = ~FALLS
+    assert (fit.n_no_rocking, fit.n_rocking) == ((~lifts).sum(), (lifts & stands).sum())
+    assert fit.initiation.b1 == fit_logistic(IM, lifts).b1
+    assert fit.rotation.c2 == fit_cloud(IM[lifts & stands], ROTATION[lifts & stands]).c2
+    # A limit that runs without uplift exceed too is none of the rocking runs alone.
+    assert fit.lowest_limit == ROTATION[~lifts].max()
+    assert np.isfinite(fit.exceedance(AT, 0.01)).all()
+    with pytest.raises(InputError, match=r"limit must lie in \[0\.00.*fit_outcomes without uplifted"):
+        fit.exceedance(AT, 0.002)
+    with pytest.raises(InputError, match="uplifted has 5"):
+        fit_outcomes(IM, ROTATION, FALLS, uplifted=lifts[:5])

@@ -96,3 +96,26 @@ def test_a_pushed_base_closes_if_it_is_self_centring(ratio, post_yield):
     closes = moments[-1] > 0.0  # what is left at θ = 0 on the way back
     assert closes == p.self_centring == (p.recentring_ratio > 1.0)
     assert moments[-1] == pytest.approx(p.resisting_moment - p.pivot(1).dissipator_moment, abs=1e-6 * WEIGHT)
+
+
+def test_the_ratio_at_a_design_rotation_is_that_of_nzs_3101():
+    """Moments of weight and tendons over those of fuses, all pushed to the rotation, by hand."""
+    turn = 0.02
+    fuses = 4e5 + 0.1 * 1e8 * (turn * B - 4e5 / 1e8)
+    p = block(fuse(4e5, post_yield_ratio=0.1), rf.Tendon(3e5, 2e6))
+    assert p.recentring_ratio_at(turn) == pytest.approx((WEIGHT + (3e5 + 2e6 * turn * B) * B) / (fuses * B), rel=1e-14)
+    assert p.recentring_ratio_at(turn) < 0.95 * p.recentring_ratio  # fuses that harden
+    held = block(rf.FrictionDamper(3e5), rf.Tendon(3e5, 2e7, yield_force=5e5, post_yield_ratio=0.01))
+    yielded = 5e5 + 0.01 * (3e5 + 2e7 * turn - 5e5)
+    assert held.recentring_ratio_at(turn) == pytest.approx((WEIGHT + yielded * B) / 3e5, rel=1e-14)
+    assert block(fuse(4e5, rupture_elongation=0.01)).recentring_ratio_at(turn) == math.inf
+    assert block(rf.ViscousDamper(1e6), rf.Tendon(3e5, 2e6)).recentring_ratio_at(turn) == math.inf
+
+
+def test_the_ratio_at_a_design_rotation_of_an_eccentric_base_is_that_of_its_worse_edge():
+    p = block(fuse(4e5, position=0.4), eccentricity=0.3)
+    ratios = [MASS * G * arm / (4e5 * r) for arm, r in ((0.7, 0.3), (1.3, 1.7))]
+    assert p.recentring_ratio_at(0.1) == pytest.approx(min(ratios), rel=1e-14)
+    for wrong in (0.0, -0.1, 1.6, math.nan):
+        with pytest.raises(rf.InputError, match="rotation"):
+            p.recentring_ratio_at(wrong)

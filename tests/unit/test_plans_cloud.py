@@ -249,3 +249,30 @@ def test_every_number_of_a_response_is_a_column(table):
     assert {name for name in run if name not in ("model", "motion")} - silent <= set(table.columns)
     assert not silent & set(table.columns)
     assert np.isfinite(table[["max_rotation", "max_base_moment"]].to_numpy()).all()
+
+
+def test_on_springs_a_run_without_uplift_does_not_rock():
+    """Elastic tilts of some mrad are not rocking: the outcomes are those of the springs at the edges."""
+    wall = rf.Frame(**{**FRAME, "base_mass": 60e3})
+    p = wall.rocking()
+    bed = rf.winkler_bed(p.half_width, 4.0, 40e6, n=6).damped(0.3, p.m_tot)
+    ground = rf.Ground(springs=bed, base_inertia=60e3 * (2.0 * p.half_width) ** 2 / 12.0)
+    motions = {each.name: each for each in list(SUITE)[:6]}
+    scales = [0.02, 0.1, 0.3]
+    runs = run_cloud(wall, motions, "2DOF-S", scales, ground=ground)
+    lifted = [
+        rf.simulate(wall, motions[name].scaled(scale), "2DOF-S", ground=ground).uplifted.any()
+        for name, scale in zip(runs["motion"].astype(str), runs["scale"], strict=True)
+    ]
+    assert (runs["status"] != "no_uplift").tolist() == lifted
+    tilted = runs.loc[runs["status"] == "no_uplift", "max_rotation"]
+    assert tilted.max() > 2e-4
+    (fit,) = rf.fit_clouds(runs, "pgv")
+    assert (fit.outcomes.n_no_rocking, fit.outcomes.n_rocking) == (len(tilted), sum(lifted))
+    assert fit.outcomes.initiation.probability(runs["pgv"].min()) < 0.2
+    figure = rf.plot_fragility(runs, "pgv", bins=3)
+    marks = next(line for line in figure.axes[0].get_lines() if line.get_label() == "_observed")
+    assert marks.get_ydata()[0] == 0.0
+    figure = rf.plot_clouds(runs)
+    (points,) = (line for line in figure.axes[0].get_lines() if line.get_label() == "_2DOF-S")
+    assert points.get_xdata().size == sum(lifted)

@@ -64,3 +64,12 @@ def test_every_kind_of_table_has_the_columns(column: str) -> None:
     for table in (many, cloud):
         assert table[column].tolist() == [getattr(response, column)]
     assert f"time_of_{column}" in cloud
+
+
+def test_runs_beyond_the_balance_rotation_are_counted_and_told() -> None:
+    runs = RUNS.assign(
+        balance_ratio=[1.2, 0.9, 5.0, float("nan"), 0.0, 3.0], max_rotation=[0.1, 0.1, 1.571, None, 0, 0.3]
+    )
+    assert [each.beyond for each in pivot_lifts(runs)] == [1, 1]
+    assert "θ passes α" in str(pivot_lifts(runs)[1])
+    assert [each.beyond for each in pivot_lifts(runs.assign(model="MDOF-C-SI"))] == [0, 0]

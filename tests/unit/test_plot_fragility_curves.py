@@ -63,7 +63,7 @@ def test_fragility_of_fits_alone_with_another_threshold(cloud):
     figure = drawn(rf.plot_fragility(fits, overturning=True))
     assert figure.axes[0].get_ylabel() == "probability"
     figure = drawn(rf.plot_fragility(fits))
-    assert figure.axes[0].get_ylabel() == r"$P(θ_{\mathrm{max}}>2.5\times10^{-3}\ \mathrm{rad})$"
+    assert figure.axes[0].get_ylabel() == r"$P(\mathrm{uplift},\ θ_{\mathrm{max}}>2.5\times10^{-3}\ \mathrm{rad})$"
     assert figure.axes[0].get_xlabel() == "PGA [m/s²]"
     assert legend(figure) == MODELS
     reached = [line.get_ydata()[-1] for axes in figure.axes for line in axes.get_lines()]

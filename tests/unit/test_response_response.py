@@ -56,6 +56,7 @@ METHODS = (
     "to_xarray",
     "floor_motion",
     "floor_spectrum",
+    "settled_rotation",
 )
 
 
@@ -87,7 +88,7 @@ def test_no_quantity_is_forgotten():
         for item in vars(part).items()
     ]
     public = {name for name, kind in own if isinstance(kind, property | cached_property) and not name.startswith("_")}
-    assert public == {*QUANTITIES, "soil_pressure"}  # which rigid ground has not
+    assert public == {*QUANTITIES, "soil_pressure", "bearing_pressure"}  # which rigid ground has not
     methods = {name for name, kind in own if isfunction(kind) and not name.startswith("_")}
     assert methods == set(METHODS)
     for name in (*QUANTITIES, *METHODS):
@@ -250,3 +251,22 @@ def test_a_start_off_the_ground_is_no_uplift():
     run = simulate(FRAME, quiet_motion(20.0, dt=0.01), "2DOF-S", initial=InitialState(rotation=0.01))
     assert run.status == "rocking"
     assert run.n_impacts == run.n_uplifts + 1
+
+
+def test_a_simplified_run_beyond_the_balance_rotation_warns():
+    """It goes on as if it rocked, at any rotation below π/2, where the structure would long have fallen."""
+    balance = FRAME.rocking().pivot(1).balance_rotation
+    for turn, warned in ((0.9, False), (1.1, True), (6.0, True)):
+        start = InitialState(rotation=turn * balance)
+        run = simulate(FRAME, quiet_motion(0.02), "2DOF-S", initial=start)
+        assert run.status == "rocking"
+        assert run.balance_ratio == pytest.approx(run.max_rotation / balance, rel=1e-12)
+        assert any("static moment vanishes" in text for text in run.warnings) == warned
+        peaks = simulate(FRAME, quiet_motion(0.02), "2DOF-S", "peaks", initial=start)
+        assert peaks.warnings == run.warnings
+        assert not simulate(FRAME, quiet_motion(0.02), "2DOF-C", initial=start).warnings
+    fell = simulate(
+        FRAME, quiet_motion(1.0), "2DOF-S", initial=InitialState(rotation=3.0 * balance), free_vibration=9.0
+    )
+    assert fell.status == "overturned"
+    assert not fell.warnings

@@ -71,8 +71,10 @@ def test_the_structure_and_the_record(page):
     reader, p = read(page), FRAME.rocking()
     assert number(reader.facts["m_tot"][0]) == pytest.approx(p.m_tot / 1e3)
     assert number(reader.facts["uplift_acceleration"][0]) == pytest.approx(p.uplift_acceleration / 9.80665, rel=5e-3)
-    assert number(reader.facts["alpha"][0]) == pytest.approx(
-        1e3 * math.atan(p.half_width / p.effective_height[0]), 5e-3
+    # α is the rotation at which the static moment vanishes, here as in the nomenclature and on the page.
+    assert reader.facts["alpha"][2] == pytest.approx(p.m_tot * p.half_width / p.l0r, rel=1e-12)
+    assert number(reader.facts["nominal"][0]) == pytest.approx(
+        0.7e3 * math.atan(p.half_width / p.effective_height[0]), 5e-3
     )
     assert number(reader.facts["pga"][0]) == pytest.approx(PULSE.pga / 9.80665, rel=5e-3)
     assert number(reader.facts["pgv"][0]) == pytest.approx(PULSE.pgv, rel=5e-3)
@@ -182,7 +184,8 @@ def test_a_rigid_block(tmp_path):
     block = rf.rigid_block(0.2, 3.0, 20e3)
     reader = read(rf.write_report(runs(block, PULSE, ["rigid"]), tmp_path / "r.html", structure=block))
     assert "Rigid block under Ricker" in reader.text
-    assert reader.facts["alpha"][2] == pytest.approx(0.2)
+    assert reader.facts["nominal"][2] == pytest.approx(0.7 * 0.2)
+    assert reader.facts["alpha"][2] == pytest.approx(math.tan(0.2))
     assert "modes" not in reader.tables
 
 
@@ -205,3 +208,35 @@ def test_names_that_are_markup_and_models_that_occur_twice(tmp_path):
 )  # fmt: skip
 def test_numbers_have_three_digits(value, text):
     assert rounded(value) == text
+
+
+def test_re_centring_is_that_of_a_base_at_rest(tmp_path):
+    """A record that ends in the middle of a vibration says nothing of what remains."""
+    fused = rf.Restrained(PIER, [rf.YieldingDissipator(60e6, 150e3, 0.02, x) for x in (-1.5, 1.5)])
+    p, strong = fused.rocking(), PULSE.scaled(3.0)
+    (run,) = runs(fused, strong, ["2DOF-S"])
+    assert abs(run.residual_rotation) > 1e-4
+    (row,) = read(rf.write_report(run, tmp_path / "r.html", structure=fused)).tables["checks"][1:]
+    text, value = next((text, value) for text, name, value in row if name == "settled_rotation")
+    assert value == 0.0
+    assert text.startswith("closes")
+    ratios = [rounded(p.recentring_ratio), rounded(p.recentring_ratio_at(run.max_rotation))]
+    assert all(each in text for each in ratios)
+    assert ratios[0] != ratios[1]
+    # A stronger fuse holds it open.
+    kept = rf.Restrained(PIER, rf.FrictionDamper(9e6))
+    (run,) = runs(kept, strong.scaled(3.0), ["2DOF-S"])
+    (settled,) = runs(kept, strong.scaled(3.0), ["2DOF-S"], free_vibration="settle")
+    (row,) = read(rf.write_report(run, tmp_path / "s.html", structure=kept)).tables["checks"][1:]
+    (value,) = (value for _, name, value in row if name == "settled_rotation")
+    assert value == pytest.approx(settled.residual_rotation, rel=1e-6)
+    assert abs(value) > 1e-4
+
+
+def test_the_static_bearing_pressure_stands_beside_that_of_a_spring(tmp_path):
+    bed = rf.winkler_bed(1.8, 4.0, 60e6, n=8).damped(0.3, 500e3)
+    (run,) = runs(PIER, PULSE, ["2DOF-S"], ground=rf.Ground(springs=bed, base_inertia=5e5))
+    (row,) = read(rf.write_report(run, tmp_path / "r.html", structure=PIER)).tables["checks"][1:]
+    text, value = next((text, value) for text, name, value in row if name == "bearing_pressure")
+    assert value == run.bearing_pressure.max()
+    assert rounded(run.soil_pressure.max() / 1e3) in text

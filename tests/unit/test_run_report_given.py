@@ -77,9 +77,11 @@ def test_the_margin_of_an_eccentric_base_is_that_of_the_side_it_moves_to(tmp_pat
         assert margin == pytest.approx(0.7 / max(shares), rel=1e-3)
         assert ("<" in text) == (margin < 1.0)
         peaks = {name: value for _, name, value in reader.tables["peaks"][1]}
-        assert peaks["slenderness_share"] == pytest.approx(max(shares), rel=1e-3)
-        assert reader.facts["alpha_right"][2] == pytest.approx(math.atan2(arms[1], height))
-        assert "α over θ_max, to the side that is nearer to it" in reader.text.replace("θmax", "θ_max")
+        assert peaks["nominal_share"] == pytest.approx(max(shares) / 0.7, rel=1e-3)
+        assert reader.facts["nominal_right"][2] == pytest.approx(0.7 * math.atan2(arms[1], height))
+        assert reader.facts["alpha_right"][2] == pytest.approx(whole.m_tot * arms[1] / whole.l0r)
+        words = reader.text.replace("θmax", "θ_max").replace("θnom", "θ_nom")
+        assert "θ_nom over θ_max, to the side that is nearer to it" in words
 
 
 def test_an_empty_title_is_no_title(tmp_path):

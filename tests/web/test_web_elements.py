@@ -125,8 +125,10 @@ def test_the_numbers_of_elements_are_the_librarys(client, run) -> None:
 def test_self_centring_is_told(client, pier) -> None:
     pivot = pier.rocking().pivot(1)
     asked = client.state(structure=PIER, models=["2DOF-S"])
-    (told,) = client.ask("/api/response", asked)["self_centring"]
-    assert told == {"side": 1, "closes": True, "ratio": pivot.recentring_ratio}
+    view = client.ask("/api/response", asked)
+    (told,) = view["self_centring"]
+    at = pier.rocking().recentring_ratio_at(view["models"][0]["peaks"]["max_rotation"])
+    assert told == {"side": 1, "closes": True, "ratio": pivot.recentring_ratio, "at": at}
     shown = {each["symbol"]: each["value"] for each in client.ask("/api/structure", asked)["properties"]}
     assert shown["λ"] == pivot.recentring_ratio
     strong = PIER | {"elements": [{"kind": "friction_damper", "position": 0.5, "force": 2e7}]}

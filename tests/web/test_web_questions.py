@@ -73,11 +73,11 @@ def test_another_is_refused(part, name) -> None:
 
 def test_the_limits_of_its_lists(client) -> None:
     listed = json.loads(client.request("/api/about")[2])["limit_states"]
-    assert [(each["name"], each["clause"], each["line"]) for each in listed] == [
-        ("rocking", "it rocks (θ > 0.1 mrad)", 1e-4),
-        ("rotation", "the rotation exceeds …", None),
-        ("nominal", "the nominal limit 0.7 atan(B/h*₁)", None),
-        ("overturning", "it overturns", None),
+    assert [(each["name"], each["clause"]) for each in listed] == [
+        ("rocking", "it rocks (uplift with θ > 0.1 mrad)"),
+        ("rotation", "the rotation exceeds …"),
+        ("nominal", "the nominal limit 0.7 atan(B/h*₁)"),
+        ("overturning", "it overturns"),
     ]
     assert {each["name"]: each["noun"] for each in listed if each["noun"]} == {
         "rotation": "a rotation",

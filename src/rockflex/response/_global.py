@@ -18,7 +18,7 @@ from rockflex.models import (
 )
 
 GLOBAL = ("top_displacement", "base_moment", "base_shear", "total_top_displacement", "horizontal_reaction")
-EDGES = ("right_uplift", "right_settlement", "left_uplift", "left_settlement")
+EDGES = ("right_uplift", "right_settlement", "left_uplift", "left_settlement", "right_rotation", "left_rotation")
 FLOORS = ("story_drift", "story_shear", "total_floor_displacement", "floor_acceleration")
 
 
@@ -52,9 +52,9 @@ def extremes_of(model: RockingModel) -> Quantities | None:
         return None
     p = model.properties
     edges = p.pivot(1).arm, -p.pivot(-1).arm
-    signs = np.array([1.0, -1.0, 1.0, -1.0])
-    places = np.array([edges[0], edges[0], edges[1], edges[1]])
-    of_edges = Quantities.of(4, p.n_modes, heave=signs, rotation=-signs * places)
+    signs = np.array([1.0, -1.0, 1.0, -1.0, 0.0, 0.0])
+    turns = [-edges[0], edges[0], -edges[1], edges[1], 1.0, -1.0]
+    of_edges = Quantities.of(len(EDGES), p.n_modes, heave=signs, rotation=turns)
     return of_edges + element_moves(model)
 
 
@@ -66,9 +66,9 @@ def global_histories(model: RockingModel, states: Array) -> Array:
 
 
 def is_sided(model: RockingModel) -> bool:
-    """Return whether the largest rotation to each side matters, rather than the larger of both."""
+    """Return whether the largest rotation to each side matters on rigid ground, rather than the larger of both."""
     if isinstance(model, SpringModel):
-        return not model.properties.symmetric
+        return False
     return not model.properties.symmetric or any(each.position != 0.0 for each in model.properties.elements)
 
 

@@ -38,6 +38,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         end += 1
     if isinstance(model, SpringModel):
         count = len(model.elements)
+        right, left = (max(each, 0.0) for each in solution.extremes[len(EDGES) - 2 : len(EDGES)].tolist())
         moves = moves_on_springs(model, solution.extremes[len(EDGES) :], peaks[end : end + count])
         end += count
     else:
